@@ -1,0 +1,182 @@
+"""Tree -> model. Silent and tolerant: what does not fit is left out here and reported by the rules."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from fractions import Fraction
+
+from icdgen.icd import formula, model
+from icdgen.icd.errata import Applied
+from icdgen.icd.source import Map
+from icdgen.icd.units import STANDARD, Unit
+
+
+class Scope:
+    """What a node may refer to: enumerations, units and vocabulary of its own and of what it includes."""
+
+    def __init__(self, included: Iterable[model.Node]) -> None:
+        self.enums: dict[str, model.Enum] = {}
+        self.units: dict[str, Unit] = dict(STANDARD)
+        self.vocabulary: list[str] = []
+        for node in included:
+            self.enums.update((e.name, e) for e in node.enums)
+            self.units.update((u.symbol, u) for u in node.units)
+            self.vocabulary += node.vocabulary
+
+
+class Builder:
+    """Builds one node. ``broken`` holds the ids of mappings that violate the schema: they are left out."""
+
+    def __init__(self, tree: Map, applied: Applied, broken: set[int], scope: Scope) -> None:
+        self.tree, self.applied, self.broken, self.scope = tree, applied, broken, scope
+        self.name = ""
+
+    def node(self, includes: tuple[str, ...], digest: str) -> model.Node | None:
+        """The node, or None if its own head is broken."""
+        head = self.tree.get("node")
+        if not isinstance(head, Map) or id(head) in self.broken:
+            return None
+        self.name = head["name"]
+        units = tuple(self.each("units", self.unit))
+        self.scope.units.update((u.symbol, u) for u in units)
+        enums = tuple(self.each("enums", self.enum))
+        self.scope.enums.update((e.name, e) for e in enums)
+        words = tuple(w for w in self.tree.get("vocabulary") or () if isinstance(w, str))
+        return model.Node(
+            name=self.name,
+            title=head["title"],
+            summary=head.get("summary", ""),
+            byte_order=head["byte_order"],
+            bit_order=head["bit_order"],
+            messages=tuple(self.each("messages", self.message)),
+            enums=enums,
+            node_type=head.get("node_type"),
+            interface_version=head.get("interface_version"),
+            document=tuple((k, str(v)) for k, v in (head.get("source") or {}).items()),
+            includes=includes,
+            vocabulary=tuple(dict.fromkeys((*self.scope.vocabulary, *words))),
+            units=units,
+            protocol=plain(self.tree.get("protocol") or {}),
+            loggable=tuple(self.each("loggable", self.loggable)),
+            missing=tuple(self.each("missing", self.missing)),
+            errata=tuple(self.applied.entries),
+            digest=digest,
+            file=self.tree.place.file,
+            source=self.tree,
+        )
+
+    def each(self, key: str, make: Callable, owner: Map | None = None) -> Iterable:
+        items = (self.tree if owner is None else owner).get(key)
+        for item in items if isinstance(items, list) else ():
+            if isinstance(item, Map) and id(item) not in self.broken:
+                yield make(item)
+
+    def unit(self, item: Map) -> Unit:
+        return Unit(item["symbol"], item["identifier"], item["quantity"], item.get("summary", ""))
+
+    def enum(self, item: Map) -> model.Enum:
+        return model.Enum(
+            name=item["name"],
+            members=tuple(self.each("members", self.member, item)),
+            identifier=item.get("identifier"),
+            summary=item.get("summary", ""),
+            table=(item.get("source") or {}).get("table"),
+            node=self.name,
+            errata=self.applied.about(item),
+            source=item,
+        )
+
+    def member(self, item: Map) -> model.Member:
+        return model.Member(
+            value=item["value"],
+            name=item["name"],
+            identifier=item.get("identifier"),
+            summary=item.get("summary", ""),
+            errata=self.applied.about(item),
+            source=item,
+        )
+
+    def message(self, item: Map) -> model.Message:
+        where = item.get("source") or {}
+        return model.Message(
+            name=item["name"],
+            kind=item["kind"],
+            length=item["length"],
+            fields=tuple(self.each("fields", self.field, item)),
+            id=item.get("id"),
+            set_id=item.get("set_id"),
+            get_id=item.get("get_id"),
+            identifier=item.get("identifier"),
+            group=item.get("group", ""),
+            table=where.get("table"),
+            page=where.get("page"),
+            summary=item.get("summary", ""),
+            acknowledge=item.get("acknowledge", True),
+            contains=tuple(self.each("contains", lambda p: model.Part(p["message"], p["at"]), item)),
+            node=self.name,
+            errata=self.applied.about(item),
+            source=item,
+        )
+
+    def field(self, item: Map) -> model.Field:
+        get = item.get
+        kind = item["type"]
+        return model.Field(
+            name=item["name"],
+            at=item["at"],
+            bits=item["bits"],
+            type=kind,
+            identifier=get("identifier"),
+            enum=self.scope.enums.get(get("enum")) if kind == "enum" else None,
+            unit=self.scope.units.get(get("unit")),
+            formula=get("formula", ""),
+            scale=scale(get("formula")) if kind in ("uint", "int") else None,
+            const=get("const"),
+            special=tuple(self.each("special", lambda s: model.Special(s["value"], s["meaning"]), item)),
+            limits=limits(item),
+            bitfields=tuple(self.each("bitfields", bitfield, item)) if "bitfields" in item else (),
+            summary=get("summary", ""),
+            errata=self.applied.about(item),
+            source=item,
+        )
+
+    def loggable(self, item: Map) -> model.Loggable:
+        errata = self.applied.about(item)
+        return model.Loggable(item["bit"], item["id"], item.get("name", ""), errata, item)
+
+    def missing(self, item: Map) -> model.Missing:
+        return model.Missing(item["kind"], item["id"], item["name"], item["why"])
+
+
+def scale(text: str | None) -> formula.Scale | None:
+    """The scale of a formula; None where there is none or it is bad."""
+    if text is None:
+        return None
+    try:
+        return formula.parse_cached(text)
+    except formula.FormulaError:
+        return None
+
+
+def limits(item: Map) -> model.Limits | None:
+    """The limits of a field, exact: 0.1 is one tenth."""
+    found = {key: exact(item[key]) for key in ("min", "max", "above", "below") if key in item}
+    return model.Limits(**found) if found else None
+
+
+def exact(number: int | float) -> Fraction:
+    """The number as it is written."""
+    return Fraction(number) if isinstance(number, int) else Fraction(repr(number))
+
+
+def bitfield(item: Map) -> model.BitField:
+    return model.BitField(item["at"], item["bits"], item["name"], item.get("summary", ""))
+
+
+def plain(value: object) -> object:
+    """A tree without positions."""
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [plain(item) for item in value]
+    return value

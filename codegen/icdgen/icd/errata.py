@@ -1,0 +1,199 @@
+"""Errata overlays: decisions about the manual's faults, laid over the vendor's data before the model is built."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.diagnostics import Finding, Place
+from icdgen.icd.model import Erratum
+from icdgen.icd.source import Map, Seq
+
+STALE, NOWHERE, DOUBLE_ID, OTHER_NODE = "ICD080", "ICD081", "ICD082", "ICD083"
+
+
+class Applied:
+    """The outcome of laying an overlay over a node's tree."""
+
+    def __init__(self) -> None:
+        self.entries: list[Erratum] = []
+        self.of: dict[int, list[Erratum]] = {}  # id(mapping) -> entries that concern it
+        self.accepts: list[tuple[str, Place, Map, str, Place]] = []  # code, file's place, mapping, erratum id, place
+        self.findings: list[Finding] = []
+
+    def about(self, item: object) -> tuple[Erratum, ...]:
+        """The entries that concern the object read from this mapping."""
+        return tuple(self.of.get(id(item), ()))
+
+
+def apply(tree: Map, overlay: Map | None) -> Applied:
+    """Changes ``tree`` in place. Every entry that fits nowhere or no longer matches is a finding."""
+    applied = Applied()
+    if overlay is None:
+        return applied
+    name = (tree.get("node") or {}).get("name")
+    if overlay.get("node") != name:
+        applied.findings.append(
+            Finding(OTHER_NODE, f"this overlay is for node `{overlay.get('node')}`, but lies beside `{name}`",
+                    overlay.at("node"), "rename the file after its node, or correct `node:`")
+        )  # fmt: skip
+        return applied
+    seen: dict[str, Place] = {}
+    for entry in overlay.get("entries") or ():
+        if not isinstance(entry, Map) or not isinstance(entry.get("id"), str):
+            continue
+        if entry["id"] in seen:
+            applied.findings.append(
+                Finding(DOUBLE_ID, f"the id `{entry['id']}` is used twice, first in line {seen[entry['id']].line}",
+                        entry.at("id"), "give this entry an id of its own")
+            )  # fmt: skip
+        seen[entry["id"]] = entry.at("id")
+        _apply_entry(tree, entry, applied)
+    return applied
+
+
+def _apply_entry(tree: Map, entry: Map, applied: Applied) -> None:
+    printed, held = entry.get("printed") or {}, entry.get("held") or {}
+    erratum = _erratum(entry)
+    applied.entries.append(erratum)
+    where = entry.get("where")
+    wheres = where if isinstance(where, Seq) else [where] if where else []
+    matched = 0
+    wildcard = False
+    for one in wheres:
+        targets = list(_targets(tree, one))
+        wild = "*" in (one.get("message"), one.get("field"))
+        wildcard |= wild
+        if wild:
+            targets = [t for t in targets if _matches(t, printed)]
+        if not targets and not wild:
+            applied.findings.append(_nowhere(tree, one))
+        for target in targets:
+            if not wild and not _matches(target, printed):
+                applied.findings.append(_stale(entry, target, printed))
+                continue
+            matched += 1
+            _change(target, held, entry)
+            applied.of.setdefault(id(target), []).append(erratum)
+            for code in entry.get("accept") or ():
+                applied.accepts.append((code, entry.at("accept"), target, erratum.id, target.place))
+    if wildcard and matched != entry.get("places"):
+        expected = entry.get("places")
+        message = f"`printed` matches {matched} places" + (f", not {expected}" if expected is not None else "")
+        applied.findings.append(
+            Finding(STALE, message, entry.at("places" if expected is not None else "where"),
+                    f"check the places, then write `places: {matched}`")
+        )  # fmt: skip
+
+
+def _erratum(entry: Map) -> Erratum:
+    return Erratum(
+        id=entry["id"],
+        title=str(entry.get("title", "")),
+        why=str(entry.get("why", "")),
+        evidence=str(entry.get("evidence", "")),
+        confidence=str(entry.get("confidence", "open")),
+        tables=tuple(t for t in entry.get("tables") or () if isinstance(t, int)),
+        printed=tuple((entry.get("printed") or {}).items()),
+        held=tuple((entry.get("held") or {}).items()),
+        changes=bool(entry.get("held")),
+    )
+
+
+def _targets(tree: Map, where: Map) -> Iterator[Map]:
+    if "section" in where:
+        yield from _section(tree, str(where["section"]))
+    elif "enum" in where:
+        for enum in _named(tree, "enums", where["enum"]):
+            if "member" not in where:
+                yield enum
+            else:
+                yield from (m for m in enum.get("members") or () if m.get("value") == where["member"])
+    elif "loggable" in where:
+        yield from (row for row in tree.get("loggable") or () if row.get("bit") == where["loggable"])
+    elif "message" in where:
+        names = where.get("fields") or ([where["field"]] if "field" in where else None)
+        for message in _named(tree, "messages", where["message"]):
+            if names is None:
+                yield message
+            else:
+                yield from (f for name in names for f in _named(message, "fields", name))
+
+
+def _named(owner: Map, key: str, name: object) -> Iterator[Map]:
+    for item in owner.get(key) or ():
+        if isinstance(item, Map) and (name == "*" or item.get("name") == name):
+            yield item
+
+
+def _section(tree: Map, path: str) -> Iterator[Map]:
+    node: object = tree
+    for step in path.split("."):
+        if isinstance(node, Map) and step in node:
+            node = node[step]
+        elif isinstance(node, Seq) and step.isdigit() and int(step) < len(node):
+            node = node[int(step)]
+        else:
+            return
+    if isinstance(node, Map):
+        yield node
+
+
+def _matches(target: Map, printed: Map | dict) -> bool:
+    return all(_plain(target.get(key)) == _plain(value) for key, value in printed.items())
+
+
+def _plain(value: object) -> object:
+    return ("bool", value) if isinstance(value, bool) else value
+
+
+def _change(target: Map, held: Map | dict, entry: Map) -> None:
+    for key, value in held.items():
+        if value is None:
+            target.pop(key, None)
+        else:
+            target[key] = value
+            target.keys_at.setdefault(key, target.place)
+            target.values_at[key] = held.at(key)
+
+
+def _stale(entry: Map, target: Map, printed: Map) -> Finding:
+    for key, value in printed.items():
+        if _plain(target.get(key)) != _plain(value):
+            now = target.get(key)
+            place = target.at(key)
+            message = (
+                f"stale erratum {entry['id']}: it was written for `{key}: {_show(value)}`, "
+                f"the ICD now has `{key}: {_show(now)}` ({place})"
+            )
+            return Finding(STALE, message, printed.at(key), "look at the manual again, then update or remove the entry")
+    raise AssertionError("the target matches")
+
+
+def _nowhere(tree: Map, where: Map) -> Finding:
+    import difflib
+
+    wanted, known = "", []
+    if "section" in where:
+        wanted = f"section `{where['section']}`"
+    elif "enum" in where:
+        wanted = f"enumeration `{where['enum']}`" + (f" with value {where['member']}" if "member" in where else "")
+        known = [e.get("name") for e in tree.get("enums") or () if isinstance(e, Map)]
+    elif "loggable" in where:
+        wanted = f"loggable bit {where['loggable']}"
+    elif "message" in where:
+        wanted = f"message `{where['message']}`"
+        known = [m.get("name") for m in tree.get("messages") or () if isinstance(m, Map)]
+        messages = list(_named(tree, "messages", where["message"]))
+        if messages:
+            wanted = f"field `{where.get('field') or where.get('fields')}` in {wanted}"
+            known = [f.get("name") for m in messages for f in m.get("fields") or () if isinstance(f, Map)]
+    target = str(where.get("field") or where.get("message") or where.get("enum") or "")
+    close = difflib.get_close_matches(target, [k for k in known if isinstance(k, str)], 1)
+    help = f"did you mean `{close[0]}`?" if close else "names are the manual's, to the letter"
+    return Finding(NOWHERE, f"there is no {wanted}", where.place, help)
+
+
+def _show(value: object) -> str:
+    if value is None:
+        return "(absent)"
+    return str(value).lower() if isinstance(value, bool) else str(value)

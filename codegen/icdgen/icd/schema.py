@@ -1,0 +1,149 @@
+"""Structure of ICD files and overlays: the JSON Schema, and its violations in words."""
+
+from __future__ import annotations
+
+import difflib
+import json
+from functools import cache
+from pathlib import Path
+
+from icdgen.diagnostics import Finding, Place
+from icdgen.icd.source import Map, Seq
+
+PATH = Path(__file__).with_name("schema.json")
+CODE = "ICD010"
+
+_TYPES = {
+    "string": "text",
+    "integer": "a whole number",
+    "number": "a number",
+    "boolean": "true or false",
+    "object": "a mapping",
+    "array": "a list",
+    "null": "null",
+}
+
+
+def check(tree: Map, document: str) -> tuple[list[Finding], set[int]]:
+    """Violations of ``#/$defs/<document>`` ("icd" or "errata"), and the ids of the mappings they stand in."""
+    findings: list[Finding] = []
+    broken: set[int] = set()
+    for error in _validator(document).iter_errors(tree):
+        path = list(error.instance_path)
+        owner, place = _locate(tree, path)
+        broken.add(id(owner))
+        findings += _explain(error, tree, path, owner, place)
+    return findings, broken
+
+
+@cache
+def _schema() -> dict:
+    return json.loads(PATH.read_text(encoding="utf-8"))
+
+
+@cache
+def _validator(document: str):
+    import jsonschema_rs
+
+    schema = {"$schema": _schema()["$schema"], "$ref": f"#/$defs/{document}", "$defs": _schema()["$defs"]}
+    return jsonschema_rs.validator_for(schema)
+
+
+def _locate(tree: Map, path: list) -> tuple[Map, Place]:
+    """The innermost mapping on the path, and the place of the value the path leads to."""
+    node, owner, place = tree, tree, tree.place
+    for step in path:
+        place = node.items_at[step] if isinstance(node, Seq) else node.at(step)
+        node = node[step]
+        if isinstance(node, Map):
+            owner = node
+    return owner, place
+
+
+def _explain(error, tree: Map, path: list, owner: Map, place: Place) -> list[Finding]:
+    kind = error.kind
+    name = kind.name
+    what = f"`{path[-1]}`" if path and isinstance(path[-1], str) else "this"
+    if path and isinstance(path[-1], int) and isinstance(path[-2], str):
+        what = f"this entry of `{path[-2]}`"
+    rule = _rule_at(list(error.schema_path))
+    about = rule.get("description", "")
+    help = f"{what} is {about}" if about and what != "this" else about
+    if name == "required":
+        missing = kind.property
+        hint = _about(rule, missing)
+        message = f"`{missing}` is missing" + (f" from {what}" if path else "")
+        return [Finding(CODE, message, place, f"add `{missing}:`" + (f", {hint}" if hint else ""))]
+    if name == "additionalProperties":
+        known = list(rule.get("properties", {}))
+        return [_unknown_key(key, known, owner.keys_at[key]) for key in kind.unexpected if key in owner.keys_at]
+    if name == "type":
+        wanted = rule.get("type", "")
+        message = f"{what} must be {_TYPES.get(wanted, wanted)}, not {_describe(error.instance)}"
+    elif name in ("enum", "const"):
+        message = f"{what} cannot be {_describe(error.instance)}"
+    elif name in ("minimum", "maximum"):
+        side = "at least" if name == "minimum" else "at most"
+        message = f"{what} must be {side} {rule[name]}, not {error.instance}"
+    elif name == "minLength":
+        message = f"{what} is empty"
+    elif name == "maxLength":
+        message = f"{what} is longer than {rule[name]:,} characters"
+    elif name == "pattern":
+        message = f"{what} cannot be {_describe(error.instance)}"
+    elif name in ("minItems", "minProperties"):
+        message = f"{what} is empty"
+    elif name == "dependentRequired":
+        message = f"{what} lacks a key that another of its keys needs"
+        help = "`held` needs `printed`, and `printed` needs `where`"
+    else:
+        message = f"{what} does not fit the format ({name})"
+    return [Finding(CODE, message, place, help or "see docs/icd-format.md")]
+
+
+def _unknown_key(key: str, known: list[str], place: Place) -> Finding:
+    close = difflib.get_close_matches(key, known, 1)
+    help = f"did you mean `{close[0]}`?" if close else "known keys: " + ", ".join(known)
+    return Finding(CODE, f"unknown key `{key[:60]}`", place, help)
+
+
+def _rule_at(path: list) -> dict:
+    """The sub-schema that failed: the path without its last keyword, references followed."""
+    node = _schema()
+    for step in path[:-1]:
+        if isinstance(node, dict) and step not in node and "$ref" in node:
+            node = _follow(node)
+        if step == "$ref":
+            node = _follow(node)
+        elif isinstance(node, dict) and step in node:
+            node = node[step]
+        elif isinstance(node, list):
+            node = node[step]
+    if isinstance(node, dict) and "$ref" in node:
+        node = _follow(node)
+    return node if isinstance(node, dict) else {}
+
+
+def _follow(node: dict) -> dict:
+    return _schema()["$defs"][node["$ref"].rsplit("/", 1)[1]]
+
+
+def _about(rule: dict, key: str) -> str:
+    shape = rule.get("properties", {}).get(key, {})
+    if "$ref" in shape:
+        shape = _follow(shape)
+    return shape.get("description", "")
+
+
+def _describe(value: object) -> str:
+    if isinstance(value, bool):
+        return f"the truth value {str(value).lower()}"
+    if isinstance(value, dict):
+        return "a mapping"
+    if isinstance(value, list):
+        return "a list"
+    if value is None:
+        return "empty"
+    text = str(value)
+    text = text if len(text) <= 40 else text[:37] + "..."
+    return f"the text {text!r}" if isinstance(value, str) else f"the number {text}"

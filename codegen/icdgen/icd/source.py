@@ -1,0 +1,244 @@
+"""YAML text -> tree of plain values that remembers where each one stood.
+
+Mappings become `Map` (a dict), sequences `Seq` (a list); both keep the place of every key and value. Scalars are str, int,
+bool, float or None. Only spellings that every YAML reader takes alike are accepted; the rest is a finding (ICD003).
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from icdgen.diagnostics import Finding, Findings, Place
+
+MAX_BYTES = 4_000_000
+MAX_DEPTH = 40
+MAX_SCALAR = 20_000
+
+_INTEGER = re.compile(r"-?(?:0|[1-9][0-9]*)\Z")
+_HEX = re.compile(r"0x[0-9A-Fa-f]+\Z")
+_DECIMAL = re.compile(r"-?(?:0|[1-9][0-9]*)\.[0-9]+\Z")
+_WORDS = {"true": True, "false": False, "null": None, "~": None, "": None}
+# What YAML 1.1 or 1.2 reads as something other than the text it looks like.
+_TREACHEROUS = re.compile(
+    r"""(?: [-+.0-9][-+0-9_.:eExXobA-Fa-f]*
+          | [-+]?\.(?:inf|nan)
+          | y(?:es)? | no? | on | off | true | false | null
+          | [0-9]{4}-[0-9]{1,2}-[0-9]{1,2}(?:[Tt ].*)?
+        )\Z""",
+    re.VERBOSE | re.IGNORECASE,
+)
+
+
+class Map(dict):
+    """A mapping; ``place`` is where it starts, ``keys_at`` and ``values_at`` give the place of each key and value."""
+
+    __slots__ = ("place", "keys_at", "values_at")
+
+    def __init__(self, place: Place) -> None:
+        self.place = place
+        self.keys_at: dict[str, Place] = {}
+        self.values_at: dict[str, Place] = {}
+
+    def at(self, key: str) -> Place:
+        """Where the value of ``key`` stands; the mapping itself if it has no such key."""
+        return self.values_at.get(key, self.place)
+
+
+class Seq(list):
+    """A sequence; ``items_at`` gives the place of each item."""
+
+    __slots__ = ("place", "items_at")
+
+    def __init__(self, place: Place) -> None:
+        self.place = place
+        self.items_at: list[Place] = []
+
+
+def read(path: Path, name: str | None = None) -> Map:
+    """The file's tree. ``name`` is how findings call the file. Raises `Findings`."""
+    name = name or str(path)
+    here = Place(name)
+    try:
+        size = path.stat().st_size
+        if size > MAX_BYTES:
+            raise Findings(
+                [Finding("ICD001", f"the file has {size:,} bytes, more than the {MAX_BYTES:,} allowed", here,
+                         "split it and join the parts with `include:`")]
+            )  # fmt: skip
+        data = path.read_bytes()
+    except OSError as error:
+        raise Findings(
+            [Finding("ICD001", f"cannot read the file: {error.strerror}", here, "check the path")]
+        ) from None
+    return parse(data, name)
+
+
+def parse(data: bytes, name: str) -> Map:
+    """The tree of ``data``. Raises `Findings` with everything wrong at the level of YAML."""
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        before = data[: error.start]
+        place = Place(name, before.count(b"\n") + 1, error.start - (before.rfind(b"\n") + 1) + 1)
+        problem = f"byte 0x{data[error.start]:02X} is not UTF-8"
+        raise Findings([Finding("ICD001", problem, place, "save the file as UTF-8")]) from None
+    tree, findings = _Builder(text, name).build()
+    if not findings and tree is None:
+        findings = [Finding("ICD001", "the file is empty", Place(name), "an ICD begins with `icdgen: 1`")]
+    elif not findings and not isinstance(tree, Map):
+        findings = [Finding("ICD001", "the file is not a mapping of keys to values", Place(name),
+                            "an ICD begins with `icdgen: 1`, an overlay with `errata: 1`")]  # fmt: skip
+    if findings:
+        raise Findings(findings)
+    return tree
+
+
+class _Builder:
+    """Builds the tree from parser events with a stack of its own, so that depth is ours to limit."""
+
+    def __init__(self, text: str, name: str) -> None:
+        self.text, self.name = text, name
+        self.findings: list[Finding] = []
+        self.scalars: dict[str, object] = {}
+
+    def build(self) -> tuple[object, list[Finding]]:
+        import yaml
+        from yaml import events
+
+        if "\0" in self.text:
+            line = self.text[: self.text.index("\0")].count("\n") + 1
+            place = Place(self.name, line)
+            return None, [Finding("ICD001", "the file holds a NUL character", place, "remove it")]
+        root: list[object] = []
+        stack: list[list] = []  # [container, pending key, place of pending key]
+        parser = _parser(self.text)
+        try:
+            while True:
+                event = parser.get_event()
+                kind = type(event)
+                if kind is events.ScalarEvent:
+                    value = self.scalar(event)
+                    self.put(stack, root, value, event)
+                elif kind is events.MappingStartEvent or kind is events.SequenceStartEvent:
+                    if event.anchor is not None:
+                        self.refuse_alias(event)
+                    container = (Map if kind is events.MappingStartEvent else Seq)(self.place(event))
+                    self.put(stack, root, container, event)
+                    if len(stack) >= MAX_DEPTH:
+                        self.add("ICD001", f"nested more than {MAX_DEPTH} deep", event, "an ICD needs five levels")
+                        return None, self.findings
+                    stack.append([container, None, None])
+                elif kind is events.MappingEndEvent or kind is events.SequenceEndEvent:
+                    stack.pop()
+                elif kind is events.AliasEvent:
+                    self.refuse_alias(event)
+                    return None, self.findings
+                elif kind is events.DocumentStartEvent and root:
+                    self.add("ICD001", "a second document begins here", event, "one ICD is one document: remove `---`")
+                    return None, self.findings
+                elif kind is events.StreamEndEvent:
+                    break
+        except yaml.YAMLError as error:
+            mark = getattr(error, "problem_mark", None)
+            place = Place(self.name, mark.line + 1, mark.column + 1) if mark else Place(self.name)
+            problem = getattr(error, "problem", None) or getattr(error, "reason", None) or "the text cannot be read"
+            help = "check indentation, quotes and brackets just before this place"
+            self.findings.append(Finding("ICD001", f"not YAML: {problem}", place, help))
+            return None, self.findings
+        return (root[0] if root else None), self.findings
+
+    def put(self, stack: list[list], root: list[object], value: object, event) -> None:
+        if not stack:
+            root.append(value)
+            return
+        top = stack[-1]
+        container = top[0]
+        if type(container) is Seq:
+            container.append(value)
+            container.items_at.append(self.place(event))
+        elif top[2] is None:  # a key
+            if not isinstance(value, str):
+                if isinstance(value, (Map, Seq)):
+                    self.add("ICD001", "a key must be a word, not a mapping or a list", event, "give the key a name")
+                value = str(value)
+            top[1], top[2] = value, self.place(event)
+        else:
+            key = top[1]
+            if key in container:
+                first = container.keys_at[key]
+                self.findings.append(
+                    Finding("ICD002", f"the key `{key}` stands twice in this mapping, first in line {first.line}",
+                            top[2], "remove one of them")
+                )  # fmt: skip
+            container[key] = value
+            container.keys_at[key] = top[2]
+            container.values_at[key] = self.place(event)
+            top[2] = None
+
+    def scalar(self, event) -> object:
+        text = event.value
+        if event.anchor is not None:
+            self.refuse_alias(event)
+        if event.tag is not None and event.tag != "!":
+            self.add("ICD003", f"the tag `{event.tag}` is not part of the format", event, "remove the tag")
+        if len(text) > MAX_SCALAR:
+            self.add("ICD001", f"a text of {len(text):,} characters", event, f"at most {MAX_SCALAR:,} are allowed")
+            return text[:100]
+        if event.style:
+            return text
+        try:
+            return self.scalars[text]
+        except KeyError:
+            pass
+        value = self.plain(text, event)
+        if value is not self:
+            self.scalars[text] = value
+            return value
+        return text
+
+    def plain(self, text: str, event) -> object:
+        """The value of an unquoted scalar; ``self`` if YAML readers disagree about it."""
+        if text in _WORDS:
+            return _WORDS[text]
+        if _INTEGER.match(text):
+            return int(text) if len(text) < 40 else text
+        if _HEX.match(text):
+            return int(text, 16) if len(text) < 40 else text
+        if _DECIMAL.match(text):
+            return float(text)
+        if _TREACHEROUS.match(text) and text not in (".", "-"):
+            help = f'write "{text}" in quotes if it is text, a plain decimal or 0x number if it is a number'
+            self.add("ICD003", f"YAML readers disagree about what `{text}` is", event, help)
+            return self
+        return text
+
+    def refuse_alias(self, event) -> None:
+        self.add("ICD001", "anchors and aliases are not part of the format", event, "write the value out")
+
+    def place(self, event) -> Place:
+        start, end = event.start_mark, event.end_mark
+        length = end.column - start.column if end.line == start.line else 1
+        return Place(self.name, start.line + 1, start.column + 1, length if length > 0 else 1)
+
+    def add(self, code: str, message: str, event, help: str) -> None:
+        self.findings.append(Finding(code, message, self.place(event), help))
+
+
+def _parser(text: str):
+    """libyaml's event parser (ten times faster) where PyYAML was built with it."""
+    try:
+        from yaml.cyaml import CParser
+    except ImportError:
+        from yaml.parser import Parser
+        from yaml.reader import Reader
+        from yaml.scanner import Scanner
+
+        class PythonParser(Reader, Scanner, Parser):
+            def __init__(self, stream: str) -> None:
+                Reader.__init__(self, stream)
+                Scanner.__init__(self)
+                Parser.__init__(self)
+
+        return PythonParser(text)
+    return CParser(text)

@@ -1,0 +1,99 @@
+"""Units that every ICD may use without declaring them. Device-specific ones are declared in the ICD (`units:`)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Unit(NamedTuple):
+    """``identifier`` is what generated names end in: ``roll_deg``."""
+
+    symbol: str
+    identifier: str
+    quantity: str
+    summary: str = ""
+
+
+_TABLE = """
+deg         deg             plane angle
+rad         rad             plane angle
+arcsec      arcsec          plane angle
+deg/s       deg_per_s       angular velocity
+rad/s       rad_per_s       angular velocity
+rpm         rpm             angular velocity
+deg/s^2     deg_per_s2      angular acceleration
+rad/s^2     rad_per_s2      angular acceleration
+um          um              length
+mm          mm              length
+cm          cm              length
+m           m               length
+km          km              length
+m^2         m2              area
+m/s         m_per_s         velocity
+km/s        km_per_s        velocity
+m/s^2       m_per_s2        acceleration
+ns          ns              time
+us          us              time
+ms          ms              time
+s           s               time
+min         min             time
+h           h               time
+day         day             time
+Hz          hz              frequency
+kHz         khz             frequency
+MHz         mhz             frequency
+g           g               mass
+kg          kg              mass
+N           n               force
+mN          mn              force
+N.m         n_m             torque
+mN.m        mn_m            torque
+uN.m        un_m            torque
+Nms         nms             angular momentum
+mNms        mnms            angular momentum
+kg.m^2      kg_m2           moment of inertia
+A           a               electric current
+mA          ma              electric current
+uA          ua              electric current
+V           v               voltage
+mV          mv              voltage
+W           w               power
+mW          mw              power
+J           j               energy
+Wh          wh              energy
+Ah          ah              electric charge
+mAh         mah             electric charge
+ohm         ohm             resistance
+T           t               magnetic flux density
+uT          ut              magnetic flux density
+nT          nt              magnetic flux density
+A.m^2       a_m2            magnetic dipole moment
+C           c               temperature (degrees Celsius)
+K           k               temperature
+Pa          pa              pressure
+kPa         kpa             pressure
+bar         bar             pressure
+%           percent         ratio
+ppm         ppm             ratio
+dB          db              ratio
+dBm         dbm             power level
+bit         bit             information
+byte        byte            information
+bit/s       bit_per_s       data rate
+"""
+
+# Spellings that mean one of the above; used only to say what the writer probably meant.
+SPELLINGS = {
+    "°": "deg", "degree": "deg", "degrees": "deg", "deg/sec": "deg/s", "RPM": "rpm", "meter": "m", "metre": "m",
+    "meters": "m", "seconds": "s", "sec": "s", "milliseconds": "ms", "msec": "ms", "percentage": "%", "percent": "%",
+    "°C": "C", "degC": "C", "Nm": "N.m", "kg.m2": "kg.m^2", "kg.m²": "kg.m^2", "A.m2": "A.m^2", "A.m²": "A.m^2",
+    "Am2": "A.m^2", "µT": "uT", "Ohm": "ohm", "bytes": "byte", "bits": "bit",
+}  # fmt: skip
+
+
+def _standard() -> dict[str, Unit]:
+    rows = (line.split(None, 2) for line in _TABLE.strip().splitlines())
+    return {symbol: Unit(symbol, identifier, quantity) for symbol, identifier, quantity in rows}
+
+
+STANDARD = _standard()

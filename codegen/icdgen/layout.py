@@ -1,0 +1,86 @@
+"""Where each bit of each field lies in the bytes: the plan that all backends share.
+
+A field is a row of pieces, each a run of bits of one byte. See 'Bits' in ``docs/icd-format.md`` for the numbering.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+from icdgen.icd.model import Field, Message, Node
+
+
+class Piece(NamedTuple):
+    """``bits`` bits of byte ``byte``, from its bit ``shift`` (0: least significant) up, are bits ``at`` and up of the value."""
+
+    byte: int
+    shift: int
+    bits: int
+    at: int
+
+    @property
+    def mask(self) -> int:
+        """Mask of the run within its byte."""
+        return ((1 << self.bits) - 1) << self.shift
+
+
+@lru_cache(maxsize=65536)
+def pieces_at(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[Piece, ...]:
+    """The pieces of a value, in the order of their bytes."""
+    runs = []
+    start, end = at, at + bits
+    while start < end:
+        byte, first = divmod(start, 8)
+        count = min(8 - first, end - start)
+        shift = first if bit_order == "lsb0" else 8 - first - count
+        runs.append((byte, shift, count))
+        start += count
+    pieces, below = [], 0
+    for byte, shift, count in runs if byte_order == "little" else reversed(runs):
+        pieces.append(Piece(byte, shift, count, below))
+        below += count
+    return tuple(pieces if byte_order == "little" else reversed(pieces))
+
+
+def pieces(field: Field, node: Node) -> tuple[Piece, ...]:
+    """The pieces of a number field. A ``bytes`` field is whole bytes in order: see `byte_range`."""
+    return pieces_at(field.at, field.bits, node.byte_order, node.bit_order)
+
+
+def byte_range(field: Field) -> range:
+    """The bytes that the field touches."""
+    return range(field.at // 8, (field.at + field.bits + 7) // 8)
+
+
+def is_whole_bytes(field: Field) -> bool:
+    """Whether the field begins and ends with a byte, so that it can be loaded as a unit."""
+    return field.at % 8 == 0 and field.bits % 8 == 0
+
+
+class Gap(NamedTuple):
+    """Reserved bits: ``bits`` bits from bit ``at`` of the frame."""
+
+    at: int
+    bits: int
+
+
+def gaps(message: Message) -> tuple[Gap, ...]:
+    """Bits of the frame that no field covers, in order."""
+    found, reached = [], 0
+    for field in sorted(message.fields, key=lambda f: f.at):
+        if field.at > reached:
+            found.append(Gap(reached, field.at - reached))
+        reached = max(reached, field.at + field.bits)
+    if reached < message.length * 8:
+        found.append(Gap(reached, message.length * 8 - reached))
+    return tuple(found)
+
+
+def reserved_mask(message: Message, node: Node) -> bytes:
+    """One byte a byte of the frame, a set bit for each reserved bit."""
+    mask = bytearray(message.length)
+    for gap in gaps(message):
+        for piece in pieces_at(gap.at, gap.bits, node.byte_order, node.bit_order):
+            mask[piece.byte] |= piece.mask
+    return bytes(mask)
