@@ -1,0 +1,85 @@
+"""Options in, one call, result out. Commands live in ``commands``; each is imported when it is named."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+
+import click
+
+from icdgen import __version__
+from icdgen.errors import UserError
+
+# Name -> module in ``icdgen.commands``; the module has a click command of the same name.
+_COMMANDS = {
+    "generate": "generate",
+    "check": "check",
+    "fmt": "fmt",
+    "rule": "rule",
+    "show": "show",
+    "decode": "codec",
+    "encode": "codec",
+}
+_DEFAULT = "generate"
+
+
+class _Commands(click.Group):
+    """A group whose default command is ``generate``, so that a build step reads ``icdgen --lang c``."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(_COMMANDS)
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        if name not in _COMMANDS:
+            return None
+        return getattr(import_module(f"icdgen.commands.{_COMMANDS[name]}"), name)
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        if args and args[0] not in (*_COMMANDS, "--help", "-h", "--version"):
+            args = [_DEFAULT, *args]
+        return super().parse_args(ctx, args)
+
+
+@click.group(
+    cls=_Commands,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+    epilog="`icdgen --lang c` is short for `icdgen generate --lang c`. Exit status: 0 clean, 1 findings, 2 misuse.",
+)
+@click.version_option(__version__, prog_name="icdgen")
+@click.pass_context
+def icdgen(ctx: click.Context) -> None:
+    """Code, golden vectors and documentation from validated device ICDs."""
+    if ctx.invoked_subcommand is None:
+        ctx.invoke(icdgen.get_command(ctx, _DEFAULT))
+
+
+def main(arguments: list[str], run: str = "") -> None:
+    """Runs a command line and exits. ``run`` names the record under which a generation may be remembered."""
+    try:
+        status = icdgen.main(arguments, prog_name="icdgen", standalone_mode=False, obj={"run": run})
+    except UserError as error:
+        _complain(str(error), error.help)
+        status = 2
+    except click.ClickException as error:
+        error.show()
+        status = 2
+    except (click.Abort, KeyboardInterrupt):
+        _complain("interrupted")
+        status = 130
+    except BrokenPipeError:
+        sys.stderr.close()
+        status = 141
+    except RecursionError:
+        _complain("the input is nested too deeply")
+        status = 2
+    except MemoryError:
+        _complain("out of memory")
+        status = 2
+    sys.exit(status if isinstance(status, int) else 0)
+
+
+def _complain(message: str, help: str = "") -> None:
+    click.echo(f"icdgen: error: {message}", err=True)
+    if help:
+        click.echo(f"  help: {help}", err=True)

@@ -1,0 +1,1 @@
+"""The commands of ``icdgen``: options, one call into the library, printing. No logic."""

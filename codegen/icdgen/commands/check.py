@@ -1,0 +1,21 @@
+"""``icdgen check``"""
+
+from __future__ import annotations
+
+import sys
+
+import click
+
+from icdgen.commands.common import chosen, icd_arguments, print_findings
+
+
+@click.command()
+@icd_arguments
+@click.option("--format", "form", type=click.Choice(["text", "json", "github", "sarif"]), default="text", show_default=True)
+def check(icds, form) -> None:
+    """Check ICDs and report every finding. Exit status: 0 clean, 1 findings."""
+    from icdgen.icd.load import load
+
+    loaded = load(chosen(icds)[0])
+    print_findings(loaded.findings, loaded.texts, form)
+    sys.exit(1 if loaded.findings else 0)

@@ -1,0 +1,58 @@
+"""What several commands share: which ICDs are meant, and how findings are printed."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+
+from icdgen import config, places
+from icdgen.diagnostics import Finding
+from icdgen.icd.load import Loaded
+
+
+def icd_arguments(command: Callable) -> Callable:
+    """``[ICD]...``: files or folders; without them what ``icdgen.toml`` names, else the shipped ones."""
+    return click.argument("icds", nargs=-1, metavar="[ICD]...", type=click.Path(path_type=Path))(command)
+
+
+def icd_option(command: Callable) -> Callable:
+    """``--icd FILE`` (repeatable), for commands whose arguments are something else."""
+    text = "ICD file or folder (default: those of icdgen.toml, else those shipped)."
+    return click.option("--icd", "icds", multiple=True, type=click.Path(path_type=Path), help=text)(command)
+
+
+def chosen(icds: tuple[Path, ...]) -> tuple[list[Path], config.Config]:
+    """The ICDs to work on, relative to the current folder where they lie in it, and the configuration."""
+    found = config.find(Path.cwd())
+    paths = list(icds) or found.icds or [places.icds()]
+    return [_short(path) for path in paths], found
+
+
+def _short(path: Path) -> Path:
+    here = Path.cwd()
+    return path.relative_to(here) if path.is_absolute() and path.is_relative_to(here) else path
+
+
+def load_or_exit(icds: tuple[Path, ...]) -> Loaded:
+    """The checked ICDs; prints what is wrong and exits with 1 if anything is."""
+    from icdgen.checked import load_checked
+
+    loaded = load_checked(chosen(icds)[0])
+    if not loaded.ok:
+        print_findings(loaded.findings, loaded.texts, "text", err=True)
+        sys.exit(1)
+    return loaded
+
+
+def print_findings(findings: list[Finding], texts: dict[str, str], form: str, err: bool = False) -> None:
+    """Prints a report in one of ``reports.FORMATS``."""
+    from icdgen import reports
+
+    stream = sys.stderr if err else sys.stdout
+    colour = form == "text" and stream.isatty() and "NO_COLOR" not in os.environ
+    text = reports.render(form, findings, texts, colour=colour)
+    click.echo(text, err=err, nl=not text.endswith("\n"), color=colour or None)

@@ -1,0 +1,69 @@
+"""``icdgen generate``, which is also what ``icdgen --lang ...`` means."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from icdgen import backends
+from icdgen.commands.common import chosen, icd_arguments, print_findings
+from icdgen.errors import UserError
+from icdgen.generation.generate import Job, Outcome, remember, run
+
+
+@click.command()
+@icd_arguments
+@click.option("--lang", "-l", "languages", multiple=True, help=f"What to generate: {', '.join(backends.names())}. Repeatable.")
+@click.option("--out", "-o", type=click.Path(path_type=Path), help="Folder to write to (default: generated/LANG).")
+@click.option("--check", is_flag=True, help="Write nothing; exit 1 with a short diff if the output is not current.")
+@click.option("--depfile", type=click.Path(path_type=Path), help="Also write a Make/Ninja dependency file.")
+@click.option("--templates", type=click.Path(path_type=Path), help="Folder of templates that replace shipped ones of the same name.")
+@click.option("--quiet", "-q", is_flag=True, help="Say nothing on success.")
+@click.pass_obj
+def generate(obj, icds, languages, out, check, depfile, templates, quiet) -> None:
+    """Generate code from ICDs: files or folders; without any, those of icdgen.toml, else those shipped."""
+    paths, config = chosen(icds)
+    languages = list(languages) or config.lang
+    if not languages:
+        raise UserError("say what to generate", "for instance `icdgen --lang c`; or set `lang` in icdgen.toml")
+    if out is None:
+        base = config.out or Path("generated")
+        out = base / languages[0] if len(set(languages)) == 1 else base
+    job = Job(languages, out, paths, templates or config.templates, depfile, check, config.looked_at)
+    try:
+        outcome = run(job)
+    except backends.UnknownBackend as error:
+        raise UserError(str(error.args[0]), "a backend of another package must be installed beside icdgen") from None
+    if outcome.loaded.findings:
+        print_findings(outcome.loaded.findings, outcome.loaded.texts, "text", err=True)
+    if not outcome.loaded.ok:
+        sys.exit(1)
+    if check and outcome.changes:
+        from icdgen.generation.differences import short_diff
+
+        click.echo(short_diff(outcome.plans), nl=False)
+        sys.exit(1)
+    for name in (plan.out / name for plan in outcome.plans for name in plan.edited):
+        click.echo(f"icdgen: warning: {name} is no longer generated, but was edited: kept", err=True)
+    note = "" if quiet else _summary(job, outcome)
+    if note:
+        click.echo(note)
+    if not check or not outcome.changes:
+        remember((obj or {}).get("run", ""), "" if quiet else _current(job, outcome), job, outcome)
+
+
+def _summary(job: Job, outcome: Outcome) -> str:
+    written = sum(len(plan.write) for plan in outcome.plans)
+    removed = sum(len(plan.remove) for plan in outcome.plans)
+    if not written and not removed:
+        return _current(job, outcome)
+    total = sum(len(plan.files) for plan in outcome.plans)
+    parts = [f"{written} of {total} files written"] + ([f"{removed} removed"] if removed else [])
+    return f"{job.out}: {', '.join(parts)} ({', '.join(plan.language for plan in outcome.plans)})"
+
+
+def _current(job: Job, outcome: Outcome) -> str:
+    total = sum(len(plan.files) for plan in outcome.plans)
+    return f"{job.out}: all {total} files are current ({', '.join(plan.language for plan in outcome.plans)})"

@@ -1,0 +1,66 @@
+"""``icdgen.toml``: what a project generates, so that its build step is just ``icdgen``.
+
+    icds = ["icd/cubeacp.yaml"]      # files or folders, relative to this file
+    lang = ["c", "python"]
+    out = "generated"
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from icdgen.errors import UserError
+
+NAME = "icdgen.toml"
+_KEYS = {"icds": list, "lang": list, "out": str, "templates": str}
+
+
+@dataclass
+class Config:
+    """What the file says; ``looked_at`` names every place where it was or might have been."""
+
+    icds: list[Path] = field(default_factory=list)
+    lang: list[str] = field(default_factory=list)
+    out: Path | None = None
+    templates: Path | None = None
+    looked_at: list[Path] = field(default_factory=list)
+
+
+def find(start: Path) -> Config:
+    """The configuration of the nearest folder upwards that has one. Raises `UserError` if it can't be read."""
+    looked_at = []
+    for folder in (start, *start.parents):
+        path = folder / NAME
+        looked_at.append(path)
+        if path.is_file():
+            config = _read(path)
+            config.looked_at = looked_at
+            return config
+        if (folder / ".git").exists():
+            break
+    return Config(looked_at=looked_at)
+
+
+def _read(path: Path) -> Config:
+    import tomllib
+
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise UserError(f"{path}: cannot be read ({error})", "save it as UTF-8") from None
+    except tomllib.TOMLDecodeError as error:
+        raise UserError(f"{path}: not TOML: {error}", "see https://toml.io") from None
+    for key, value in data.items():
+        if key not in _KEYS:
+            raise UserError(f"{path}: unknown key `{key}`", f"known keys: {', '.join(_KEYS)}")
+        if not isinstance(value, _KEYS[key]) or (isinstance(value, list) and not all(isinstance(v, str) for v in value)):
+            kind = "a list of texts" if _KEYS[key] is list else "a text"
+            raise UserError(f"{path}: `{key}` must be {kind}", f'for instance {key} = {["..."] if _KEYS[key] is list else "..."}')
+    base = path.parent
+    return Config(
+        icds=[base / item for item in data.get("icds", [])],
+        lang=data.get("lang", []),
+        out=base / data["out"] if "out" in data else None,
+        templates=base / data["templates"] if "templates" in data else None,
+    )

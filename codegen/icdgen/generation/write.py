@@ -1,0 +1,120 @@
+"""Brings a folder to the generated state: atomically, touching only what changes, never a file that is not ours."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+
+from icdgen.errors import UserError
+from icdgen.generation import manifest
+
+
+@dataclass
+class Plan:
+    """What would have to change below ``out`` so that it holds exactly the generated files."""
+
+    out: Path
+    language: str
+    files: dict[str, bytes]
+    write: list[str] = field(default_factory=list)
+    remove: list[str] = field(default_factory=list)
+    edited: list[str] = field(default_factory=list)  # ours once, no longer generated, but changed by hand: kept
+    manifest: str = ""
+
+    @property
+    def changes(self) -> bool:
+        return bool(self.write or self.remove)
+
+
+def plan(out: Path, language: str, files: Iterable[tuple[PurePosixPath, str]]) -> Plan:
+    """Compares. Raises `UserError` where a file that is not ours stands in the way, or two outputs differ only in case."""
+    made = Plan(out, language, {})
+    folded: dict[str, str] = {}
+    for name, text in files:
+        other = folded.setdefault(str(name).casefold(), str(name))
+        if other != str(name) or str(name) in made.files:
+            raise UserError(
+                f"two outputs would share the file name {name}",
+                "names that differ only in case clash on some systems: give one of them an `identifier:`",
+            )
+        made.files[str(name)] = text.encode("utf-8")
+    ours = manifest.read(out, language)
+    for name, data in made.files.items():
+        now = _read(out / name)
+        if now == data:
+            continue
+        if now is not None and name not in ours:
+            raise UserError(
+                f"{out / name} was not written by icdgen and would be overwritten",
+                "move it away, or generate into another folder with --out",
+            )
+        made.write.append(name)
+    for name, digest in ours.items():
+        if name not in made.files:
+            now = _read(out / name)
+            if now is not None:
+                (made.remove if manifest.digest(now) == digest else made.edited).append(name)
+    made.manifest = manifest.text({name: manifest.digest(data) for name, data in made.files.items()})
+    return made
+
+
+def apply(made: Plan) -> None:
+    """Writes and removes. Raises `UserError` if the folder can't be written."""
+    ours = manifest.read(made.out, made.language)
+    try:
+        if not made.files.keys() <= ours.keys():  # so that an interrupted run still knows what it wrote
+            known = ours | {name: ours.get(name, "") for name in made.files}
+            replace(manifest.path(made.out, made.language), manifest.text(known).encode())
+        for name in made.write:
+            replace(made.out / name, made.files[name])
+        target = manifest.path(made.out, made.language)
+        if _read(target) != made.manifest.encode():
+            replace(target, made.manifest.encode())
+        for name in made.remove:
+            (made.out / name).unlink(missing_ok=True)
+            _remove_empty(made.out, (made.out / name).parent)
+    except OSError as error:
+        raise UserError(f"cannot write {error.filename}: {error.strerror}", "choose another folder with --out") from None
+
+
+_UMASK = os.umask(0)
+os.umask(_UMASK)
+
+
+def replace(target: Path, data: bytes) -> None:
+    """Writes a file so that a reader sees the old content or the new one, never a part."""
+    try:
+        handle, name = tempfile.mkstemp(dir=target.parent, prefix=".icdgen-")
+    except FileNotFoundError:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=target.parent, prefix=".icdgen-")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        os.chmod(name, 0o666 & ~_UMASK)
+        os.replace(name, target)
+    except BaseException:
+        os.unlink(name)
+        raise
+
+
+def _read(path: Path) -> bytes | None:
+    try:
+        with open(path, "rb") as file:
+            return file.read()
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except OSError as error:
+        raise UserError(f"cannot read {path}: {error.strerror}", "choose another folder with --out") from None
+
+
+def _remove_empty(top: Path, folder: Path) -> None:
+    while folder != top and folder.is_relative_to(top):
+        try:
+            folder.rmdir()
+        except OSError:
+            return
+        folder = folder.parent

@@ -1,0 +1,120 @@
+"""Remembers, by content, what was checked and what was generated, so that a build step with nothing to do costs nothing.
+
+A record lists files with the SHA-256 of each; it holds only while every one of them is as it was, the tool itself included.
+Records live in the user's cache folder; ``ICDGEN_CACHE=off`` does without. This module is on the path of every start: it imports
+next to nothing.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from hashlib import sha256
+
+ABSENT = "-"
+
+
+def folder() -> str | None:
+    """The cache folder, or None if it is switched off."""
+    chosen = os.environ.get("ICDGEN_CACHE")
+    if chosen in ("off", "0"):
+        return None
+    if chosen:
+        return chosen
+    base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    return os.path.join(base, "icdgen")
+
+
+def fingerprint(path: str) -> str:
+    """SHA-256 of a file, of a folder's list of names, or `ABSENT`."""
+    try:
+        with open(path, "rb") as file:
+            return sha256(file.read()).hexdigest()
+    except IsADirectoryError:
+        return sha256("\0".join(sorted(os.listdir(path))).encode("utf-8", "surrogateescape")).hexdigest()
+    except OSError:
+        return ABSENT
+
+
+def tool() -> str:
+    """Digest of everything that decides what the tool does: its own files, its templates, the interpreter, jinja2."""
+    package = os.path.dirname(os.path.abspath(__file__))
+    data = os.path.join(package, "data")
+    root = data if os.path.isdir(data) else os.path.dirname(os.path.dirname(package))
+    digest = sha256(sys.version.encode())
+    for top in (package, os.path.join(root, "templates")):
+        for path in sorted(_files(top)):
+            digest.update(path.encode("utf-8", "surrogateescape"))
+            with open(path, "rb") as file:
+                digest.update(file.read())
+    for place in sys.path:
+        try:
+            status = os.stat(os.path.join(place, "jinja2", "__init__.py"))
+        except OSError:
+            continue
+        digest.update(f"{status.st_size} {status.st_mtime_ns}".encode())
+        break
+    return digest.hexdigest()
+
+
+def _files(top: str) -> list[str]:
+    found = []
+    with os.scandir(top) as entries:
+        for entry in entries:
+            if entry.is_dir():
+                if entry.name not in ("__pycache__", "data"):
+                    found += _files(entry.path)
+            elif entry.name.endswith((".py", ".json", ".j2")):
+                found.append(entry.path)
+    return found
+
+
+def key(*parts: str) -> str:
+    """A name for a record about ``parts``, for this tool."""
+    return sha256("\0".join((tool(), *parts)).encode("utf-8", "surrogateescape")).hexdigest()
+
+
+def holds(kind: str, name: str) -> str | None:
+    """The note of the record if there is one and every file it lists is unchanged, else None."""
+    top = folder()
+    if top is None:
+        return None
+    try:
+        with open(os.path.join(top, kind, name), encoding="utf-8", errors="surrogateescape") as file:
+            seal, _, body = file.read().partition("\n")
+    except OSError:
+        return None
+    if sha256(body.encode("utf-8", "surrogateescape")).hexdigest() != seal:
+        return None
+    note, *lines = body.split("\n")
+    for line in lines:
+        expected, _, path = line.partition(" ")
+        if fingerprint(path) != expected:
+            return None
+    return note
+
+
+def remember(kind: str, name: str, note: str, files: dict[str, str]) -> None:
+    """Keeps a record: path -> fingerprint. Never fails; a cache that can't be written is no cache."""
+    top = folder()
+    if top is None or any("\n" in path for path in files):
+        return
+    body = "\n".join([note, *(f"{print_} {path}" for path, print_ in files.items())])
+    data = body.encode("utf-8", "surrogateescape")
+    keep(kind, name, sha256(data).hexdigest().encode() + b"\n" + data)
+
+
+def keep(kind: str, name: str, data: bytes) -> None:
+    """Writes a file of the cache, whole or not at all."""
+    top = folder()
+    if top is None:
+        return
+    target = os.path.join(top, kind, name)
+    part = f"{target}.{os.getpid()}"
+    try:
+        os.makedirs(os.path.dirname(target), mode=0o700, exist_ok=True)
+        with open(part, "wb") as file:
+            file.write(data)
+        os.replace(part, target)
+    except OSError:
+        return
