@@ -1,0 +1,48 @@
+"""Shared by all tests: a small ICD of our own, and a cache folder that no test shares with its user."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+
+DEMO = """\
+icdgen: 1
+node: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}
+enums:
+  - name: Mode
+    members:
+      - {value: 0, name: Idle}
+      - {value: 1, name: Run}
+messages:
+  - name: Estimated Roll
+    id: 146
+    kind: telemetry
+    length: 3
+    fields:
+      - {at: 0,  bits: 16, name: Roll Angle, type: int, unit: deg, formula: raw*0.01}
+      - {at: 16, bits: 4,  name: Mode,       type: enum, enum: Mode}
+  - name: Set Roll
+    id: 20
+    kind: telecommand
+    length: 2
+    fields:
+      - {at: 0, bits: 16, name: Roll Angle, type: int, unit: deg, formula: raw*0.01}
+"""
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path_factory, monkeypatch):
+    """Every test starts without anything remembered."""
+    monkeypatch.setenv("ICDGEN_CACHE", str(tmp_path_factory.mktemp("cache")))
+
+
+@pytest.fixture
+def demo(tmp_path) -> Path:
+    """A valid ICD file in a folder of its own."""
+    path = tmp_path / "icd" / "demo.yaml"
+    path.parent.mkdir()
+    path.write_text(DEMO, encoding="utf-8")
+    return path
