@@ -16,8 +16,17 @@ from icdgen.icd.units import Unit
 TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configuration"
 
 
+class _Value:
+    """Pickles as a call of its class: several times faster than what ``slots=True`` comes with."""
+
+    __slots__ = ()
+
+    def __reduce__(self) -> tuple:
+        return type(self), tuple(getattr(self, name) for name in self.__slots__)
+
+
 @dataclass(frozen=True, slots=True)
-class Erratum:
+class Erratum(_Value):
     """One decision about a fault of the manual. ``changes`` is False for a note."""
 
     id: str
@@ -32,7 +41,7 @@ class Erratum:
 
 
 @dataclass(frozen=True, slots=True)
-class Member:
+class Member(_Value):
     """One value of an enumeration."""
 
     value: int
@@ -44,7 +53,7 @@ class Member:
 
 
 @dataclass(frozen=True, slots=True)
-class Enum:
+class Enum(_Value):
     """An enumeration; members in the order of the manual."""
 
     name: str
@@ -58,7 +67,7 @@ class Enum:
 
 
 @dataclass(frozen=True, slots=True)
-class Special:
+class Special(_Value):
     """A raw value with a meaning of its own, such as 0xFFFF for 'no time-out'."""
 
     value: int
@@ -66,7 +75,7 @@ class Special:
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class Limits(_Value):
     """Bounds of the physical value (of the raw value where there is no scale); None where there is none."""
 
     min: Fraction | None = None
@@ -76,7 +85,7 @@ class Limits:
 
 
 @dataclass(frozen=True, slots=True)
-class BitField:
+class BitField(_Value):
     """A part of a field that the manual describes only in words; ``at`` counts within the field's value."""
 
     at: int
@@ -86,7 +95,7 @@ class BitField:
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class Field(_Value):
     """A field of a message: ``bits`` bits at bit ``at`` of the frame."""
 
     name: str
@@ -122,7 +131,7 @@ class Field:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class Part(_Value):
     """A frame that a composite frame repeats from bit ``at``."""
 
     message: str
@@ -130,7 +139,7 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True)
-class Message:
+class Message(_Value):
     """A telecommand, a telemetry frame or a configuration message (one layout, two ids)."""
 
     name: str
@@ -168,7 +177,7 @@ class Message:
 
 
 @dataclass(frozen=True, slots=True)
-class Loggable:
+class Loggable(_Value):
     """One bit of the log mask (bit 0: least significant bit of the first byte) and the frame it selects."""
 
     bit: int
@@ -179,7 +188,7 @@ class Loggable:
 
 
 @dataclass(frozen=True, slots=True)
-class Missing:
+class Missing(_Value):
     """A message that the manual mentions and does not describe."""
 
     kind: str
@@ -189,7 +198,7 @@ class Missing:
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class Node(_Value):
     """One ICD file, errata applied. Messages of included nodes are not repeated here: see `Icd.messages_of`."""
 
     name: str
@@ -215,7 +224,7 @@ class Node:
 
 
 @dataclass(frozen=True, slots=True)
-class Icd:
+class Icd(_Value):
     """A set of nodes; a node stands after those that it includes."""
 
     nodes: tuple[Node, ...]
