@@ -9,9 +9,9 @@ from hashlib import sha256
 from pathlib import Path
 
 from icdgen import memo
-from icdgen.icd.load import Loaded, load
+from icdgen.icd.loaded import Loaded
 from icdgen.icd.model import Icd
-from icdgen.icd.source import Map
+from icdgen.icd.tree import Map
 
 KIND = "models"
 
@@ -23,6 +23,8 @@ def load_checked(paths: list[Path]) -> Loaded:
     remembered = _recall(note) if note else None
     if remembered is not None:
         return remembered
+    from icdgen.icd.load import load
+
     loaded = load(paths)
     if not loaded.findings:
         _keep(name, paths, loaded)

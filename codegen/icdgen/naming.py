@@ -8,33 +8,33 @@ from collections.abc import Iterable
 from functools import lru_cache
 
 _SEPARATORS = re.compile(r"[^A-Za-z0-9]+")
+_DIGITS = re.compile(r"[0-9]*")
 _HUMPS = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z0-9])(?=[A-Z][a-z])")
 
 
 @lru_cache(maxsize=8192)
 def words(name: str, vocabulary: tuple[str, ...] = ()) -> tuple[str, ...]:
     """Lower-case words of a name: ``TcErrorReason`` -> ``('tc', 'error', 'reason')``. Empty if nothing is left."""
-    text = unicodedata.normalize("NFKD", name)
-    whole = {word.lower() for word in vocabulary}
+    longest_first = sorted(vocabulary, key=len, reverse=True)
     found: list[str] = []
-    for chunk in _SEPARATORS.split(text):
-        if chunk:
-            found += _split(chunk, vocabulary, whole)
+    for chunk in _SEPARATORS.split(unicodedata.normalize("NFKD", name)):
+        found += _split(chunk, longest_first)
     return tuple(found)
 
 
-def _split(chunk: str, vocabulary: tuple[str, ...], whole: set[str]) -> Iterable[str]:
-    for word in sorted(vocabulary, key=len, reverse=True):
-        at = chunk.find(word)
-        if at >= 0:
-            before, after = chunk[:at], chunk[at + len(word) :]
-            digits = re.match(r"[0-9]*", after).group()
-            yield from _split(before, vocabulary, whole) if before else ()
-            yield (word + digits).lower()
-            rest = after[len(digits) :]
-            yield from _split(rest, vocabulary, whole) if rest else ()
-            return
-    yield from (part.lower() for part in _HUMPS.split(chunk) if part)
+def _split(chunk: str, vocabulary: list[str]) -> Iterable[str]:
+    rest = [(chunk, False)]  # what is still to be split, the next last; a whole word is not split further
+    while rest:
+        text, is_word = rest.pop()
+        word = None if is_word else next((w for w in vocabulary if w in text), None)
+        if is_word:
+            yield text.lower()
+        elif word is None:
+            yield from (part.lower() for part in _HUMPS.split(text) if part)
+        else:
+            before, _, after = text.partition(word)
+            digits = _DIGITS.match(after).group()
+            rest += [(after[len(digits) :], False), (word + digits, True), (before, False)]
 
 
 def snake(parts: Iterable[str]) -> str:

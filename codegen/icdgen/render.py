@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from icdgen import places
+from icdgen.errors import UserError
 
 
 class Renderer:
@@ -30,5 +31,24 @@ class Renderer:
         )
 
     def __call__(self, template: str, **values: object) -> str:
-        """The text of ``template`` (its file name, such as ``message.h.j2``)."""
-        return self._environment.get_template(template).render(values)
+        """The text of ``template`` (its file name, such as ``message.h.j2``). Raises `UserError` for a bad template."""
+        from jinja2 import TemplateError, TemplateSyntaxError
+
+        try:
+            return self._environment.get_template(template).render(values)
+        except TemplateSyntaxError as error:
+            where = f"{error.filename or template}:{error.lineno}"
+            raise UserError(f"{where}: {error.message}", "mend the template") from None
+        except TemplateError as error:
+            raise UserError(f"{_where(error, template)}: {error.message or type(error).__name__}", "mend the template") from None
+
+
+def _where(error: Exception, template: str) -> str:
+    """File and line of the innermost template that an error went through."""
+    found, trace = template, error.__traceback__
+    while trace is not None:
+        file = trace.tb_frame.f_code.co_filename
+        if file.endswith(".j2"):
+            found = f"{file}:{trace.tb_lineno}"
+        trace = trace.tb_next
+    return found

@@ -11,7 +11,7 @@ import click
 
 from icdgen import config, places
 from icdgen.diagnostics import Finding
-from icdgen.icd.load import Loaded
+from icdgen.icd.loaded import Loaded
 
 
 def icd_arguments(command: Callable) -> Callable:
@@ -54,5 +54,6 @@ def print_findings(findings: list[Finding], texts: dict[str, str], form: str, er
 
     stream = sys.stderr if err else sys.stdout
     colour = form == "text" and stream.isatty() and "NO_COLOR" not in os.environ
-    text = reports.render(form, findings, texts, colour=colour)
+    report = reports.get(form)
+    text = report(findings, texts, colour=True) if colour else report(findings, texts)
     click.echo(text, err=err, nl=not text.endswith("\n"), color=colour or None)

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from icdgen.icd import formula, model
 from icdgen.icd.errata import Applied
-from icdgen.icd.source import Map
+from icdgen.icd.tree import Map
 from icdgen.icd.units import STANDARD, Unit
 
 
@@ -41,7 +41,8 @@ class Builder:
         self.scope.units.update((u.symbol, u) for u in units)
         enums = tuple(self.each("enums", self.enum))
         self.scope.enums.update((e.name, e) for e in enums)
-        words = tuple(w for w in self.tree.get("vocabulary") or () if isinstance(w, str))
+        listed = self.tree.get("vocabulary")
+        words = tuple(w for w in (listed if isinstance(listed, list) else ()) if isinstance(w, str) and w.isalnum())
         return model.Node(
             name=self.name,
             title=head["title"],

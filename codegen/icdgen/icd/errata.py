@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 
 from icdgen.diagnostics import Finding, Place
 from icdgen.icd.model import Erratum
-from icdgen.icd.source import Map, Seq
+from icdgen.icd.tree import Map, Seq
 
+_AGAIN = "look at the manual again, then update or remove the entry"
 STALE, NOWHERE, DOUBLE_ID, OTHER_NODE = "ICD080", "ICD081", "ICD082", "ICD083"
 
 
@@ -25,8 +26,11 @@ class Applied:
         return tuple(self.of.get(id(item), ()))
 
 
-def apply(tree: Map, overlay: Map | None) -> Applied:
-    """Changes ``tree`` in place. Every entry that fits nowhere or no longer matches is a finding."""
+def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> Applied:
+    """Changes ``tree`` in place. Every entry that fits nowhere or no longer matches is a finding.
+
+    Entries that violate the schema (``broken`` holds the ids of such mappings) are passed over.
+    """
     applied = Applied()
     if overlay is None:
         return applied
@@ -38,8 +42,8 @@ def apply(tree: Map, overlay: Map | None) -> Applied:
         )  # fmt: skip
         return applied
     seen: dict[str, Place] = {}
-    for entry in overlay.get("entries") or ():
-        if not isinstance(entry, Map) or not isinstance(entry.get("id"), str):
+    for entry in _maps(overlay.get("entries")):
+        if _is_broken(entry, broken):
             continue
         if entry["id"] in seen:
             applied.findings.append(
@@ -74,15 +78,26 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied) -> None:
             matched += 1
             _change(target, held, entry)
             applied.of.setdefault(id(target), []).append(erratum)
-            for code in entry.get("accept") or ():
-                applied.accepts.append((code, entry.at("accept"), target, erratum.id, target.place))
+            codes = entry.get("accept") or Seq(entry.place)
+            for code, place in zip(codes, codes.items_at, strict=True):
+                applied.accepts.append((code, place, target, erratum.id, target.place))
     if wildcard and matched != entry.get("places"):
         expected = entry.get("places")
         message = f"`printed` matches {matched} places" + (f", not {expected}" if expected is not None else "")
         applied.findings.append(
             Finding(STALE, message, entry.at("places" if expected is not None else "where"),
-                    f"check the places, then write `places: {matched}`")
+                    f"check the places, then write `places: {matched}`" if matched else _AGAIN)
         )  # fmt: skip
+
+
+def _maps(items: object) -> Iterator[Map]:
+    return (item for item in items if isinstance(item, Map)) if isinstance(items, list) else iter(())
+
+
+def _is_broken(value: object, broken: Set[int]) -> bool:
+    if isinstance(value, Map):
+        return id(value) in broken or any(_is_broken(item, broken) for item in value.values())
+    return isinstance(value, Seq) and any(_is_broken(item, broken) for item in value)
 
 
 def _erratum(entry: Map) -> Erratum:
@@ -107,9 +122,9 @@ def _targets(tree: Map, where: Map) -> Iterator[Map]:
             if "member" not in where:
                 yield enum
             else:
-                yield from (m for m in enum.get("members") or () if m.get("value") == where["member"])
+                yield from (m for m in _maps(enum.get("members")) if m.get("value") == where["member"])
     elif "loggable" in where:
-        yield from (row for row in tree.get("loggable") or () if row.get("bit") == where["loggable"])
+        yield from (row for row in _maps(tree.get("loggable")) if row.get("bit") == where["loggable"])
     elif "message" in where:
         names = where.get("fields") or ([where["field"]] if "field" in where else None)
         for message in _named(tree, "messages", where["message"]):
@@ -120,8 +135,8 @@ def _targets(tree: Map, where: Map) -> Iterator[Map]:
 
 
 def _named(owner: Map, key: str, name: object) -> Iterator[Map]:
-    for item in owner.get(key) or ():
-        if isinstance(item, Map) and (name == "*" or item.get("name") == name):
+    for item in _maps(owner.get(key)):
+        if name == "*" or item.get("name") == name:
             yield item
 
 
@@ -130,7 +145,7 @@ def _section(tree: Map, path: str) -> Iterator[Map]:
     for step in path.split("."):
         if isinstance(node, Map) and step in node:
             node = node[step]
-        elif isinstance(node, Seq) and step.isdigit() and int(step) < len(node):
+        elif isinstance(node, Seq) and step.isdecimal() and int(step) < len(node):
             node = node[int(step)]
         else:
             return
@@ -165,7 +180,7 @@ def _stale(entry: Map, target: Map, printed: Map) -> Finding:
                 f"stale erratum {entry['id']}: it was written for `{key}: {_show(value)}`, "
                 f"the ICD now has `{key}: {_show(now)}` ({place})"
             )
-            return Finding(STALE, message, printed.at(key), "look at the manual again, then update or remove the entry")
+            return Finding(STALE, message, printed.at(key), _AGAIN)
     raise AssertionError("the target matches")
 
 
@@ -177,16 +192,16 @@ def _nowhere(tree: Map, where: Map) -> Finding:
         wanted = f"section `{where['section']}`"
     elif "enum" in where:
         wanted = f"enumeration `{where['enum']}`" + (f" with value {where['member']}" if "member" in where else "")
-        known = [e.get("name") for e in tree.get("enums") or () if isinstance(e, Map)]
+        known = [e.get("name") for e in _maps(tree.get("enums"))]
     elif "loggable" in where:
         wanted = f"loggable bit {where['loggable']}"
     elif "message" in where:
         wanted = f"message `{where['message']}`"
-        known = [m.get("name") for m in tree.get("messages") or () if isinstance(m, Map)]
+        known = [m.get("name") for m in _maps(tree.get("messages"))]
         messages = list(_named(tree, "messages", where["message"]))
         if messages:
             wanted = f"field `{where.get('field') or where.get('fields')}` in {wanted}"
-            known = [f.get("name") for m in messages for f in m.get("fields") or () if isinstance(f, Map)]
+            known = [f.get("name") for m in messages for f in _maps(m.get("fields"))]
     target = str(where.get("field") or where.get("message") or where.get("enum") or "")
     close = difflib.get_close_matches(target, [k for k in known if isinstance(k, str)], 1)
     help = f"did you mean `{close[0]}`?" if close else "names are the manual's, to the letter"

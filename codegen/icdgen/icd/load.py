@@ -3,30 +3,16 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from icdgen.diagnostics import Finding, Findings, in_order
 from icdgen.icd import errata, source
 from icdgen.icd.build import Builder, Scope
+from icdgen.icd.loaded import Loaded
 from icdgen.icd.model import Icd, Node
-from icdgen.icd.source import Map
+from icdgen.icd.tree import Map
 
 INCLUDE = "ICD004"
-
-
-@dataclass
-class Loaded:
-    """``icd`` holds what could be built; it is whole only if no finding is an error."""
-
-    icd: Icd
-    findings: list[Finding]
-    inputs: dict[Path, bytes | None]  # every file read, or looked for and absent (None)
-    texts: dict[str, str] = field(default_factory=dict)  # file name as in findings -> its text, for excerpts
-
-    @property
-    def ok(self) -> bool:
-        return not any(f.severity == "error" for f in self.findings)
 
 
 def load(paths: list[Path], check: bool = True) -> Loaded:
@@ -66,7 +52,9 @@ class _Loader:
             return None
         included = self.include(tree, path, (*stack, key))
         overlay = self.overlay(tree, path)
-        applied = errata.apply(tree, overlay)
+        applied = errata.apply(tree, overlay, self.broken)
+        if any(entry.changes for entry in applied.entries):
+            self.check_structure(tree, "icd")  # what the overlay holds must fit the format too
         self.findings += applied.findings
         self.applied.append(applied)
         digest = hashlib.sha256(self.inputs[path])

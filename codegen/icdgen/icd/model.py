@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from icdgen.icd.formula import Scale
-from icdgen.icd.source import Map
+from icdgen.icd.tree import Map
 from icdgen.icd.units import Unit
 
 TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configuration"

@@ -8,10 +8,12 @@ from functools import cache
 from pathlib import Path
 
 from icdgen.diagnostics import Finding, Place
-from icdgen.icd.source import Map, Seq
+from icdgen.icd.tree import Map, Seq
 
 PATH = Path(__file__).with_name("schema.json")
 CODE = "ICD010"
+
+_ABOUT_KEYS = ("required", "additionalProperties", "dependentRequired", "minProperties")
 
 _TYPES = {
     "string": "text",
@@ -30,8 +32,9 @@ def check(tree: Map, document: str) -> tuple[list[Finding], set[int]]:
     broken: set[int] = set()
     for error in _validator(document).iter_errors(tree):
         path = list(error.instance_path)
-        owner, place = _locate(tree, path)
-        broken.add(id(owner))
+        holder, owner, place = _locate(tree, path)
+        # A mapping where something else must stand breaks the mapping around it, not itself.
+        broken.add(id(owner if error.kind.name in _ABOUT_KEYS else holder))
         findings += _explain(error, tree, path, owner, place)
     return findings, broken
 
@@ -49,15 +52,16 @@ def _validator(document: str):
     return jsonschema_rs.validator_for(schema)
 
 
-def _locate(tree: Map, path: list) -> tuple[Map, Place]:
-    """The innermost mapping on the path, and the place of the value the path leads to."""
-    node, owner, place = tree, tree, tree.place
+def _locate(tree: Map, path: list) -> tuple[Map, Map, Place]:
+    """The innermost mapping around the value the path leads to, the same or the value itself, and the value's place."""
+    node, holder, owner, place = tree, tree, tree, tree.place
     for step in path:
+        holder = owner
         place = node.items_at[step] if isinstance(node, Seq) else node.at(step)
         node = node[step]
         if isinstance(node, Map):
             owner = node
-    return owner, place
+    return holder, owner, place
 
 
 def _explain(error, tree: Map, path: list, owner: Map, place: Place) -> list[Finding]:

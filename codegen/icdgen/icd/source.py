@@ -1,7 +1,7 @@
 """YAML text -> tree of plain values that remembers where each one stood.
 
-Mappings become `Map` (a dict), sequences `Seq` (a list); both keep the place of every key and value. Scalars are str, int,
-bool, float or None. Only spellings that every YAML reader takes alike are accepted; the rest is a finding (ICD003).
+Mappings become `Map` (a dict), sequences `Seq` (a list); both keep the place of every key and value. Scalars are str,
+int, bool, float or None. Only spellings that every YAML reader takes alike are accepted; the rest is a finding (ICD003).
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import re
 from pathlib import Path
 
 from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.icd.tree import Map, Seq
 
 MAX_BYTES = 4_000_000
 MAX_DEPTH = 40
@@ -19,6 +20,7 @@ _INTEGER = re.compile(r"-?(?:0|[1-9][0-9]*)\Z")
 _HEX = re.compile(r"0x[0-9A-Fa-f]+\Z")
 _DECIMAL = re.compile(r"-?(?:0|[1-9][0-9]*)\.[0-9]+\Z")
 _WORDS = {"true": True, "false": False, "null": None, "~": None, "": None}
+_UNPRINTABLE = re.compile("[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 # What YAML 1.1 or 1.2 reads as something other than the text it looks like.
 _TREACHEROUS = re.compile(
     r"""(?: [-+.0-9][-+0-9_.:eExXobA-Fa-f]*
@@ -28,31 +30,6 @@ _TREACHEROUS = re.compile(
         )\Z""",
     re.VERBOSE | re.IGNORECASE,
 )
-
-
-class Map(dict):
-    """A mapping; ``place`` is where it starts, ``keys_at`` and ``values_at`` give the place of each key and value."""
-
-    __slots__ = ("place", "keys_at", "values_at")
-
-    def __init__(self, place: Place) -> None:
-        self.place = place
-        self.keys_at: dict[str, Place] = {}
-        self.values_at: dict[str, Place] = {}
-
-    def at(self, key: str) -> Place:
-        """Where the value of ``key`` stands; the mapping itself if it has no such key."""
-        return self.values_at.get(key, self.place)
-
-
-class Seq(list):
-    """A sequence; ``items_at`` gives the place of each item."""
-
-    __slots__ = ("place", "items_at")
-
-    def __init__(self, place: Place) -> None:
-        self.place = place
-        self.items_at: list[Place] = []
 
 
 def read(path: Path, name: str | None = None) -> Map:
@@ -79,8 +56,7 @@ def parse(data: bytes, name: str) -> Map:
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        before = data[: error.start]
-        place = Place(name, before.count(b"\n") + 1, error.start - (before.rfind(b"\n") + 1) + 1)
+        place = _after(name, data[: error.start].decode("utf-8-sig"))
         problem = f"byte 0x{data[error.start]:02X} is not UTF-8"
         raise Findings([Finding("ICD001", problem, place, "save the file as UTF-8")]) from None
     tree, findings = _Builder(text, name).build()
@@ -107,8 +83,7 @@ class _Builder:
         from yaml import events
 
         if "\0" in self.text:
-            line = self.text[: self.text.index("\0")].count("\n") + 1
-            place = Place(self.name, line)
+            place = _after(self.name, self.text[: self.text.index("\0")])
             return None, [Finding("ICD001", "the file holds a NUL character", place, "remove it")]
         root: list[object] = []
         stack: list[list] = []  # [container, pending key, place of pending key]
@@ -123,6 +98,7 @@ class _Builder:
                 elif kind is events.MappingStartEvent or kind is events.SequenceStartEvent:
                     if event.anchor is not None:
                         self.refuse_alias(event)
+                    self.check_tag(event)
                     container = (Map if kind is events.MappingStartEvent else Seq)(self.place(event))
                     self.put(stack, root, container, event)
                     if len(stack) >= MAX_DEPTH:
@@ -141,7 +117,7 @@ class _Builder:
                     break
         except yaml.YAMLError as error:
             mark = getattr(error, "problem_mark", None)
-            place = Place(self.name, mark.line + 1, mark.column + 1) if mark else Place(self.name)
+            place = Place(self.name, mark.line + 1, mark.column + 1) if mark else self.unprintable()
             problem = getattr(error, "problem", None) or getattr(error, "reason", None) or "the text cannot be read"
             help = "check indentation, quotes and brackets just before this place"
             self.findings.append(Finding("ICD001", f"not YAML: {problem}", place, help))
@@ -180,8 +156,7 @@ class _Builder:
         text = event.value
         if event.anchor is not None:
             self.refuse_alias(event)
-        if event.tag is not None and event.tag != "!":
-            self.add("ICD003", f"the tag `{event.tag}` is not part of the format", event, "remove the tag")
+        self.check_tag(event)
         if len(text) > MAX_SCALAR:
             self.add("ICD001", f"a text of {len(text):,} characters", event, f"at most {MAX_SCALAR:,} are allowed")
             return text[:100]
@@ -206,12 +181,16 @@ class _Builder:
         if _HEX.match(text):
             return int(text, 16) if len(text) < 40 else text
         if _DECIMAL.match(text):
-            return float(text)
+            return float(text) if len(text) < 40 else text
         if _TREACHEROUS.match(text) and text not in (".", "-"):
             help = f'write "{text}" in quotes if it is text, a plain decimal or 0x number if it is a number'
             self.add("ICD003", f"YAML readers disagree about what `{text}` is", event, help)
             return self
         return text
+
+    def check_tag(self, event) -> None:
+        if event.tag is not None and event.tag != "!":
+            self.add("ICD003", f"the tag `{event.tag}` is not part of the format", event, "remove the tag")
 
     def refuse_alias(self, event) -> None:
         self.add("ICD001", "anchors and aliases are not part of the format", event, "write the value out")
@@ -221,8 +200,18 @@ class _Builder:
         length = end.column - start.column if end.line == start.line else 1
         return Place(self.name, start.line + 1, start.column + 1, length if length > 0 else 1)
 
+    def unprintable(self) -> Place:
+        """Where the first character stands that YAML does not allow; the beginning if there is none."""
+        found = _UNPRINTABLE.search(self.text)
+        return _after(self.name, self.text[: found.start()]) if found else Place(self.name)
+
     def add(self, code: str, message: str, event, help: str) -> None:
         self.findings.append(Finding(code, message, self.place(event), help))
+
+
+def _after(name: str, before: str) -> Place:
+    """The place that follows the text ``before``."""
+    return Place(name, before.count("\n") + 1, len(before) - before.rfind("\n"))
 
 
 def _parser(text: str):

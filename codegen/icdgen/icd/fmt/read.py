@@ -1,0 +1,247 @@
+"""YAML text -> tree with comments. YAML's events leave comments out, so they are found in the gaps between events."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from icdgen.icd import source
+from icdgen.icd.fmt.tree import Branch, Child, Text
+
+SCHEMA_LINE = "# yaml-language-server:"
+_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
+_BLOCK = ("|", ">")
+_BEFORE_COMMENT = " \t\ufeff,[]{}\n\r\x85\u2028\u2029"
+
+
+def read(text: str, values: source.Map) -> Branch:
+    """The tree of ``text``. ``values`` is what `source.parse` made of the same text: it has accepted it."""
+    return _Reader(text, values).read()
+
+
+def comments(text: str) -> list[str]:
+    """Every comment of a text that `source.parse` accepts, found without building a tree."""
+    from yaml import events
+
+    found, reached = [], 0
+    parser = source._parser(text)
+    while True:
+        event = parser.get_event()
+        start = event.start_mark.index
+        found += [text[at:end] for at, end in _comments_in(text, reached, start)]
+        reached = max(reached, start)
+        if type(event) is events.ScalarEvent:
+            found += _header_comment(text, event) if event.style in _BLOCK else []
+            reached = max(reached, event.end_mark.index)
+        elif type(event) is events.StreamEndEvent:
+            return [comment.rstrip() for comment in found]
+
+
+class _Reader:
+    """One pass over the events, with the comments of the gap before each event dealt out to the tree."""
+
+    def __init__(self, text: str, values: source.Map) -> None:
+        self.text = text
+        self.values = _scalars(values)
+        self.root: Branch | None = None
+        self.stack: list[Branch] = []
+        self.pending: list[str] = []  # comments that wait for the element they stand above
+        self.reached = 0  # everything before this index is done with
+        self.last: Child | None = None  # the element that ended, or the key that stood, at ``last_end``
+        self.last_end = 0
+        self.comment_end = 0
+
+    def read(self) -> Branch:
+        from yaml import events
+
+        steps = {
+            events.ScalarEvent: self.scalar,
+            events.MappingStartEvent: self.open_mapping,
+            events.SequenceStartEvent: self.open_sequence,
+            events.MappingEndEvent: self.close,
+            events.SequenceEndEvent: self.close,
+        }
+        parser = source._parser(self.text)
+        while True:
+            event = parser.get_event()
+            kind = type(event)
+            start = event.start_mark.index
+            if "#" in self.text[self.reached : start]:
+                self.gap(event, kind in (events.MappingEndEvent, events.SequenceEndEvent))
+            self.reached = max(self.reached, start)
+            if kind in steps:
+                steps[kind](event)
+            elif kind is events.StreamEndEvent:
+                self.root.tail += self.pending
+                return self.root
+
+    # Elements
+
+    def scalar(self, event) -> None:
+        top = self.stack[-1]
+        key = top.mapping and (not top.children or top.children[-1].value is not None)
+        value = event.value if key else next(self.values)
+        if key and not event.style:
+            value = None  # what a plain key means is for the writer to find out
+        text = Text(value, event.value)
+        if key:
+            child = Child(text)
+            self.begin(child)
+        else:
+            child = self.attach(text)
+        end = event.end_mark.index
+        if event.style in _BLOCK:  # it ends in the next line, which it has no part in
+            child.trailing += _header_comment(self.text, event)
+            end = max((m.start() for m in _BREAK.finditer(self.text, event.start_mark.index, end)), default=end)
+        self.reached = max(self.reached, end)
+        self.last, self.last_end = child, end
+
+    def open_mapping(self, event) -> None:
+        self.open(event, True)
+
+    def open_sequence(self, event) -> None:
+        self.open(event, False)
+
+    def open(self, event, mapping: bool) -> None:
+        branch = Branch(mapping, bool(event.flow_style), event.start_mark.column)
+        if not self.stack:
+            self.root = branch
+        else:
+            self.attach(branch)
+        self.stack.append(branch)
+        self.reached = max(self.reached, event.end_mark.index)
+        if branch.flow:
+            self.last, self.last_end = None, event.end_mark.index
+
+    def close(self, event) -> None:
+        branch = self.stack.pop()
+        if not branch.flow:
+            return
+        branch.tail += self.take()
+        self.reached = max(self.reached, event.end_mark.index)
+        self.last = self.stack[-1].children[-1] if self.stack else None
+        self.last_end = event.end_mark.index
+
+    def attach(self, value: Text | Branch) -> Child:
+        """Puts a value where it belongs: behind the key that waits for it, or as an item."""
+        top = self.stack[-1]
+        if top.mapping:
+            child = top.children[-1]
+            child.value = value
+            if isinstance(value, Text) or value.flow:
+                child.before += self.take()
+        else:
+            child = Child(None, value)
+            self.begin(child)
+        return child
+
+    def begin(self, child: Child) -> None:
+        top = self.stack[-1]
+        child.before = self.take()
+        if top is self.root and not top.children:
+            self.split_header(child)
+        top.children.append(child)
+
+    def take(self) -> list[str]:
+        taken, self.pending = self.pending, []
+        return taken
+
+    def split_header(self, first: Child) -> None:
+        """Comments that a blank line separates from the first entry are about the file, and so is the schema line."""
+        lines = first.before
+        if lines and self.breaks(self.comment_end, self.reached) > 1:
+            lines.append("")
+        cut = len(lines) - lines[::-1].index("") if "" in lines else 0
+        schema = [line for line in lines if line.startswith(SCHEMA_LINE)]
+        header = [line for line in lines[:cut] if not line.startswith(SCHEMA_LINE)]
+        first.before = [line for line in lines[cut:] if not line.startswith(SCHEMA_LINE)]
+        self.root.header = schema + _paragraphs(header)
+
+    # Comments
+
+    def gap(self, event, closing: bool) -> None:
+        """Deals out the comments between ``reached`` and the event."""
+        closing = closing and not self.stack[-1].flow
+        behind = self.reached
+        limit = None  # column of the container that took the comment before
+        earlier: list[str] | None = None
+        for start, end in _comments_in(self.text, self.reached, event.start_mark.index):
+            breaks = self.breaks(behind, start)
+            target = self.pending
+            if breaks == 0 and behind == self.reached and self.follows_something(start):
+                target = self.last.trailing
+            elif breaks and closing and not self.pending:
+                column = start - _line_start(self.text, behind, start)
+                holder = self.holder(column if limit is None else min(column, limit), event.start_mark.column)
+                if holder is not None:
+                    target, limit = holder.tail, holder.column
+            if breaks > 1 and target is earlier:
+                target.append("")
+            target.append(self.text[start:end].rstrip())
+            earlier, behind = target, end
+        self.comment_end = behind
+
+    def follows_something(self, start: int) -> bool:
+        """Whether the element before stands on the same line."""
+        return self.last is not None and not self.breaks(self.last_end, start)
+
+    def breaks(self, start: int, end: int) -> int:
+        return sum(1 for _ in _BREAK.finditer(self.text, start, end))
+
+    def holder(self, column: int, following: int) -> Branch | None:
+        """The innermost container that ends here and that a comment in this column belongs to."""
+        for branch in reversed(self.stack):
+            if branch.column <= following:
+                return None
+            if branch.column <= column:
+                return branch
+        return None
+
+
+def _comments_in(text: str, at: int, end: int) -> Iterator[tuple[int, int]]:
+    """Start and end of each comment in a stretch without scalars."""
+    while (at := text.find("#", at, end)) >= 0:
+        if at and text[at - 1] not in _BEFORE_COMMENT:
+            at += 1
+            continue
+        stop = _line_end(text, at)
+        yield at, stop
+        at = stop
+
+
+def _header_comment(text: str, event) -> list[str]:
+    """The comment behind the ``|`` or ``>`` of a block scalar."""
+    at = event.start_mark.index
+    header = text[at : _line_end(text, at)]
+    return [header[header.index("#") :].rstrip()] if "#" in header else []
+
+
+def _line_start(text: str, at: int, end: int) -> int:
+    """Start of the line that ``end`` is in, not before ``at``."""
+    return max((match.end() for match in _BREAK.finditer(text, at, end)), default=at)
+
+
+def _line_end(text: str, at: int) -> int:
+    found = _BREAK.search(text, at)
+    return found.start() if found else len(text)
+
+
+def _paragraphs(lines: list[str]) -> list[str]:
+    """Without blank lines at the ends and more than one in a row."""
+    kept: list[str] = []
+    for line in lines:
+        if line or (kept and kept[-1]):
+            kept.append(line)
+    return kept[:-1] if kept and not kept[-1] else kept
+
+
+def _scalars(value: object) -> Iterator[object]:
+    """The scalar values of a tree in the order of the file."""
+    if isinstance(value, source.Map):
+        for item in value.values():
+            yield from _scalars(item)
+    elif isinstance(value, source.Seq):
+        for item in value:
+            yield from _scalars(item)
+    else:
+        yield value

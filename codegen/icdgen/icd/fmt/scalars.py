@@ -1,0 +1,137 @@
+"""How a scalar is written: plain where every YAML reader takes it for the same text, else in double quotes."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+from icdgen.diagnostics import Findings
+from icdgen.icd import source
+from icdgen.icd.fmt.tree import Text
+
+WIDTH = 120
+BLOCK_HEADERS = frozenset({"|", "|-", ">"})
+
+_WORDS = frozenset({"y", "yes", "n", "no", "on", "off", "true", "false", "null"})
+# A letter or digit, or a sign that means nothing to YAML; a dash only before a letter or digit. What looks like a
+# number to people (`0b0010 0100`) is quoted too.
+_START = re.compile(r"(?!0[xXbBoO])[^\W_]|[(/_$+^;]|\.(?!\.)|-[^\W_]")
+_NOT_IN_BLOCK = re.compile(r":(?: |\Z)| #")
+_NOT_IN_FLOW = re.compile(r"[,\[\]{}:?]| #")
+_NUMBER_OR_WORD = re.compile(r"-?[0-9]+(?:\.[0-9]+)?|0x[0-9A-Fa-f]+|true|false|null|~|")
+_BREAK = re.compile(r"(?<=[^ ]) (?=[^ ])")
+_ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\0": "\\0"}
+_SPECIAL = re.compile(r'["\\]')
+
+
+def flow(text: Text) -> str:
+    """The scalar within braces or brackets."""
+    return quoted_if_needed(text.value, True) if isinstance(text.value, str) else _number_or_word(text)
+
+
+def key(text: Text, in_flow: bool) -> str:
+    """The scalar as a key."""
+    if text.value is None and len(text.spelling) < 40 and _NUMBER_OR_WORD.fullmatch(text.spelling):
+        return _number_or_word(text)
+    return quoted_if_needed(name(text), in_flow)
+
+
+def name(text: Text) -> str:
+    """What the key is called."""
+    return text.spelling if text.value is None else str(text.value)
+
+
+def block(text: Text, column: int, indent: int) -> list[str]:
+    """The lines of a scalar that begins at ``column``; all but the first already indented."""
+    if not isinstance(text.value, str):
+        return [_number_or_word(text)]
+    value = text.value
+    if "\n" in value and _fits_literal(value):
+        body = value.removesuffix("\n")
+        if "\n" not in body and indent + len(body) > WIDTH:
+            return [">", *(" " * indent + line for line in _fill(body, WIDTH - indent, WIDTH - indent))]
+        lines = [" " * indent + line if line else "" for line in body.split("\n")]
+        return ["|" if body != value else "|-", *lines]
+    return _fold(quoted_if_needed(value, False), column, indent)
+
+
+@lru_cache(maxsize=16384)
+def quoted_if_needed(value: str, in_flow: bool) -> str:
+    """The text plain if it can be, else in double quotes."""
+    if (
+        _START.match(value)
+        and value.isprintable()
+        and value[-1] != " "
+        and not (_NOT_IN_FLOW if in_flow else _NOT_IN_BLOCK).search(value)
+        and _reads_as_text(value)
+    ):
+        return value
+    return _quote(value)
+
+
+def _reads_as_text(value: str) -> bool:
+    """Whether the loader takes the plain spelling for this very text, and other readers do so too."""
+    if value[:1].isalpha() and value.isprintable():
+        return value.lower() not in _WORDS
+    return bool(value) and _loader_reads(value)
+
+
+@lru_cache(maxsize=4096)
+def _loader_reads(value: str) -> bool:
+    try:
+        return source.parse(f"key: {value}\n".encode(), "") == {"key": value}
+    except (Findings, UnicodeEncodeError):
+        return False
+
+
+def _number_or_word(text: Text) -> str:
+    spelling = text.spelling
+    if spelling.startswith("0x"):
+        return "0x" + spelling[2:].upper()
+    return "null" if spelling in ("", "~") else spelling
+
+
+def _quote(value: str) -> str:
+    if value.isprintable():
+        return '"' + _SPECIAL.sub(r"\\\g<0>", value) + '"'
+    return '"' + "".join(_escape(c) for c in value) + '"'
+
+
+def _escape(character: str) -> str:
+    if character in _ESCAPES:
+        return _ESCAPES[character]
+    if character.isprintable():
+        return character
+    code = ord(character)
+    if code < 0x100:
+        return f"\\x{code:02X}"
+    return f"\\u{code:04X}" if code < 0x10000 else f"\\U{code:08X}"
+
+
+def _fits_literal(value: str) -> bool:
+    lines = value.removesuffix("\n").split("\n")
+    if not lines[0] or lines[0][0] == " " or not lines[-1]:
+        return False
+    return all(line.isprintable() and not line.endswith(" ") for line in lines)
+
+
+def _fold(text: str, column: int, indent: int) -> list[str]:
+    """A plain or quoted scalar over several lines, if it is too long for one."""
+    if column + len(text) <= WIDTH:
+        return [text]
+    quote = '"' if text[0] == '"' else ""
+    lines = _fill(text[1:-1] if quote else text, WIDTH - column - len(quote), WIDTH - indent)
+    lines[0] = quote + lines[0]
+    lines[-1] += quote
+    return [lines[0], *(" " * indent + line for line in lines[1:])]
+
+
+def _fill(text: str, first: int, width: int) -> list[str]:
+    """Breaks at single spaces, where a reader puts one space for the break. ``first``: width of the first line."""
+    lines: list[str] = []
+    for word in _BREAK.split(text):
+        if lines and len(lines[-1]) + 1 + len(word) <= (first if len(lines) == 1 else width):
+            lines[-1] += " " + word
+        else:
+            lines.append(word)
+    return lines

@@ -1,0 +1,71 @@
+"""The table of a message's fields, as a reader of the manual expects it."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from icdgen import layout
+from icdgen.icd.model import Field, Message
+from icdgen.tables import Column, render
+from icdgen.values.numbers import exact_text
+
+_COLUMNS = [
+    Column("offset", right=True, fixed=True),
+    Column("bits", right=True, fixed=True),
+    Column("type"),
+    Column("name"),
+    Column("unit"),
+    Column("resolution", right=True),
+    Column("from", right=True),
+    Column("to", right=True),
+    Column("notes"),
+]
+
+
+def field_table(message: Message, width: int | None = None) -> str:
+    """Fields and reserved bits in the order of the frame; empty for a message without any."""
+    rows: list[tuple[int, tuple[str, ...]]] = [(field.at, _row(field)) for field in message.fields]
+    reserved = ("reserved", "", "", "", "", "", "")
+    rows += [(gap.at, (str(gap.at), str(gap.bits), *reserved)) for gap in layout.gaps(message)]
+    return render(_COLUMNS, [row for _, row in sorted(rows, key=lambda r: r[0])], width)
+
+
+def _row(field: Field) -> tuple[str, ...]:
+    low, high = _range(field)
+    resolution = _factor(field.scale.factor) if field.scale else ""
+    unit = field.unit.symbol if field.unit else ""
+    kind = field.enum.name if field.enum else field.type
+    return (str(field.at), str(field.bits), kind, field.name, unit, resolution, low, high, "; ".join(_notes(field)))
+
+
+def _factor(factor: Fraction) -> str:
+    """``0.01``; ``5/9`` where the decimal would not end."""
+    text = exact_text(factor)
+    return text if Fraction(text) == factor else str(factor)
+
+
+def _range(field: Field) -> tuple[str, str]:
+    """Smallest and largest physical value, as far as the type and inclusive limits tell."""
+    limits = field.limits
+    low = limits.min if limits else None
+    high = limits.max if limits else None
+    if field.type in ("uint", "int"):
+        ends = (Fraction(field.raw_min), Fraction(field.raw_max))
+        least, most = sorted(field.scale.physical(end) for end in ends) if field.scale else ends
+        low, high = least if low is None else low, most if high is None else high
+    return tuple("" if bound is None else exact_text(bound) for bound in (low, high))
+
+
+def _notes(field: Field) -> list[str]:
+    notes = []
+    if field.const is not None:
+        notes.append(f"always {field.const}" + (f" (0x{field.const:X})" if field.const > 9 else ""))
+    limits = field.limits
+    if limits and limits.above is not None:
+        notes.append(f"above {exact_text(limits.above)}")
+    if limits and limits.below is not None:
+        notes.append(f"below {exact_text(limits.below)}")
+    notes += [f"{special.value}: {special.meaning}" for special in field.special]
+    notes += [f"bits {part.at} to {part.at + part.bits - 1}: {part.name}" for part in field.bitfields]
+    notes += [erratum.id for erratum in field.errata]
+    return notes + ([field.summary] if field.summary else [])

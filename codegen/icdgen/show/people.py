@@ -1,0 +1,172 @@
+"""ICDs as text: the nodes, one node's messages, one message, enumeration or erratum."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Erratum, Icd, Message, Node
+from icdgen.show.fields import field_table
+from icdgen.tables import Column, clean, render
+from icdgen.values.errors import NotFound
+from icdgen.values.find import by_name, describe, find_message, find_node
+
+_NODES = [
+    Column("node", fixed=True),
+    Column("title"),
+    Column("type", right=True, fixed=True),
+    Column("version", right=True, fixed=True),
+    Column("commands", right=True, fixed=True),
+    Column("telemetry", right=True, fixed=True),
+    Column("settings", right=True, fixed=True),
+    Column("fields", right=True, fixed=True),
+    Column("errata", right=True, fixed=True),
+    Column("includes"),
+]
+_MESSAGES = [
+    Column("id", right=True, fixed=True),
+    Column("kind"),
+    Column("name"),
+    Column("bytes", right=True, fixed=True),
+    Column("fields", right=True, fixed=True),
+    Column("table", right=True, fixed=True),
+    Column("group"),
+    Column("of"),
+]
+
+
+def to_text(icd: Icd, selection: Sequence[str] = (), width: int | None = None, kind: str | None = None) -> str:
+    """Without a selection the nodes; of one node its messages; of a node and a name or id that message.
+
+    The second name may also be an enumeration or an erratum's id. ``width`` is that of the terminal, None for a pipe.
+    Raises `NotFound` or `Ambiguous`.
+    """
+    if not selection:
+        return _nodes(icd, width)
+    node = find_node(icd, selection[0])
+    return _one(icd, node, selection[1], width, kind) if len(selection) > 1 else _node(icd, node, width, kind)
+
+
+def _nodes(icd: Icd, width: int | None) -> str:
+    rows = [
+        (
+            node.name,
+            node.title,
+            _number(node.node_type),
+            _number(node.interface_version),
+            *(str(sum(m.kind == kind for m in node.messages)) for kind in (TELECOMMAND, TELEMETRY, CONFIGURATION)),
+            str(sum(len(m.fields) for m in node.messages)),
+            str(len(node.errata)),
+            ", ".join(node.includes),
+        )
+        for node in icd.nodes
+    ]
+    return render(_NODES, rows, width)
+
+
+def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
+    facts = [
+        f"node type {node.node_type}" if node.node_type is not None else "",
+        f"interface version {node.interface_version}" if node.interface_version is not None else "",
+        f"{node.byte_order}-endian, {node.bit_order}",
+        f"includes {', '.join(node.includes)}" if node.includes else "",
+        f"{len(node.errata)} errata" if node.errata else "",
+    ]
+    text = _lines([f"{node.name}: {node.title}", "; ".join(filter(None, facts)), node.summary], width)
+    messages = [m for m in icd.messages_of(node) if kind in (None, m.kind)]
+    messages.sort(key=lambda m: m.node != node.name)  # its own first
+    rows = [
+        (
+            "/".join(map(str, m.ids)),
+            m.kind,
+            m.name,
+            str(m.length),
+            str(len(m.fields)),
+            _number(m.table),
+            m.group,
+            m.node if m.node != node.name else "",
+        )
+        for m in messages
+    ]
+    text += "\n" + render(_MESSAGES, rows, width) if rows else ""
+    if node.enums:
+        text += "\n" + _lines([f"Enumerations: {', '.join(e.name for e in node.enums)}"], width)
+    missing = [f"Missing: {m.kind} {m.id} {m.name}. {m.why}" for m in node.missing]
+    return text + ("\n" + _lines(missing, width) if missing else "")
+
+
+def _one(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) -> str:
+    try:
+        return _message(icd, find_message(icd, node.name, name, kind), width)
+    except NotFound:
+        family = (*icd.included(node), node)
+        enums = by_name([e for n in family for e in n.enums], name, node.vocabulary)
+        if enums:
+            return "\n".join(_enum(enum, width) for enum in enums)
+        errata = [e for n in family for e in n.errata if e.id.casefold() == name.casefold()]
+        if not errata:
+            raise
+        return "\n".join(_erratum(erratum, width) for erratum in errata)
+
+
+def _message(icd: Icd, message: Message, width: int | None) -> str:
+    node = icd.node(message.node)
+    facts = [
+        f"{describe(message)} (hex {'/'.join(f'{i:02X}' for i in message.ids)})",
+        f"{message.length} bytes",
+        f"table {message.table}" if message.table else "",
+        f"page {message.page}" if message.page else "",
+        message.group,
+        "" if message.acknowledge else "not acknowledged",
+    ]
+    lines = [f"{node.name}: {message.name}", "; ".join(filter(None, facts)), message.summary]
+    lines += [f"From bit {part.at} it repeats {part.message}." for part in message.contains]
+    text = _lines(lines, width)
+    table = field_table(message, width)
+    text += "\n" + table if table else ""
+    enums = dict.fromkeys(f.enum for f in message.fields if f.enum)
+    errata = dict.fromkeys(e for part in (message, *message.fields) for e in part.errata)
+    for part in (*(_enum(e, width) for e in enums), *(_erratum(e, width) for e in errata)):
+        text += "\n" + part
+    return text
+
+
+def _enum(enum: Enum, width: int | None) -> str:
+    head = f"{enum.name} (enumeration" + (f", table {enum.table})" if enum.table else ")")
+    members = [(str(m.value), m.name, m.summary) for m in enum.members]
+    table = render([Column("value", right=True, fixed=True), Column("name"), Column("meaning")], members, width)
+    errata = "".join(
+        "\n" + _erratum(e, width) for e in dict.fromkeys(e for m in (enum, *enum.members) for e in m.errata)
+    )
+    return _lines([head, enum.summary], width) + table + errata
+
+
+def _erratum(erratum: Erratum, width: int | None) -> str:
+    lines = [f"Erratum {erratum.id} ({erratum.confidence}): {erratum.title}", erratum.why, erratum.evidence]
+    if erratum.changes:
+        printed = dict(erratum.printed)
+        changes = [f"{key} {_value(printed.get(key))} -> {_value(held)}" for key, held in erratum.held]
+        lines.append(f"Printed and held: {', '.join(changes)}")
+    if erratum.tables:
+        lines.append(f"Tables: {', '.join(map(str, erratum.tables))}")
+    head, *rest = filter(None, lines)
+    return _lines([head], width) + _lines(rest, width, "  ")
+
+
+def _lines(lines: Sequence[str], width: int | None, indent: str = "") -> str:
+    """Paragraphs, wrapped to a terminal; empty ones left out."""
+    text = ""
+    for line in map(clean, filter(None, lines)):
+        wrapped = [line] if width is None else textwrap.wrap(line, max(width - len(indent), 20)) or [line]
+        text += "".join(f"{indent}{one}\n" for one in wrapped)
+    return text
+
+
+def _number(value: int | None) -> str:
+    return "" if value is None else str(value)
+
+
+def _value(value: object) -> str:
+    if value is None:
+        return "(absent)"
+    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,0 +1,120 @@
+"""``x=100 y=-100`` -> the bytes of a message. Everything that is wrong is reported at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from fractions import Fraction
+
+from icdgen import codec
+from icdgen.errors import UserError
+from icdgen.icd.model import Field, Icd, Message
+from icdgen.values import numbers
+from icdgen.values.entry import from_physical, members, raw_value, without_unit
+from icdgen.values.errors import BadValue
+from icdgen.values.find import find_field, find_message, find_node
+from icdgen.values.frame import Frame, frame, violations
+
+
+def encode(
+    icd: Icd, node_name: str, key: str, assignments: list[str], raw: bool = False, kind: str | None = None
+) -> Frame:
+    """The frame of a message from ``name=value`` texts; values are physical, or raw with ``raw``.
+
+    Fields with a constant fill themselves; every other field needs a value. Values that the ICD does not allow (another
+    constant, no member, beyond a limit) are refused unless ``raw``. Raises `NotFound`, `Ambiguous`, `BadValue`.
+    """
+    node = find_node(icd, node_name)
+    message = find_message(icd, node_name, key, kind)
+    wrong = _Wrong()
+    given: dict[str, str] = {}
+    for assignment in assignments:
+        with wrong.collect():
+            field, text = _split(message, assignment, node.vocabulary)
+            if field.name in given:
+                raise BadValue(f"`{field.name}` is given twice: {given[field.name]} and {text}")
+            given[field.name] = text
+    misnamed = bool(wrong.messages)
+    values, notes = _values(message, given, raw, wrong)
+    missing = [f.name for f in message.fields if f.name not in given and f.const is None]
+    if missing and not misnamed:
+        with wrong.collect():
+            raise BadValue(
+                "no value for " + ", ".join(f"`{name}`" for name in missing), "give each field as name=value"
+            )
+    wrong.report()
+    return frame(icd, node, message, codec.encode(icd.node(message.node), message, values), notes)
+
+
+class _Wrong:
+    """Collects what is wrong, so that it is all reported at once."""
+
+    def __init__(self) -> None:
+        self.messages: list[str] = []
+        self.helps: list[str] = []
+
+    @contextmanager
+    def collect(self, about: str = "") -> Iterator[None]:
+        try:
+            yield
+        except UserError as error:
+            self.messages.append(about + str(error))
+            self.helps.append(error.help)
+
+    def report(self) -> None:
+        if self.messages:
+            raise BadValue("\n".join(self.messages), next(filter(None, self.helps), ""))
+
+
+def _split(message: Message, assignment: str, vocabulary: tuple[str, ...]) -> tuple[Field, str]:
+    """The field and the text of its value; a field's name may itself hold a `=`."""
+    exact = [f for f in message.fields if assignment.startswith(f.name + "=")]
+    if exact:
+        field = max(exact, key=lambda f: len(f.name))
+        return field, assignment[len(field.name) + 1 :].strip()
+    name, equals, text = assignment.partition("=")
+    if not equals:
+        raise BadValue(f"`{assignment}` is not of the form name=value", "for instance `speed=100`")
+    return find_field(message, name.strip(), vocabulary), text.strip()
+
+
+def _values(
+    message: Message, given: dict[str, str], raw: bool, wrong: _Wrong
+) -> tuple[dict[str, int | bytes], dict[str, str]]:
+    """Raw value of each field, and a note where a value was rounded."""
+    values: dict[str, int | bytes] = {}
+    notes: dict[str, str] = {}
+    for field in message.fields:
+        values[field.name] = field.const or 0
+        if field.name not in given:
+            continue
+        text = given[field.name]
+        with wrong.collect(f"{field.name}: "):
+            values[field.name] = value = (raw_value if raw else from_physical)(field, text)
+            if isinstance(value, bytes):
+                continue
+            _fits(field, value, text, raw)
+            if not raw:
+                _allowed(field, value, text)
+                exact = numbers.rational(without_unit(field, text))
+                if field.scale and exact is not None and field.scale.physical(value) != exact:
+                    notes[field.name] = f"rounded from {text}"
+    return values, notes
+
+
+def _fits(field: Field, value: int, text: str, raw: bool) -> None:
+    if field.raw_min <= value <= field.raw_max:
+        return
+    low, high = Fraction(field.raw_min), Fraction(field.raw_max)
+    if field.scale and not raw:
+        low, high = sorted((field.scale.physical(low), field.scale.physical(high)))
+    unit = f" {field.unit.symbol}" if field.unit and not raw else ""
+    raise BadValue(f"takes {numbers.exact_text(low)} to {numbers.exact_text(high)}{unit}, not {text}")
+
+
+def _allowed(field: Field, value: int, text: str) -> None:
+    if any(s.value == value for s in field.special):
+        return
+    found = violations(field, value)
+    if found:
+        raise BadValue(f"{text} is not allowed: {'; '.join(found)}{members(field)}", "--raw sends it all the same")

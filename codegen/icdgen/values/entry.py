@@ -1,0 +1,123 @@
+"""What a person types for one field -> its raw value."""
+
+from __future__ import annotations
+
+from icdgen import naming
+from icdgen.icd.model import Field, Member
+from icdgen.values import numbers
+from icdgen.values.errors import BadHex, BadValue
+from icdgen.values.find import by_name
+from icdgen.values.hexadecimal import parse_hex
+
+_TRUTH = {"true": 1, "yes": 1, "on": 1, "1": 1, "false": 0, "no": 0, "off": 0, "0": 0}
+
+
+def members(field: Field) -> str:
+    """The members of the field's enumeration, for the end of a message."""
+    return "; members: " + ", ".join(f"{m.value} {m.name}" for m in field.enum.members) if field.enum else ""
+
+
+def raw_value(field: Field, text: str) -> int | bytes:
+    """The raw value itself; the bits of a float as ``0x...``. Raises `BadValue`; does not look at the range."""
+    if field.type == "bytes":
+        return _bytes(field, text)
+    if field.type == "float":
+        return _float(field, text, raw=True)
+    if field.type == "bool" and text.lower() in _TRUTH:
+        return _TRUTH[text.lower()]
+    value = numbers.integer(text)
+    if value is None and field.enum:
+        return _member(field, text)
+    if value is None:
+        raise BadValue(f"`{text}` is not a whole number")
+    return value
+
+
+def from_physical(field: Field, text: str) -> int | bytes:
+    """The raw value nearest to a physical one. Raises `BadValue`; does not look at the range."""
+    return _READERS.get(field.type, _integer)(field, text)
+
+
+def _bool(field: Field, text: str) -> int:
+    if text.lower() not in _TRUTH:
+        raise BadValue(f"`{text}` is neither true nor false (nor yes, no, on, off, 1, 0)")
+    return _TRUTH[text.lower()]
+
+
+def _bytes(field: Field, text: str) -> bytes:
+    try:
+        value = parse_hex(text)
+    except BadHex as error:
+        raise BadValue(str(error)) from None
+    if len(value) != field.bits // 8:
+        raise BadValue(f"{field.bits // 8} bytes are needed, {len(value)} given")
+    return value
+
+
+def _float(field: Field, text: str, raw: bool = False) -> int:
+    if text[:2] in ("0x", "0X"):
+        value = numbers.integer(text)
+        if raw and value is not None:
+            return value
+        raise BadValue(f"`{text}` is not a number; the bits of a float can be given with --raw")
+    try:
+        value = numbers.float_bits(without_unit(field, text), field.bits)
+    except OverflowError:
+        raise BadValue(f"{text} is beyond what a {field.bits}-bit float holds") from None
+    if value is None:
+        raise BadValue(f"`{text}` is not a number")
+    return value
+
+
+def _integer(field: Field, text: str) -> int:
+    special = next((s.value for s in field.special if s.meaning.casefold() == text.casefold()), None)
+    if special is not None:
+        return special
+    number = without_unit(field, text)
+    if field.scale is None and (value := numbers.integer(number)) is not None:
+        return value
+    exact = numbers.rational(number)
+    if exact is None:
+        raise BadValue(f"`{text}` is not a number" + (f" (in {field.unit.symbol})" if field.unit else ""))
+    if field.scale:
+        return round(field.scale.raw(exact))  # ties to even, as `codec.raw_from_physical`
+    if exact.denominator != 1:
+        raise BadValue(f"{text} is not a whole number")
+    return exact.numerator
+
+
+def without_unit(field: Field, text: str) -> str:
+    """``12.5 deg`` or ``12.5deg`` without the unit."""
+    symbol = field.unit.symbol if field.unit else ""
+    if not symbol or not text.endswith(symbol):
+        return text
+    number = text[: -len(symbol)].rstrip()
+    return number if number[-1:].isdigit() else text
+
+
+def _enum(field: Field, text: str) -> int:
+    if field.enum is None:
+        return _integer(field, text)
+    return _member(field, text)
+
+
+def _member(field: Field, text: str) -> int:
+    known = field.enum.members
+    number = numbers.integer(text)
+    found = {m.value for m in by_name(known, text, ())}
+    if not found and number is None:
+        found = {m.value for m in known if _has_words(m, text)}
+    if number is not None:
+        found.add(number)
+    if len(found) == 1:
+        return found.pop()
+    what = "fits several members" if found else f"is no member of {field.enum.name}"
+    raise BadValue(f"`{text}` {what}{members(field)}")
+
+
+def _has_words(member: Member, text: str) -> bool:
+    wanted = naming.words(text)
+    return bool(wanted) and set(wanted) <= set(naming.words(member.name))
+
+
+_READERS = {"bool": _bool, "bytes": _bytes, "float": _float, "enum": _enum}

@@ -1,0 +1,133 @@
+"""Nodes, messages and fields by what a person types for them."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Callable, Iterable, Sequence
+from typing import TypeVar
+
+from icdgen import naming
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Field, Icd, Message, Node
+from icdgen.values.errors import Ambiguous, NotFound
+
+KINDS = (TELECOMMAND, TELEMETRY, CONFIGURATION)
+MOST_LISTED = 20
+_NUMBER = re.compile(r"[0-9]+|0[xX][0-9A-Fa-f]+")
+_Named = TypeVar("_Named")
+
+
+def find_node(icd: Icd, name: str) -> Node:
+    """The node called ``name``, in any case. Raises `NotFound`."""
+    for node in icd.nodes:
+        if node.name == name.strip().lower():
+            return node
+    names = [node.name for node in icd.nodes]
+    raise NotFound(f"there is no node `{name}`", _suggest(name, names) or f"nodes: {', '.join(names)}")
+
+
+def find_message(icd: Icd, node_name: str, key: str, kind: str | None = None) -> Message:
+    """The message of a node, included ones among them, by id (``146``, ``0x92``), name (in any case) or identifier.
+
+    ``kind`` narrows the search; "telecommand" and "telemetry" also find the configuration messages that can be sent and
+    requested. Raises `NotFound` or `Ambiguous`, with suggestions.
+    """
+    node = find_node(icd, node_name)
+    messages = [m for m in icd.messages_of(node) if kind is None or is_of_kind(m, kind)]
+    found = by_name(messages, key, node.vocabulary)
+    if not found and _NUMBER.fullmatch(key.strip()):
+        wanted = int(key, 0) if key.strip()[:2] in ("0x", "0X") else int(key)
+        found = [m for m in messages if wanted in _ids(m, kind)]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        listed = ", ".join(f"`{m.name}` ({describe(m)})" for m in found)
+        raise Ambiguous(f"`{key}` fits several messages of {node.name}: {listed}", "give the full name, or the kind")
+    raise NotFound(f"{node.name} has no {kind or 'message'} `{key}`", _message_help(icd, node, messages, key))
+
+
+def find_field(message: Message, key: str, vocabulary: tuple[str, ...] = ()) -> Field:
+    """The field by name (in any case), identifier, or words that no other field has: ``x`` for Commanded X speed.
+
+    Raises `NotFound` or `Ambiguous`, with suggestions.
+    """
+    found = by_name(message.fields, key, vocabulary) or _by_words(message.fields, key, vocabulary)
+    if len(found) == 1:
+        return found[0]
+    if found:
+        listed = ", ".join(f"`{f.name}`" for f in found)
+        raise Ambiguous(f"`{key}` fits several fields: {listed}", "give more of the name")
+    help = _suggest(key, [f.name for f in message.fields]) or _list_fields(message)
+    raise NotFound(f"{message.name} has no field `{key}`", help)
+
+
+def by_name(items: Sequence[_Named], key: str, vocabulary: tuple[str, ...]) -> list[_Named]:
+    """Items of exactly this name, else of this name in any case, else of these words, however they are joined."""
+    steps: list[Callable[[object], bool]] = [
+        lambda item: item.name == key,
+        lambda item: item.name.casefold() == key.strip().casefold(),
+        lambda item: _joined(key, vocabulary) in (_joined(n, vocabulary) for n in _names(item)),
+    ]
+    if not _joined(key, vocabulary):
+        steps.pop()
+    for matches in steps:
+        found = [item for item in items if matches(item)]
+        if found:
+            return found
+    return []
+
+
+def is_of_kind(message: Message, kind: str) -> bool:
+    """Whether it is of the kind, or a configuration message that can be used so."""
+    if kind == TELECOMMAND:
+        return message.telecommand_id is not None
+    if kind == TELEMETRY:
+        return message.telemetry_id is not None
+    return message.kind == kind
+
+
+def describe(message: Message) -> str:
+    """``telemetry 146``, ``configuration 120/247``"""
+    return f"{message.kind} {'/'.join(map(str, message.ids))}"
+
+
+def _ids(message: Message, kind: str | None) -> tuple[int | None, ...]:
+    return {TELECOMMAND: (message.telecommand_id,), TELEMETRY: (message.telemetry_id,)}.get(kind or "", message.ids)
+
+
+def _names(item: object) -> Iterable[str]:
+    return filter(None, (item.name, item.identifier))
+
+
+def _joined(text: str, vocabulary: tuple[str, ...]) -> str:
+    return "".join(naming.words(text, vocabulary))
+
+
+def _by_words(fields: Sequence[Field], key: str, vocabulary: tuple[str, ...]) -> list[Field]:
+    wanted = set(naming.words(key, vocabulary))
+    if not wanted:
+        return []
+    known = [(f, {w for n in _names(f) for w in naming.words(n, vocabulary)}) for f in fields]
+    found = [f for f, words in known if wanted <= words]
+    return found or [f for f, words in known if all(any(w.startswith(one) for w in words) for one in wanted)]
+
+
+def _message_help(icd: Icd, node: Node, messages: Sequence[Message], key: str) -> str:
+    elsewhere = [n.name for n in icd.nodes if n is not node and by_name(n.messages, key, n.vocabulary)]
+    if elsewhere:
+        return f"it is a message of {' and '.join(elsewhere)}"
+    close = _suggest(key, [m.name for m in messages])
+    return close or f"`icdgen show {node.name}` lists what there is"
+
+
+def _list_fields(message: Message) -> str:
+    names = [f.name for f in message.fields]
+    if len(names) > MOST_LISTED:
+        return f"it has {len(names)} fields; `icdgen show` lists them"
+    return f"fields: {', '.join(names)}" if names else "it has no fields at all"
+
+
+def _suggest(key: str, names: Iterable[str]) -> str:
+    by_folded = {name.casefold(): name for name in names}
+    close = difflib.get_close_matches(key.casefold()[:200], list(by_folded), 3, 0.6)
+    return "did you mean " + " or ".join(f"`{by_folded[c]}`" for c in close) + "?" if close else ""

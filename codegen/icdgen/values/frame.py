@@ -1,0 +1,174 @@
+"""A message with its bytes and what each field of it holds: the answer of both decoding and encoding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from icdgen import codec, layout
+from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.values import numbers
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One field. ``raw`` is as in `icdgen.codec`: an int (the bits, for a float) or bytes."""
+
+    field: Field
+    raw: int | bytes
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def physical(self) -> Fraction | None:
+        """Exact physical value of a scaled field, else None."""
+        return None if isinstance(self.raw, bytes) else codec.physical(self.field, self.raw)
+
+    @property
+    def number(self) -> float | None:
+        """The physical value as correctly rounded double, or the number of a float field; else None."""
+        if self.field.type == "float":
+            return codec.float_value(self.field, self.raw)
+        return codec.physical_double(self.field, self.raw)
+
+    @property
+    def member(self) -> str | None:
+        """Name of the enumeration's member, None if it has none of that value."""
+        members = self.field.enum.members if self.field.enum else ()
+        return next((m.name for m in members if m.value == self.raw), None)
+
+    @property
+    def raw_text(self) -> str:
+        """The raw value for people: a number, or hexadecimal for floats and bytes."""
+        if isinstance(self.raw, bytes):
+            return self.raw.hex(" ")
+        if self.field.type == "float":
+            return f"0x{self.raw:0{self.field.bits // 4}X}"
+        return str(self.raw)
+
+    @property
+    def text(self) -> str:
+        """What the field says, for people: physical value, name of the member, true or false."""
+        kind = self.field.type
+        if kind == "enum":
+            return self.member if self.member is not None else f"unknown {self.raw}"
+        if kind == "bool":
+            return "true" if self.raw else "false"
+        if kind == "float":
+            return numbers.float_text(self.number, self.field.bits)
+        physical = self.physical
+        return self.raw_text if physical is None else numbers.exact_text(physical)
+
+    def to_json(self) -> dict[str, object]:
+        """``{"name", "type", "raw", "value", ...}``; ``value`` is the one to show or plot."""
+        kind = self.field.type
+        raw: object = self.raw
+        if kind == "bytes":
+            raw = value = self.raw.hex()
+        elif kind == "float":
+            raw, value = f"{self.raw:0{self.field.bits // 4}x}", _json_number(self.number)
+        elif kind == "bool":
+            raw = value = bool(self.raw)
+        elif kind == "enum":
+            value = self.member
+        else:
+            value = self.raw if self.physical is None else self.number
+        found: dict[str, object] = {"name": self.field.name, "type": kind, "raw": raw, "value": value}
+        if self.physical is not None:
+            found |= {"physical": self.number, "exact": str(self.physical)}
+        elif kind == "float":
+            found["physical"] = value
+        if self.field.unit:
+            found["unit"] = self.field.unit.symbol
+        if self.field.enum:
+            found["enum"] = self.field.enum.name
+        if self.remarks:
+            found["remarks"] = list(self.remarks)
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """``node`` is the one that was asked; ``remarks`` concern no single field."""
+
+    node: Node
+    message: Message
+    data: bytes
+    rows: tuple[Row, ...]
+    remarks: tuple[str, ...] = ()
+
+    def to_json(self) -> dict[str, object]:
+        """``{"node", "message", "kind", "id" or "set_id" and "get_id", "length", "bytes", "fields": [...]}``"""
+        message = self.message
+        ids = {key: getattr(message, key) for key in ("id", "set_id", "get_id") if getattr(message, key) is not None}
+        found = {"node": self.node.name, "message": message.name, "kind": message.kind, **ids, "length": message.length}
+        found |= {"bytes": self.data.hex(), "fields": [row.to_json() for row in self.rows]}
+        return found | ({"remarks": list(self.remarks)} if self.remarks else {})
+
+
+def frame(icd: Icd, node: Node, message: Message, data: bytes, notes: dict[str, str] | None = None) -> Frame:
+    """Reads ``data``. ``notes`` are further remarks by field name. Raises `codec.LengthError`."""
+    owner = icd.node(message.node)  # its byte and bit order hold
+    values = codec.decode(owner, message, data)
+    rows = []
+    for field in message.fields:
+        raw = values[field.name]
+        extra = (notes or {}).get(field.name)
+        rows.append(Row(field, raw, (*remarks(field, raw), *((extra,) if extra else ()))))
+    return Frame(node, message, data, tuple(rows), tuple(_reserved(owner, message, data)))
+
+
+def remarks(field: Field, raw: int | bytes) -> list[str]:
+    """What a reader should know about a value: its special meaning, or that the ICD does not allow it."""
+    if isinstance(raw, bytes):
+        return []
+    special = next((s.meaning for s in field.special if s.value == raw), None)
+    return violations(field, raw) if special is None else [special]
+
+
+def violations(field: Field, raw: int) -> list[str]:
+    """In which way the raw value is not one that the ICD allows: constants, members, limits."""
+    found = []
+    if field.const is not None and raw != field.const:
+        found.append(f"must be {field.const} (0x{field.const:X})" if field.const >= 0 else f"must be {field.const}")
+    if field.enum and not any(m.value == raw for m in field.enum.members):
+        found.append(f"no member of {field.enum.name}")
+    if field.limits:
+        found += _outside(field, raw)
+    return found
+
+
+def _outside(field: Field, raw: int) -> list[str]:
+    limits = field.limits
+    value: Fraction | float = raw
+    if field.type == "float":
+        value = codec.float_value(field, raw)
+        if value != value:
+            return ["not a number"]
+    elif field.scale:
+        value = field.scale.physical(raw)
+    unit = f" {field.unit.symbol}" if field.unit else ""
+    checks = [
+        (limits.min, lambda bound: value < bound, "below the minimum"),
+        (limits.max, lambda bound: value > bound, "above the maximum"),
+        (limits.above, lambda bound: value <= bound, "must be above"),
+        (limits.below, lambda bound: value >= bound, "must be below"),
+    ]
+    return [f"{words} {numbers.exact_text(b)}{unit}" for b, is_wrong, words in checks if b is not None and is_wrong(b)]
+
+
+def _reserved(node: Node, message: Message, data: bytes) -> list[str]:
+    found = []
+    for gap in layout.gaps(message):
+        pieces = layout.pieces_at(gap.at, gap.bits, node.byte_order, node.bit_order)
+        if any(data[piece.byte] & piece.mask for piece in pieces):
+            last = gap.at + gap.bits - 1
+            which = f"bit {gap.at} is" if last == gap.at else f"bits {gap.at} to {last} are"
+            found.append(f"reserved {which} not 0")
+    return found
+
+
+def _json_number(value: float) -> float | str:
+    """JSON has no NaN and no infinity."""
+    if value != value:
+        return "nan"
+    return value if abs(value) != float("inf") else ("inf" if value > 0 else "-inf")

@@ -1,0 +1,36 @@
+"""A frame for people."""
+
+from __future__ import annotations
+
+from icdgen.tables import Column, clean, render
+from icdgen.values.find import describe
+from icdgen.values.frame import Frame
+
+_COLUMNS = [
+    Column("field"),
+    Column("raw", right=True),
+    Column("value", right=True),
+    Column("unit"),
+    Column("remarks"),
+]
+
+
+def to_text(frame: Frame, width: int | None = None) -> str:
+    """Message, bytes and a table of its fields. ``width`` is that of the terminal, None for a pipe."""
+    message = frame.message
+    lines = [f"{frame.node.name}: {message.name} ({describe(message)}), {message.length} bytes"]
+    if frame.data:
+        lines.append(frame.data.hex(" "))
+    text = "".join(clean(line) + "\n" for line in lines)
+    rows = [
+        (
+            row.field.name,
+            row.raw_text,
+            row.text,
+            row.field.unit.symbol if row.field.unit else "",
+            "; ".join(row.remarks),
+        )
+        for row in frame.rows
+    ]
+    table = render(_COLUMNS, rows, width)
+    return text + ("\n" + table if table else "") + "".join(f"\nnote: {clean(one)}\n" for one in frame.remarks)

@@ -1,0 +1,94 @@
+"""What ``icdgen fmt`` makes of files, as a reader sees it: the ``*.in.yaml`` here and their ``*.out.yaml``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from icdgen.diagnostics import Findings
+from icdgen.icd import source
+from icdgen.icd.fmt import format_text, same
+from icdgen.icd.fmt.rows import aligned
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent.parent
+CASES = sorted(HERE.glob("*.in.yaml"))
+SHIPPED = sorted([*(ROOT / "icd").glob("*.yaml"), *(ROOT / "icd" / "errata").glob("*.yaml")])
+
+
+def expected(case: Path) -> Path:
+    return case.with_name(case.name.replace(".in.", ".out."))
+
+
+def formatted(text: str) -> str:
+    return format_text(text, "test.yaml")
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda path: path.name)
+def test_canonical_layout(case):
+    """A difference that is meant: ``python -m tests.fmt.update``."""
+    assert formatted(case.read_bytes().decode("utf-8")) == expected(case).read_bytes().decode("utf-8")
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda path: path.name)
+def test_canonical_layout_stays_as_it_is(case):
+    text = expected(case).read_bytes().decode("utf-8")
+    assert formatted(text) == text
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda path: path.name)
+def test_nothing_changes_but_the_layout(case):
+    before = source.parse(case.read_bytes(), "before")
+    after = source.parse(expected(case).read_bytes(), "after")
+    assert same(before, after)
+
+
+def test_there_are_cases():
+    assert len(CASES) >= 4 and len(SHIPPED) >= 5
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: f"{path.parent.name}/{path.name}")
+def test_shipped_files_are_in_the_canonical_layout(path):
+    text = path.read_bytes().decode("utf-8")
+    assert formatted(text) == text
+
+
+def test_line_ends_and_byte_order_mark_are_normalised():
+    assert formatted("\ufefficdgen: 1\r\nnode: {}\r\n") == "icdgen: 1\nnode: {}\n"
+
+
+@pytest.mark.parametrize(
+    "text, code",
+    [
+        ("a: [1", "ICD001"),
+        ("", "ICD001"),
+        ("- a\n", "ICD001"),
+        ("a: 1\na: 2\n", "ICD002"),
+        ("a: off\n", "ICD003"),
+        ("a: &x 1\nb: *x\n", "ICD001"),
+        ("a: \ud800\n", "ICD001"),
+        ("a: " + "[" * 10_000, "ICD001"),
+    ],
+)
+def test_what_has_no_one_meaning_is_refused(text, code):
+    with pytest.raises(Findings) as caught:
+        formatted(text)
+    assert code in {finding.code for finding in caught.value.findings}
+
+
+def test_only_the_keys_that_all_rows_begin_with_are_aligned():
+    rows = [
+        {"at": "at: 0", "name": "name: A", "type": "type: int"},
+        {"at": "at: 128", "name": "name: Long", "identifier": "identifier: B", "type": "type: int"},
+        {"at": "at: 8", "name": "name: " + "x" * 60, "type": "type: int"},
+    ]
+    assert aligned(rows) == [
+        "{at: 0,   name: A,    type: int}",
+        "{at: 128, name: Long, identifier: B, type: int}",
+        "{at: 8,   name: " + "x" * 60 + ", type: int}",
+    ]
+
+
+def test_a_column_is_no_wider_than_what_is_followed_by_another():
+    rows = [{"name": "name: A", "summary": "summary: S"}, {"name": "name: Much longer"}]
+    assert aligned(rows) == ["{name: A, summary: S}", "{name: Much longer}"]

@@ -1,0 +1,108 @@
+"""``icdgen show`` for people."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+from icdgen.icd.load import load
+from icdgen.show import to_text
+from icdgen.values import NotFound
+
+from tests.show.test_machine import BASE, OVERLAY, TOP
+
+EXPECTED = """\
+top: Temperature
+configuration 2/140 (hex 02/8C); 4 bytes; table 98
+
+offset  bits  type  name   unit   resolution   from                 to  notes
+------  ----  ----  -----  -----  ----------  -----  -----------------  ------------------
+     0    16  int   Air    K             5/9  -40.5  18186.11111111111  below 100; TOP-001
+    16     8  Mode  Mode
+    24     8  uint  Count  stars           5      0               1275  255: many
+
+Mode (enumeration, table 3)
+value  name  meaning
+-----  ----  ---------
+    0  Idle
+    1  Run   At speed.
+
+Erratum TOP-001 (likely): Wrong unit
+  It is.
+  Table 98.
+  Printed and held: unit C -> K
+  Tables: 98
+"""
+
+
+@pytest.fixture(scope="module")
+def icd(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("show")
+    (folder / "errata").mkdir()
+    for name, text in (("base.yaml", BASE), ("top.yaml", TOP), ("errata/top.yaml", OVERLAY)):
+        (folder / name).write_text(text, encoding="utf-8")
+    return load([folder / "top.yaml"], check=False).icd
+
+
+def test_the_nodes(icd):
+    assert to_text(icd) == (
+        "node  title  type  version  commands  telemetry  settings  fields  errata  includes\n"
+        "----  -----  ----  -------  --------  ---------  --------  ------  ------  --------\n"
+        "base  Base                         0          0         0       0       0\n"
+        "top   Top       0        7         1          1         1       4       3  base\n"
+    )
+
+
+def test_a_node(icd):
+    assert to_text(icd, ["top"]) == (
+        "top: Top\n"
+        "node type 0; interface version 7; little-endian, lsb0; includes base; 3 errata\n"
+        "\n"
+        "   id  kind           name         bytes  fields  table\n"
+        "-----  -------------  -----------  -----  ------  -----\n"
+        "    0  telecommand    Reset            1       1\n"
+        "2/140  configuration  Temperature      4       3     98\n"
+        "  141  telemetry      Nothing          0       0\n"
+        "\n"
+        "Missing: telemetry 186 Torque. Not described.\n"
+    )
+    assert "Temperature" not in to_text(icd, ["top"], kind="telemetry")
+
+
+def test_a_message_by_id_or_name(icd):
+    assert to_text(icd, ["top", "140"]) == EXPECTED
+    assert to_text(icd, ["top", "0x8c"]) == to_text(icd, ["top", "temperature"]) == to_text(icd, ["top", "140"])
+
+
+def test_a_message_without_fields_and_one_that_is_not_acknowledged(icd):
+    assert to_text(icd, ["top", "141"]) == "top: Nothing\ntelemetry 141 (hex 8D); 0 bytes\n"
+    assert "not acknowledged" in to_text(icd, ["top", "reset"])
+    assert "always 0" in to_text(icd, ["top", "reset"])
+
+
+def test_an_enumeration_and_an_erratum(icd):
+    assert to_text(icd, ["top", "mode"]).startswith("Mode (enumeration, table 3)\n")
+    assert to_text(icd, ["top", "top-002"]) == "Erratum TOP-002 (open): A section\n  W.\n  E.\n"
+
+
+@pytest.mark.parametrize("selection", [["nope"], ["top", "nope"], ["base", "TOP-001"]])
+def test_what_is_not_there(icd, selection):
+    with pytest.raises(NotFound):
+        to_text(icd, selection)
+
+
+@pytest.mark.parametrize("width", [90, 100, 120])
+@pytest.mark.parametrize("selection", [[], ["top"], ["top", "140"]])
+def test_on_a_terminal_every_line_fits(icd, selection, width):
+    text = to_text(icd, selection, width)
+    assert all(len(line) <= width for line in text.splitlines())
+
+
+@pytest.mark.parametrize("width", [20, 60, 80, 90, 100])
+@pytest.mark.parametrize("selection", [[], ["top"], ["top", "140"]])
+def test_on_a_terminal_nothing_is_cut(icd, selection, width):
+    wide, narrow = (
+        Counter("".join(text.replace("-", "").split()))
+        for text in (to_text(icd, selection), to_text(icd, selection, width))
+    )
+    assert wide == narrow

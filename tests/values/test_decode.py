@@ -1,0 +1,149 @@
+"""What ``icdgen decode`` says of a frame."""
+
+from __future__ import annotations
+
+import json
+import struct
+
+import pytest
+from icdgen.icd.load import load
+from icdgen.values import BadLength, decode, parse_hex, to_text
+
+
+def test_the_table_for_people(icd):
+    frame = decode(icd, "top", "17", parse_hex("2efb 0a00 5b 3d"))
+    assert to_text(frame) == (
+        "top: Set Speed (telecommand 17), 6 bytes\n"
+        "2e fb 0a 00 5b 3d\n"
+        "\n"
+        "field                raw   value  unit   remarks\n"
+        "-----------------  -----  ------  -----  ----------------------\n"
+        "Commanded X speed  -1234  -12.34  deg/s\n"
+        "Commanded Y speed     10     0.1  deg/s\n"
+        "Magic Number          91      91         must be 90 (0x5A)\n"
+        "Timeout               61      61  s      above the maximum 60 s\n"
+    )
+
+
+def test_the_form_for_machines(icd):
+    frame = decode(icd, "top", "Set Speed", parse_hex("2efb 0a00 5a ff"))
+    assert json.loads(json.dumps(frame.to_json(), allow_nan=False)) == {
+        "node": "top",
+        "message": "Set Speed",
+        "kind": "telecommand",
+        "id": 17,
+        "length": 6,
+        "bytes": "2efb0a005aff",
+        "fields": [
+            {"name": "Commanded X speed", "type": "int", "raw": -1234, "value": -12.34, "physical": -12.34,
+             "exact": "-617/50", "unit": "deg/s"},
+            {"name": "Commanded Y speed", "type": "int", "raw": 10, "value": 0.1, "physical": 0.1, "exact": "1/10",
+             "unit": "deg/s"},
+            {"name": "Magic Number", "type": "uint", "raw": 90, "value": 90},
+            {"name": "Timeout", "type": "uint", "raw": 255, "value": 255, "unit": "s", "remarks": ["no timeout"]},
+        ],
+    }  # fmt: skip
+
+
+def everything(icd, **parts):
+    values = {
+        "flags": 0,
+        "mode": 0,
+        "ratio": 1.0,
+        "precise": 0.0,
+        "code": bytes(4),
+        "wide": 0,
+        "angle": 0,
+        "gain": 0,
+        "rest": 0,
+    }
+    values |= parts
+    return decode(icd, "top", "Everything", struct.pack("<BBfd4sQqBB", *values.values()))
+
+
+def texts(frame):
+    return {row.field.name: row.text for row in frame.rows}
+
+
+def test_every_type_in_words(icd):
+    frame = everything(
+        icd,
+        flags=0xFF,
+        mode=7,
+        ratio=0.1,
+        precise=0.1,
+        code=b"\x01\x02\xfe\xff",
+        wide=2**64 - 1,
+        angle=2**63 - 1,
+        gain=1,
+    )
+    assert texts(frame) == {
+        "Enabled": "true",
+        "Small": "-1",
+        "Mode": "Auto reset",
+        "Ratio": "0.1",
+        "Precise": "0.1",
+        "Key = Code": "01 02 fe ff",
+        "Wide": "18446744073709551615",
+        "Wide angle": "5.124095576030431e+18",
+        "BDot gain": "0.3333333333333333",
+    }
+    assert frame.to_json()["set_id"] == 20 and frame.to_json()["get_id"] == 150
+
+
+def test_what_the_icd_does_not_know_is_shown_as_it_came(icd):
+    frame = everything(icd, mode=13, ratio=float("nan"), precise=float("-inf"))
+    rows = {row["name"]: row for row in json.loads(json.dumps(frame.to_json(), allow_nan=False))["fields"]}
+    assert texts(frame)["Mode"] == "unknown 13"
+    assert (rows["Mode"]["raw"], rows["Mode"]["value"]) == (13, None)
+    assert rows["Mode"]["remarks"] == ["no member of Switch"]
+    assert (rows["Ratio"]["raw"], rows["Ratio"]["value"]) == ("7fc00000", "nan")
+    assert rows["Ratio"]["remarks"] == ["not a number"]
+    assert (rows["Precise"]["raw"], rows["Precise"]["value"]) == ("fff0000000000000", "-inf")
+
+
+def test_limits_that_exclude_their_bound(icd):
+    frame = everything(icd, ratio=0.0)
+    assert frame.rows[3].remarks == ("must be above 0 %",)
+    assert everything(icd, ratio=1e-30).rows[3].remarks == ()
+
+
+def test_reserved_bits_that_are_set_are_pointed_out(icd):
+    assert everything(icd).remarks == ()
+    frame = everything(icd, rest=0x10)
+    assert frame.remarks == ("reserved bits 280 to 287 are not 0",)
+    assert to_text(frame).endswith("\nnote: reserved bits 280 to 287 are not 0\n")
+
+
+def test_the_bit_order_of_the_node_that_declares_the_message_holds(icd):
+    frame = decode(icd, "top", "Shared State", b"\x1a\xbc\x00")
+    assert texts(frame) == {"Main Switch": "On", "Level": str(0xABC)}
+    assert frame.node.name == "top"
+
+
+def test_a_message_without_fields(icd):
+    assert to_text(decode(icd, "top", "42", b"")) == "top: 42 (telecommand 21), 0 bytes\n"
+
+
+def test_the_length_must_be_the_messages(icd):
+    with pytest.raises(BadLength, match="Set Speed has 6 bytes, 5 given") as caught:
+        decode(icd, "top", "17", bytes(5))
+    assert (caught.value.expected, caught.value.actual) == (6, 5)
+    with pytest.raises(BadLength) as caught:
+        decode(icd, "top", "17", b"\x11" + bytes(6))
+    assert caught.value.help == "the bytes begin with the id: leave it out"
+
+
+def test_names_cannot_write_to_the_terminal(tmp_path):
+    path = tmp_path / "odd.yaml"
+    path.write_text(
+        "icdgen: 1\nnode: {name: odd, title: Odd, byte_order: little, bit_order: lsb0}\nmessages:\n"
+        '  - {name: "A\\x1b[2J[bold]", id: 1, kind: telecommand, length: 1,\n'
+        '     fields: [{at: 0, bits: 8, name: "B\\n\\x1b]0;x\\x07[/]", type: uint}]}\n',
+        encoding="utf-8",
+    )
+    frame = decode(load([path], check=False).icd, "odd", "1", b"\x01")
+    for width in (None, 20):
+        text = to_text(frame, width)
+        assert all(c.isprintable() for c in text.replace("\n", ""))
+        assert "A\\u{1b}[2J[bold]" in text
