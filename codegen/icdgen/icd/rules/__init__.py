@@ -1,0 +1,67 @@
+"""The semantic rules. Each is one function of a theme module; its explanation and examples stand in ``<theme>.md``.
+
+The model is built without complaint: what does not fit is None there. The rules go back to the tree and say what is
+wrong, and where.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from icdgen.diagnostics import Finding, in_order
+from icdgen.icd.errata import Applied
+from icdgen.icd.model import Icd
+from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its rules)
+    composites,
+    duplicates,
+    errata,
+    formulas,
+    identifiers,
+    ids,
+    layout,
+    limits,
+    loggable,
+    pages,
+    protocol,
+    protocol_names,
+    reading,
+    references,
+    values,
+)
+from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.rule import REGISTERED, Rule
+from icdgen.icd.rules.wording import close_to
+
+ALL: dict[str, Rule] = dict(sorted(REGISTERED.items()))
+_RUN = sorted((r for r in ALL.values() if r.check), key=lambda r: r.last)
+
+
+class UnknownRule(LookupError):
+    """No rule has that code; the message says which was probably meant."""
+
+
+def check(icd: Icd, applied: Iterable[Applied] = (), complete: bool = True) -> list[Finding]:
+    """Everything that breaks a rule and that no erratum accepts, in the order of the files.
+
+    ``complete`` is False where broken items were left out of the model: rules about what is absent stay silent then.
+    """
+    context = Context(icd, applied, complete)
+    findings: list[Finding] = []
+    accepted = {(code, id(owner)) for one in context.applied for code, _, owner, _, _ in one.accepts}
+    for rule in _RUN:
+        if rule.whole and not complete:
+            continue
+        for fault in rule.check(context):
+            context.raised.append((rule.code, fault))
+            if (rule.code, id(fault.owner)) not in accepted:
+                findings.append(Finding(rule.code, fault.message, fault.place, fault.help, rule.severity))
+    return in_order(findings)
+
+
+def explain(code: str) -> str:
+    """The page of a rule in Markdown: title, reason, a wrong and a right example. Raises `UnknownRule`."""
+    rule = ALL.get(code.upper())
+    if rule is None:
+        close = close_to(code.upper(), ALL)
+        raise UnknownRule(f"there is no rule {code}" + (f"; did you mean {close}?" if close else ""))
+    return pages.text(rule.code, rule.severity, rule.page)

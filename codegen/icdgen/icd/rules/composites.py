@@ -1,0 +1,103 @@
+"""Frames that repeat other frames, and list tables that repeat what detail tables say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.diagnostics import Place
+from icdgen.icd.model import Field, Message, Node, Part
+from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.wording import close_to, line_of, listing, quote
+from icdgen.icd.tree import Map
+
+_KEYS = ("bits", "type", "enum", "unit", "formula")
+
+
+def _parts(ctx: Context) -> Iterator[tuple[Message, Node, Part, Map]]:
+    """Every part of every composite frame, with the mapping that declares it."""
+    for message, node in ctx.messages:
+        if message.contains:
+            rows = {(r.get("message"), r.get("at")): r for r in mappings(message.source["contains"])}
+            for part in message.contains:
+                yield message, node, part, rows[part.message, part.at]
+
+
+@rule("ICD046")
+def part_exists(ctx: Context) -> Iterator[Fault]:
+    for message, node, part, row in _parts(ctx):
+        frames = {m.name: m for m in ctx.messages_of(node)}
+        frame = frames.get(part.message)
+        if frame is None:
+            if ctx.complete:
+                close = close_to(part.message, frames)
+                help = f"did you mean {quote(close)}?" if close else "names are the manual's, to the letter"
+                yield Fault(message.source, row.at("message"), f"there is no message {quote(part.message)}", help)
+        elif frame is message:
+            text = f"{quote(message.name)} contains itself"
+            yield Fault(message.source, row.at("message"), text, "name another frame")
+        elif part.at + frame.length * 8 > message.length * 8:
+            end = part.at + frame.length * 8
+            text = f"{quote(frame.name)} ends at bit {end:,}, but {quote(message.name)} has {message.length * 8:,} bits"
+            yield Fault(message.source, row.at("at"), text, "correct `at`, or the `length` of either")
+
+
+@rule("ICD047", whole=True)
+def part_matches(ctx: Context) -> Iterator[Fault]:
+    for message, node, part, row in _parts(ctx):
+        frame = next((m for m in ctx.messages_of(node) if m.name == part.message), None)
+        if frame is None or frame is message or part.at + frame.length * 8 > message.length * 8:
+            continue  # a finding already
+        wanted = {part.at + f.at: f for f in frame.fields}
+        start, end = part.at, part.at + frame.length * 8
+        for field in message.fields:
+            if field.at + field.bits <= start or field.at >= end:
+                continue
+            twin = wanted.pop(field.at, None)
+            if twin is None:
+                text = f"{quote(frame.name)} has no field at bit {field.at - start:,}, where {quote(field.name)} begins"
+                if field.at < start:
+                    text = f"{quote(field.name)} lies across bit {start:,}, where {quote(frame.name)} begins"
+                yield Fault(field.source, field.source.at("at"), text, _compare(frame, field.source.at("at")))
+            else:
+                yield from _differences(field, twin, frame)
+        if wanted:
+            names = [f"{quote(f.name)} at bit {at:,}" for at, f in list(wanted.items())[:3]]
+            more = [f"{len(wanted) - 3} more"] if len(wanted) > 3 else []
+            place = row.at("at")
+            text = f"{quote(message.name)} lacks fields of {quote(frame.name)}: {listing(names + more)}"
+            yield Fault(message.source, place, text, _compare(frame, place))
+
+
+def _compare(frame: Message, here: Place) -> str:
+    return f"compare with {quote(frame.name)} ({line_of(frame.source.at('name'), here)})"
+
+
+def _said(source: Map, key: str) -> str:
+    return quote(source[key]) if key in source else "absent"
+
+
+def _differences(field: Field, twin: Field, frame: Message) -> Iterator[Fault]:
+    mine, other = field.source, twin.source
+    keys = [key for key in _KEYS if mine.get(key) != other.get(key)]
+    if field.scale is not None and field.scale == twin.scale and "formula" in keys:
+        keys.remove("formula")  # written differently, and the same
+    if keys:
+        key = keys[0]
+        place = mine.at(key) if key in mine else mine.place
+        said = "; ".join(f"{k} {_said(mine, k)} here, {_said(other, k)} there" for k in keys)
+        there = f"{quote(twin.name)} in {quote(frame.name)} ({line_of(other.place, place)})"
+        yield Fault(mine, place, f"{quote(field.name)} differs from {there}: {said}", "one of the two is wrong")
+
+
+@rule("ICD048")
+def list_agrees(ctx: Context) -> Iterator[Fault]:
+    for message, _ in ctx.messages:
+        listed = message.source.get("listed")
+        for key, value in listed.items() if isinstance(listed, Map) else ():
+            held = message.source.get(key)
+            if held != value:
+                what = f"the {key.replace('_', ' ')} {quote(value)}"
+                text = f"the list table gives {quote(message.name)} {what}, the detail table {quote(held)}"
+                help = f"decide in the errata: hold the other `{key}`, or hold `listed: null`"
+                yield Fault(message.source, listed.at(key), text, help)

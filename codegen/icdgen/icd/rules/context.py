@@ -1,0 +1,60 @@
+"""What rules look at: the model, flattened once so that sixty rules need not each walk it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from icdgen.icd.errata import Applied
+from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.icd.rules.rule import Fault
+from icdgen.icd.tree import Map
+
+# Keys of a field that only few fields have.
+RARE = ("enum", "unit", "formula", "formula_for", "const", "special", "min", "max", "above", "below", "bitfields")
+
+Row = tuple[Field, Message, Node]
+
+
+def mappings(items: object) -> Iterator[Map]:
+    """The mappings of a list as it was read: nothing where it is no list."""
+    return (item for item in items if isinstance(item, Map)) if isinstance(items, list) else iter(())
+
+
+class Context:
+    """The model and what was found so far. The model must have been read from files: rules look at ``source``."""
+
+    def __init__(self, icd: Icd, applied: Iterable[Applied] = (), complete: bool = True) -> None:
+        self.icd = icd
+        self.applied = tuple(applied)
+        self.complete = complete
+        self.raised: list[tuple[str, Fault]] = []  # code and fault, of the rules that ran already
+        self.messages: list[tuple[Message, Node]] = [(m, n) for n in icd.nodes for m in n.messages]
+        self.fields: list[Row] = [(f, m, n) for m, n in self.messages for f in m.fields]
+        self.having: dict[str, list[Row]] = {key: [] for key in RARE}  # fields that have the key
+        having = self.having
+        for row in self.fields:
+            for key in row[0].source:
+                if key in having:
+                    having[key].append(row)
+        self.declared: list | None = None  # what backends declare; see `declarations`
+        self._scopes: dict[int, tuple[Node, ...]] = {}
+
+    def scope(self, node: Node) -> tuple[Node, ...]:
+        """What the node includes, then the node itself; each name once."""
+        found = self._scopes.get(id(node))
+        if found is None:
+            by_name = {n.name: n for n in reversed(self.icd.included(node)) if n.name != node.name}
+            found = (*(n for n in self.icd.nodes if by_name.get(n.name) is n), node)
+            self._scopes[id(node)] = found
+        return found
+
+    def messages_of(self, node: Node) -> list[Message]:
+        """All messages that the node speaks."""
+        return [m for n in self.scope(node) for m in n.messages]
+
+    def protocol_of(self, node: Node) -> dict:
+        """The protocol facts that hold for the node: its own over those of what it includes."""
+        merged: dict = {}
+        for one in self.scope(node):
+            merged.update(one.protocol if isinstance(one.protocol, dict) else {})
+        return merged

@@ -1,0 +1,59 @@
+"""What the backends would declare for a model, as far as it is sound."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from icdgen import backends
+from icdgen.backends import Identifier
+from icdgen.icd.model import Icd, Message
+from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.rule import REGISTERED
+
+TWINS = frozenset(
+    {"ICD050", "ICD051", "ICD052", "ICD053", "ICD054", "ICD057"}
+)  # rules about names that are there twice
+
+
+class Declared(NamedTuple):
+    """What one backend declares."""
+
+    language: str
+    reserved: frozenset[str]
+    identifiers: list[Identifier]
+
+
+def declared(ctx: Context) -> list[Declared]:
+    """What each built-in backend declares, worked out once a run."""
+    if ctx.declared is None:
+        icd = _sound(ctx)
+        ctx.declared = []
+        for name in backends.names() if icd.nodes else ():
+            backend = backends.get(name)
+            ctx.declared.append(Declared(name, backend.reserved, list(backend.identifiers(icd))))
+    return ctx.declared
+
+
+def _sound(ctx: Context) -> Icd:
+    """The model without fields that have errors, and without the second of two equal names."""
+    bad = {id(f.owner) for code, f in ctx.raised if REGISTERED[code].severity == "error"}
+    twins = {id(f.owner) for code, f in ctx.raised if code in TWINS}
+
+    def sound(message: Message) -> Message:
+        kept = tuple(f for f in message.fields if id(f.source) not in bad and (f.enum or f.type != "enum"))
+        return message if len(kept) == len(message.fields) else replace(message, fields=kept)
+
+    first = {n.name: n for n in reversed(ctx.icd.nodes)}
+    return Icd(
+        tuple(
+            replace(
+                node,
+                messages=tuple(sound(m) for m in node.messages if id(m.source) not in twins),
+                enums=tuple({e.name: e for e in node.enums}.values()),  # fields refer to the last of a name
+                includes=tuple(name for name in node.includes if name != node.name),
+            )
+            for node in ctx.icd.nodes
+            if first[node.name] is node
+        )
+    )

@@ -1,0 +1,125 @@
+"""Names and values that must be there once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterable, Iterator
+
+from icdgen.icd.model import Enum, Message, Node
+from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.wording import line_of, quote
+from icdgen.icd.tree import Map
+from icdgen.icd.units import STANDARD
+
+
+def _twice(items: Iterable, key: Callable[[object], Hashable]) -> Iterator[tuple]:
+    """(first, later) for every item whose key was there before."""
+    seen: dict = {}
+    for item in items:
+        value = key(item)
+        if value in seen:
+            yield seen[value], item
+        else:
+            seen[value] = item
+
+
+def in_scope(ctx: Context, node: Node, items: Callable[[Node], Iterable]) -> list[tuple[Node, object]]:
+    """Items of the node and of what it includes, with the node that declares them."""
+    return [(n, item) for n in ctx.scope(node) for item in items(n)]
+
+
+def is_news(ctx: Context, node: Node, first: Node, second: Node) -> bool:
+    """Whether ``node`` is the first to bring the two together; else the clash is reported where that happened."""
+    return second is node or (first is not second and first not in ctx.scope(second))
+
+
+def together(node: Node, second: Node) -> str:
+    """Why a clash of two included nodes matters."""
+    return "" if second is node else f", and `{node.name}` includes both"
+
+
+def _names_twice(
+    ctx: Context, what: str, items: Callable[[Node], Iterable[Message | Enum]], help: str
+) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        for (n1, first), (n2, second) in _twice(in_scope(ctx, node, items), lambda pair: pair[1].name):
+            if is_news(ctx, node, n1, n2):
+                place = second.source.at("name")
+                there = line_of(first.source.at("name"), place)
+                message = f"there is already {what} called {quote(second.name)}, in {there}{together(node, n2)}"
+                yield Fault(second.source, place, message, help)
+
+
+@rule("ICD050")
+def message_names(ctx: Context) -> Iterator[Fault]:
+    help = "if the manual prints the name twice, an erratum holds another"
+    yield from _names_twice(ctx, "a message", lambda n: n.messages, help)
+
+
+@rule("ICD051")
+def field_names(ctx: Context) -> Iterator[Fault]:
+    for message, _ in ctx.messages:
+        fields = message.fields
+        if len({f.name for f in fields}) == len(fields):
+            continue
+        for first, second in _twice(fields, lambda f: f.name):
+            place = second.source.at("name")
+            there = line_of(first.source.at("name"), place)
+            text = f"{quote(message.name)} already has a field {quote(second.name)}, in {there}"
+            yield Fault(second.source, place, text, "if the manual prints the name twice, an erratum holds another")
+
+
+@rule("ICD052")
+def enum_names(ctx: Context) -> Iterator[Fault]:
+    yield from _names_twice(ctx, "an enumeration", lambda n: n.enums, "rename one, or use the other")
+
+
+@rule("ICD053")
+def member_values(ctx: Context) -> Iterator[Fault]:
+    for enum in (e for n in ctx.icd.nodes for e in n.enums):
+        for first, second in _twice(enum.members, lambda m: m.value):
+            place = second.source.at("value")
+            there = f"{quote(first.name)} ({line_of(first.source.at('value'), place)})"
+            yield Fault(second.source, place, f"{there} already has the value {second.value}", "correct one of them")
+
+
+@rule("ICD054")
+def member_names(ctx: Context) -> Iterator[Fault]:
+    for enum in (e for n in ctx.icd.nodes for e in n.enums):
+        for first, second in _twice(enum.members, lambda m: (m.name, m.identifier)):
+            place = second.source.at("name")
+            there = f"{first.value} ({line_of(first.source.at('name'), place)})"
+            message = f"{quote(second.name)} is already the name of {there}"
+            help = "if the manual does say so, give each an `identifier:` of its own"
+            yield Fault(second.source, place, message, help)
+
+
+@rule("ICD057")
+def node_names(ctx: Context) -> Iterator[Fault]:
+    for first, second in _twice(ctx.icd.nodes, lambda n: n.name):
+        head = second.source["node"]
+        message = f"another file has declared the node `{second.name}`: {first.file}"
+        yield Fault(head, head.at("name"), message, "name one of them differently, or leave one file out")
+
+
+@rule("ICD058")
+def unit_symbols(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        pairs = in_scope(ctx, node, _declared_units)
+        for (n1, first), (n2, second) in _twice(pairs, lambda pair: pair[1]["symbol"]):
+            if is_news(ctx, node, n1, n2):
+                place = second.at("symbol")
+                there = line_of(first.at("symbol"), place)
+                message = f"the unit {quote(second['symbol'])} is already declared, in {there}{together(node, n2)}"
+                yield Fault(second, place, message, "declare it once")
+        for unit in _declared_units(node):
+            if unit["symbol"] in STANDARD:
+                message = f"the unit {quote(unit['symbol'])} is built in: {STANDARD[unit['symbol']].quantity}"
+                yield Fault(unit, unit.at("symbol"), message, "remove the declaration, or choose another symbol")
+
+
+def _declared_units(node: Node) -> Iterator[Map]:
+    known = {u.symbol for u in node.units}
+    for item in mappings(node.source.get("units")):
+        if isinstance(item.get("symbol"), str) and item["symbol"] in known:
+            yield item

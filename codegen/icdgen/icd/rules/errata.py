@@ -1,0 +1,36 @@
+"""Errata overlays: codes that are raised while they are laid over, and what their `accept` keys say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.diagnostics import Place
+from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.rule import REGISTERED, Fault, elsewhere, rule
+from icdgen.icd.rules.wording import close_to, count, line_of
+
+elsewhere("errata", "ICD080", "ICD081", "ICD082", "ICD083")
+
+
+@rule("ICD084", whole=True, last=True)
+def accept_answers(ctx: Context) -> Iterator[Fault]:
+    raised = {(code, id(fault.owner)) for code, fault in ctx.raised}
+    idle: dict[tuple[str, Place], list[Place]] = {}
+    for applied in ctx.applied:
+        for code, place, owner, _, there in applied.accepts:
+            if code in REGISTERED and (code, id(owner)) not in raised:
+                idle.setdefault((code, place), []).append(there)
+    for (code, place), targets in idle.items():
+        more = f" and {count(len(targets) - 1, 'other place')}" if len(targets) > 1 else ""
+        message = f"there is no finding {code} to accept in {line_of(targets[0], place)}{more}"
+        yield Fault(None, place, message, f"remove {code} here: what it answered is gone")
+
+
+@rule("ICD085")
+def accept_known(ctx: Context) -> Iterator[Fault]:
+    for applied in ctx.applied:
+        for code, place, _, _, _ in applied.accepts:
+            if code not in REGISTERED:
+                close = close_to(code, REGISTERED)
+                help = f"did you mean {close}?" if close else "`icdgen rule` lists the rules"
+                yield Fault(None, place, f"there is no rule {code}", help)

@@ -1,0 +1,82 @@
+"""Formulas, and the units that their results have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.icd import exact, formula
+from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.wording import quote
+
+SCALED = ("uint", "int")
+
+
+@rule("ICD060")
+def formula_reads(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.having["formula"]:
+        if field.scale is None and field.type in SCALED:
+            text = field.source["formula"]
+            try:
+                formula.parse(text)
+            except formula.FormulaError as error:
+                message = f"the formula {quote(text)} cannot be used: {error}"
+                help = "a formula is linear and exact: `raw*0.01`, `raw/10 - 40`, `raw = value*1000`"
+                yield Fault(field.source, field.source.at("formula"), message, help)
+
+
+@rule("ICD061")
+def formula_has_number(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.having["formula"]:
+        if field.type not in SCALED:
+            message = f"{quote(field.name)} is `{field.type}`, which takes no formula"
+            yield Fault(field.source, field.source.at("formula"), message, "only uint and int fields are scaled")
+
+
+@rule("ICD062")
+def formula_direction(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.having["formula_for"]:
+        source, said = field.source, field.source["formula_for"]
+        place = source.at("formula_for")
+        if "formula" not in source:
+            message = f"{quote(field.name)} has `formula_for` and no formula"
+            yield Fault(source, place, message, "add `formula` or remove it")
+            continue
+        gives = "raw" if formula.is_inverse(source["formula"]) else "physical"
+        if said != gives:
+            message = f"the formula of {quote(field.name)} is announced for the {said} value and gives the {gives} one"
+            help = "decide in the errata: hold `formula_for: null` if the formula is right, or hold the other formula"
+        else:
+            message = f"the formula of {quote(field.name)} does give the {said} value: nothing contradicts it"
+            help = "remove `formula_for`"
+        yield Fault(source, place, message, help)
+
+
+@rule("ICD063")
+def unit_has_number(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.having["unit"]:
+        if field.type in ("bool", "enum", "bytes"):
+            message = f"{quote(field.name)} is `{field.type}`, which has no unit"
+            yield Fault(field.source, field.source.at("unit"), message, "remove `unit`, or correct `type`")
+
+
+@rule("ICD064")
+def formula_computable(ctx: Context) -> Iterator[Fault]:
+    checked: dict[str, bool] = {}
+    for field, _, _ in ctx.having["formula"]:
+        scale = field.scale
+        if scale is None:
+            continue
+        if field.formula not in checked:
+            checked[field.formula] = exact.is_too_large(scale)
+        if checked[field.formula]:
+            p, c, q = (_shown(n) for n in exact.terms(scale))
+            message = f"the formula of {quote(field.name)} needs numbers that are too large: (raw*{p} + {c}) / {q}"
+            help = "factor and divisor go up to 2^32, the offset up to 2^63, over their common denominator"
+            yield Fault(field.source, field.source.at("formula"), message, help)
+
+
+def _shown(number: int) -> str:
+    if abs(number) < 1 << 64:
+        return f"{number:,}"
+    return f"{number:.2e}" if abs(number) < 1 << 1000 else f"(a number of {number.bit_length():,} bits)"

@@ -1,0 +1,121 @@
+"""Where fields lie: inside their message, apart from each other, as wide as their type allows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.icd.model import Field
+from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.wording import count, line_of, quote
+
+_INTEGER = (frozenset(range(1, 65)), "1 to 64 bits")
+WIDTHS = {
+    "uint": _INTEGER,
+    "int": _INTEGER,
+    "enum": _INTEGER,
+    "bool": (frozenset({1}), "1 bit"),
+    "float": (frozenset({32, 64}), "32 or 64 bits"),
+}
+
+
+@rule("ICD020")
+def past_the_end(ctx: Context) -> Iterator[Fault]:
+    for field, message, _ in ctx.fields:
+        end, room = field.at + field.bits, message.length * 8
+        if end > room:
+            source = field.source
+            place = source.at("bits" if field.at < room else "at")
+            has = f"{quote(message.name)} has {count(room, 'bit')} ({count(message.length, 'byte')})"
+            length = line_of(message.source.at("length"), place)
+            yield Fault(
+                source,
+                place,
+                f"{quote(field.name)} ends at bit {end:,}, but {has}",
+                f"correct `at` or `bits`, or the `length` in {length}",
+            )
+
+
+@rule("ICD021")
+def overlap(ctx: Context) -> Iterator[Fault]:
+    for message, _ in ctx.messages:
+        reached, widest = -1, -1
+        fields = message.fields
+        for index in sorted(range(len(fields)), key=lambda i: fields[i].at):
+            field = fields[index]
+            if field.at < reached:
+                yield _overlap(fields[min(index, widest)], fields[max(index, widest)])
+            if field.at + field.bits > reached:
+                reached, widest = field.at + field.bits, index
+
+
+def _overlap(first: Field, second: Field) -> Fault:
+    place = second.source.at("at")
+    start, end = max(first.at, second.at), min(first.at + first.bits, second.at + second.bits)
+    bits = f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}"
+    other = f"{quote(first.name)} ({line_of(first.source.place, place)})"
+    return Fault(second.source, place, f"{quote(second.name)} overlaps {other} in {bits}", "correct `at` or `bits`")
+
+
+@rule("ICD022")
+def width(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.fields:
+        if field.type == "bytes":
+            fits, words = field.bits % 8 == 0, "whole bytes: a multiple of 8 bits"
+        else:
+            allowed, words = WIDTHS[field.type]
+            fits = field.bits in allowed
+        if not fits:
+            article = "an" if field.type[0] in "aeio" else "a"
+            message = f"{article} `{field.type}` field takes {words}, not {field.bits:,}"
+            yield Fault(field.source, field.source.at("bits"), message, "correct `bits` or `type`")
+
+
+@rule("ICD023")
+def bytes_boundary(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.fields:
+        if field.type == "bytes" and field.at % 8:
+            yield Fault(
+                field.source,
+                field.source.at("at"),
+                f"{quote(field.name)} is `bytes`, but bit {field.at:,} is not the beginning of a byte",
+                f"bytes begin at bits {field.at // 8 * 8:,} and {field.at // 8 * 8 + 8:,}",
+            )
+
+
+@rule("ICD024", whole=True)
+def undescribed_end(ctx: Context) -> Iterator[Fault]:
+    for message, _ in ctx.messages:
+        covered = max((f.at + f.bits + 7 for f in message.fields), default=0) // 8
+        if covered < message.length:
+            left = message.length - covered
+            what = "the fields describe" if message.fields else "there are no fields:"
+            rest = f"{what} {covered:,}" if message.fields else f"{what} what stands in them is unknown"
+            yield Fault(
+                message.source,
+                message.source.at("length"),
+                f"{quote(message.name)} has {count(message.length, 'byte')}, {rest}",
+                f"describe the last {count(left, 'byte')} or correct `length`; "
+                "if the manual does say so, an erratum with `accept: [ICD024]` answers it",
+            )
+
+
+@rule("ICD025")
+def bitfields(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.having["bitfields"]:
+        if field.type not in ("uint", "int", "enum"):
+            message = f"`bitfields` divide a number, and {quote(field.name)} is `{field.type}`"
+            yield Fault(field.source, field.source.at("bitfields"), message, "make the parts fields of the message")
+            continue
+        taken: dict[int, str] = {}
+        for item in mappings(field.source["bitfields"]):
+            at, bits, name = item.get("at"), item.get("bits"), quote(item.get("name"))
+            if not (isinstance(at, int) and isinstance(bits, int)):
+                continue
+            if at + bits > field.bits:
+                message = f"{name} ends at bit {at + bits} of {quote(field.name)}, which has {count(field.bits, 'bit')}"
+                yield Fault(field.source, item.at("bits"), message, "`at` counts within the field")
+            clash = next((taken[bit] for bit in range(at, at + bits) if bit in taken), None)
+            if clash:
+                yield Fault(field.source, item.at("at"), f"{name} overlaps {clash}", "`at` counts within the field")
+            taken.update((bit, name) for bit in range(at, at + bits))

@@ -1,0 +1,119 @@
+"""Limits of physical values, and whether a field can keep them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from math import ceil, floor
+from typing import NamedTuple
+
+from icdgen.icd.model import Field
+from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.values import NUMBERS
+from icdgen.icd.rules.wording import quote
+
+LIMITS = ("min", "above", "max", "below")
+
+
+class Bounds(NamedTuple):
+    """An interval; None where it is open-ended, and whether each end itself is left out."""
+
+    low: Fraction | None
+    high: Fraction | None
+    above: bool
+    below: bool
+
+    @property
+    def is_empty(self) -> bool:
+        if self.low is None or self.high is None:
+            return False
+        return self.low > self.high or (self.low == self.high and (self.above or self.below))
+
+    def holds(self, value: Fraction) -> bool:
+        if self.low is not None and (value < self.low or (self.above and value == self.low)):
+            return False
+        return self.high is None or not (value > self.high or (self.below and value == self.high))
+
+
+def bounds(field: Field) -> Bounds:
+    """The narrowest interval that the limits of the field describe."""
+    limits = field.limits
+    lows = ((v, is_open) for v, is_open in ((limits.min, False), (limits.above, True)) if v is not None)
+    highs = ((v, is_closed) for v, is_closed in ((limits.max, True), (limits.below, False)) if v is not None)
+    low, above = max(lows, default=(None, False))
+    high, inside = min(highs, default=(None, True))
+    return Bounds(low, high, above, not inside)
+
+
+def _limited(ctx: Context) -> Iterator[Field]:
+    """Fields with limits, each once."""
+    seen = set()
+    for key in LIMITS:
+        for field, _, _ in ctx.having[key]:
+            if field.limits is not None and id(field) not in seen:
+                seen.add(id(field))
+                yield field
+
+
+def _shown(field: Field, *keys: str) -> str:
+    return " and ".join(f"`{key}: {field.source[key]}`" for key in keys if key in field.source)
+
+
+def _first(field: Field, *keys: str) -> str:
+    return next(key for key in keys if key in field.source)
+
+
+@rule("ICD033")
+def limits_in_order(ctx: Context) -> Iterator[Fault]:
+    for field in _limited(ctx):
+        source = field.source
+        if field.type in ("bool", "bytes"):
+            key = _first(field, *LIMITS)
+            yield Fault(source, source.at(key), f"`{key}` has no meaning for type `{field.type}`", f"remove `{key}`")
+        elif bounds(field).is_empty:
+            message = f"{_shown(field, *LIMITS)} leave no value for {quote(field.name)}"
+            yield Fault(source, source.at(_first(field, "max", "below")), message, "are they exchanged?")
+
+
+@rule("ICD034")
+def limits_in_range(ctx: Context) -> Iterator[Fault]:
+    for field in _limited(ctx):
+        if field.type not in NUMBERS or (field.formula and field.scale is None):
+            continue  # a float holds anything; a bad formula has its own finding
+        within, source = bounds(field), field.source
+        if within.is_empty:
+            continue
+        low, high = _physical(field, field.raw_min), _physical(field, field.raw_max)
+        if not _holds_raw(field, within):
+            key = _first(field, *(("min", "above") if within.low is not None else ("max", "below")))
+            message = f"no value of {quote(field.name)} is within {_shown(field, *LIMITS)}"
+            help = f"its values go from {_number(min(low, high))} to {_number(max(low, high))}"
+            yield Fault(source, source.at(key), message, help)
+        elif field.const is not None and field.raw_min <= field.const <= field.raw_max:
+            value = _physical(field, field.const)
+            if not within.holds(value):
+                message = f"`const: {field.const}` of {quote(field.name)} is outside {_shown(field, *LIMITS)}"
+                help = f"its physical value is {_number(value)}" if field.scale else "correct one of them"
+                yield Fault(source, source.at("const"), message, help)
+
+
+def _physical(field: Field, raw: int) -> Fraction:
+    return field.scale.physical(raw) if field.scale else Fraction(raw)
+
+
+def _holds_raw(field: Field, within: Bounds) -> bool:
+    """Whether any raw value of the field lies within the (physical) bounds."""
+    low, high, above, below = within
+    if field.scale:
+        low = None if low is None else field.scale.raw(low)
+        high = None if high is None else field.scale.raw(high)
+        if field.scale.factor < 0:
+            low, high, above, below = high, low, below, above
+    first = field.raw_min if low is None else max(field.raw_min, floor(low) + 1 if above else ceil(low))
+    last = field.raw_max if high is None else min(field.raw_max, ceil(high) - 1 if below else floor(high))
+    return first <= last
+
+
+def _number(value: Fraction) -> str:
+    return str(value.numerator) if value.denominator == 1 else f"{float(value):g}"

@@ -1,0 +1,78 @@
+"""Enumerations and units that fields name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.icd.model import Node
+from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.protocol import sections
+from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.wording import close_to, quote
+from icdgen.icd.tree import Map
+from icdgen.icd.units import SPELLINGS, STANDARD
+
+
+@rule("ICD040")
+def enum_known(ctx: Context) -> Iterator[Fault]:
+    for field, _, node in ctx.fields:
+        source = field.source
+        if field.type != "enum":
+            if "enum" in source:
+                message = f"{quote(field.name)} names an enumeration, but its type is `{field.type}`"
+                yield Fault(source, source.at("enum"), message, "write `type: enum` or remove `enum:`")
+        elif "enum" not in source:
+            message = f"{quote(field.name)} is of type `enum` and does not say which"
+            yield Fault(source, source.at("type"), message, "add `enum:`, the name of an enumeration")
+        elif field.enum is None and ctx.complete:
+            yield Fault(source, source.at("enum"), *_unknown_enum(ctx, node, source["enum"]))
+    if ctx.complete:
+        for node in ctx.icd.nodes:
+            known = {e.name for n in ctx.scope(node) for e in n.enums}
+            for owner, key in _protocol_enums(node):
+                if owner[key] not in known:
+                    yield Fault(owner, owner.at(key), *_unknown_enum(ctx, node, owner[key]))
+
+
+def _unknown_enum(ctx: Context, node: Node, name: str) -> tuple[str, str]:
+    elsewhere = next((n for n in ctx.icd.nodes for e in n.enums if e.name == name), None)
+    if elsewhere is not None:
+        help = f"`{elsewhere.name}` declares it: include {elsewhere.file}"
+    else:
+        close = close_to(name, (e.name for n in ctx.scope(node) for e in n.enums))
+        help = f"did you mean {quote(close)}?" if close else "declare it in `enums:`"
+    return f"there is no enumeration {quote(name)}", help
+
+
+@rule("ICD041", severity="warning", whole=True)
+def enum_used(ctx: Context) -> Iterator[Fault]:
+    used = {id(field.enum) for field, _, _ in ctx.having["enum"]}
+    named = set()
+    for node in ctx.icd.nodes:
+        for owner, key in _protocol_enums(node):
+            named |= {(id(n), owner[key]) for n in ctx.scope(node)}
+    for node in ctx.icd.nodes:
+        names = [e.name for e in node.enums]
+        for enum in node.enums:
+            if id(enum) not in used and (id(node), enum.name) not in named and names.count(enum.name) == 1:
+                place = enum.source.at("name")
+                yield Fault(enum.source, place, f"no field uses the enumeration {quote(enum.name)}", "use or remove it")
+
+
+def _protocol_enums(node: Node) -> Iterator[tuple[Map, str]]:
+    """Mappings in the protocol section that name an enumeration, with the key that does."""
+    for section in sections(node):
+        for key, value in section.items():
+            if (key == "enum" or key.endswith("_enum")) and isinstance(value, str):
+                yield section, key
+
+
+@rule("ICD042", whole=True)
+def unit_known(ctx: Context) -> Iterator[Fault]:
+    for field, _, node in ctx.having["unit"]:
+        if field.unit is None:
+            unit = field.source["unit"]
+            known = (u.symbol for n in ctx.scope(node) for u in n.units)
+            close = SPELLINGS.get(unit) or close_to(unit, [*known, *STANDARD])
+            help = f"did you mean {quote(close)}?" if close else "declare it in `units:`"
+            yield Fault(field.source, field.source.at("unit"), f"the unit {quote(unit)} is unknown", help)

@@ -1,0 +1,39 @@
+"""Turns of phrase that findings share."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+from icdgen.diagnostics import Place
+
+LONGEST = 60
+
+
+def quote(text: object) -> str:
+    """The text in back-ticks, cut where it is longer than a line can bear."""
+    words = str(text)
+    return f"`{words if len(words) <= LONGEST else words[: LONGEST - 3] + '...'}`"
+
+
+def close_to(wanted: str, known: Iterable[str]) -> str:
+    """The known word that was probably meant; empty if none comes near."""
+    known = list(known)
+    same = [k for k in known if k.casefold() == wanted.casefold()]
+    return next(iter(same or difflib.get_close_matches(wanted[:200], known, 1)), "")
+
+
+def line_of(other: Place, here: Place) -> str:
+    """``line 12``, or ``common.yaml:12`` where that is another file."""
+    return f"line {other.line}" if other.file == here.file else f"{other.file}:{other.line}"
+
+
+def count(number: int, noun: str) -> str:
+    """``1 bit``, ``2 bits``"""
+    return f"{number:,} {noun}" + ("" if number == 1 else "s")
+
+
+def listing(items: Iterable[str]) -> str:
+    """``a``, ``a and b``, ``a, b and c``"""
+    *most, last = items
+    return f"{', '.join(most)} and {last}" if most else last

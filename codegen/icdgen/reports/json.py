@@ -1,0 +1,34 @@
+"""Findings as one JSON object, the stable form for programs."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterable, Mapping
+
+from icdgen.diagnostics import Finding
+
+
+def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:
+    """``{"findings": [{"code", "severity", "message", ...}], "counts": {"error": 2, ...}}``"""
+    findings = list(findings)
+    counts = Counter(f.severity for f in findings)
+    document = {
+        "findings": [_one(f) for f in findings],
+        "counts": {severity: counts[severity] for severity in ("error", "warning", "note")},
+    }
+    return json.dumps(document, indent=2) + "\n"
+
+
+def _one(finding: Finding) -> dict:
+    place = finding.place
+    return {
+        "code": finding.code,
+        "severity": finding.severity,
+        "message": finding.message,
+        "help": finding.help,
+        "file": place.file,
+        "line": place.line,
+        "column": place.column,
+        "length": place.length,
+    }

@@ -1,0 +1,78 @@
+"""Findings for people: the place, what is wrong, the line with a caret under it, and what to do."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+
+from icdgen.diagnostics import Finding
+from icdgen.reports.excerpt import Lines, excerpt, printable
+
+LONGEST = 1000  # characters of a message; a hostile name may have thousands
+COLOURS = {
+    "error": "\x1b[1;31m",
+    "warning": "\x1b[1;33m",
+    "note": "\x1b[1;36m",
+    "place": "\x1b[1m",
+    "gutter": "\x1b[34m",
+}
+RESET = "\x1b[0m"
+
+
+def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:
+    """The findings in the order given, and a line that counts them."""
+    findings = list(findings)
+    paint = _painted if colour else _plain
+    lines: dict[str, Lines] = {}
+    parts = []
+    for finding in findings:
+        file = finding.place.file
+        if file not in lines:
+            lines[file] = Lines(texts.get(file, ""))
+        parts.append(_one(finding, lines[file], paint))
+    return "".join(part + "\n" for part in parts) + summary(findings) + "\n"
+
+
+def summary(findings: Iterable[Finding]) -> str:
+    """``3 errors, 1 warning in 2 files``"""
+    findings = list(findings)
+    counts = Counter(f.severity for f in findings)
+    if not counts:
+        return "no findings"
+    said = [_count(counts[s], s) for s in ("error", "warning", "note") if counts[s]]
+    return f"{', '.join(said)} in {_count(len({f.place.file for f in findings}), 'file')}"
+
+
+def _one(finding: Finding, lines: Lines, paint) -> str:
+    place = paint("place", printable(str(finding.place)))
+    kind = paint(finding.severity, f"{finding.severity}[{finding.code}]")
+    text = f"{place}: {kind}: {_words(finding.message)}\n"
+    found = excerpt(lines, finding.place)
+    indent = " " * len(str(finding.place.line))
+    if found is not None:
+        line, caret = found
+        number, bar = paint("gutter", str(finding.place.line)), paint("gutter", "|")
+        text += (
+            f"{indent} {bar}\n{number} {bar} {line}".rstrip()
+            + f"\n{indent} {bar} {paint(finding.severity, caret, True)}\n"
+        )
+    if finding.help:
+        text += f"{indent} {paint('gutter', '=')} {paint('place', 'help:')} {_words(finding.help)}\n"
+    return text
+
+
+def _words(text: str) -> str:
+    return printable(text if len(text) <= LONGEST else text[: LONGEST - 3] + "...")
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number:,} {noun}" + ("" if number == 1 else "s")
+
+
+def _plain(role: str, text: str, after_blanks: bool = False) -> str:
+    return text
+
+
+def _painted(role: str, text: str, after_blanks: bool = False) -> str:
+    blanks = len(text) - len(text.lstrip()) if after_blanks else 0
+    return f"{text[:blanks]}{COLOURS[role]}{text[blanks:]}{RESET}"

@@ -1,0 +1,120 @@
+"""Formulas are exact: nothing is ever rounded, and what is not linear is refused."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import gcd
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from icdgen.icd import exact, formula
+from icdgen.icd.formula import FormulaError, Scale, parse
+
+DECIMALS = st.builds(
+    lambda whole, digits: f"{whole}.{digits}" if digits else str(whole),
+    st.integers(0, 10**6),
+    st.text("0123456789", max_size=8),
+)
+
+
+def terms(depth: int) -> st.SearchStrategy[tuple[str, Fraction, Fraction]]:
+    """Linear expressions as text, with the slope and the constant that they stand for."""
+    number = DECIMALS.map(lambda text: (text, Fraction(0), Fraction(text)))
+    variable = st.just(("raw", Fraction(1), Fraction(0)))
+    if depth == 0:
+        return number | variable
+    inner = terms(depth - 1)
+    return st.one_of(
+        inner,
+        st.builds(lambda a, b: (f"({a[0]} + {b[0]})", a[1] + b[1], a[2] + b[2]), inner, inner),
+        st.builds(lambda a, b: (f"({a[0]}-{b[0]})", a[1] - b[1], a[2] - b[2]), inner, inner),
+        st.builds(lambda a: (f"-{a[0]}", -a[1], -a[2]), inner),
+        st.builds(lambda a, n: (f"{a[0]}*{n}", a[1] * Fraction(n), a[2] * Fraction(n)), inner, DECIMALS),
+        st.builds(lambda n, a: (f"{n} * {a[0]}", a[1] * Fraction(n), a[2] * Fraction(n)), DECIMALS, inner),
+        st.builds(
+            lambda a, n: (f"{a[0]}/{n}", a[1] / Fraction(n), a[2] / Fraction(n)), inner, DECIMALS.filter(Fraction)
+        ),
+    )
+
+
+LINEAR = terms(3).filter(lambda term: term[1] != 0 and len(term[0]) <= formula.MAX_LENGTH)
+SCALES = st.builds(
+    Scale,
+    st.fractions(max_denominator=10**12).filter(bool),
+    st.fractions(max_denominator=10**12),
+)
+
+
+@given(LINEAR, st.integers(-(2**63), 2**64 - 1))
+def test_the_value_is_that_of_the_text(term, raw):
+    text, slope, constant = term
+    assert parse(text).physical(raw) == slope * raw + constant
+
+
+@given(LINEAR, st.integers(-(2**63), 2**64 - 1))
+def test_a_formula_for_the_raw_value_is_solved_for_the_physical_one(term, raw):
+    text, slope, constant = term
+    scale = parse("raw = " + text.replace("raw", "value"))
+    assert slope * scale.physical(raw) + constant == raw
+
+
+@given(SCALES, st.integers(-(2**63), 2**64 - 1))
+def test_raw_to_physical_and_back_is_the_identity(scale, raw):
+    assert scale.raw(scale.physical(raw)) == raw
+
+
+@given(SCALES, st.integers(-(2**63), 2**64 - 1))
+def test_the_integer_form_is_the_same_number_in_lowest_terms(scale, raw):
+    p, c, q = exact.terms(scale)
+    assert Fraction(raw * p + c, q) == scale.physical(raw)
+    assert q > 0
+    assert gcd(p, c, q) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "factor", "offset"),
+    [
+        ("raw", 1, 0),
+        ("raw*0.01", Fraction(1, 100), 0),
+        ("raw/10000.0", Fraction(1, 10000), 0),
+        ("raw*0.48828125", Fraction(125, 256), 0),
+        ("(raw - 32)*5/9", Fraction(5, 9), Fraction(-160, 9)),
+        ("raw = value*1000.0", Fraction(1, 1000), 0),
+        ("raw = (value + 40)*2", Fraction(1, 2), -40),
+        ("value = raw*2", 2, 0),
+        ("1e-3*raw + 2.5E1", Fraction(1, 1000), 25),
+        ("--raw", 1, 0),
+        ("10-raw", -1, 10),
+    ],
+)
+def test_spellings(text, factor, offset):
+    assert parse(text) == Scale(Fraction(factor), Fraction(offset))
+
+
+@given(st.text("raw vlue=+-*/().0159e ", max_size=30))
+def test_any_other_text_is_refused_in_words(text):
+    try:
+        scale = parse(text)
+    except FormulaError as error:
+        assert str(error)
+    else:
+        assert scale.factor != 0
+
+
+@pytest.mark.parametrize(
+    ("factor", "offset", "large"),
+    [
+        (2**32, 2**63, False),
+        (2**32 + 1, 0, True),
+        (-(2**32), -(2**63), False),
+        (-(2**32) - 1, 0, True),
+        (Fraction(1, 2**32), 0, False),
+        (Fraction(1, 2**32 + 1), 0, True),
+        (1, 2**63 + 1, True),
+        (Fraction(1, 2**20), Fraction(1, 3**20), True),
+    ],
+)
+def test_what_is_too_large_to_compute_everywhere(factor, offset, large):
+    assert exact.is_too_large(Scale(Fraction(factor), Fraction(offset))) is large

@@ -1,0 +1,123 @@
+"""The report for people: what is wrong, the line, a caret under the right characters, and what to do."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from icdgen.diagnostics import Finding, Place
+from icdgen.reports import render
+from icdgen.reports.excerpt import WIDTH, Lines, excerpt, printable
+from tests.reports.findings import ERROR, NOTE, TEXTS, WARNING
+
+
+def shown(line: int, column: int, length: int, text: str | None = None) -> list[str]:
+    """Excerpt and caret of a place."""
+    texts = TEXTS if text is None else {"icd/demo.yaml": text}
+    found = Finding("ICD020", "wrong", Place("icd/demo.yaml", line, column, length))
+    gutter = len(str(line)) + 3
+    return [row[gutter:] for row in render("text", [found], texts).splitlines()[2:4]]
+
+
+def test_a_finding_as_it_is_printed():
+    assert render("text", [ERROR], TEXTS) == (
+        "icd/demo.yaml:2:7: error[ICD020]: `Voltage` is 100% wrong: it ends, alas\n"
+        "  |\n"
+        "2 | node: {name: demo}\n"
+        "  |       ^^^^^^^^^^^^\n"
+        "  = help: correct it\n"
+        "\n"
+        "1 error in 1 file\n"
+    )
+
+
+def test_the_last_line_counts():
+    assert render("text", [], TEXTS) == "no findings\n"
+    assert render("text", [ERROR, ERROR, WARNING, NOTE], TEXTS).endswith("\n2 errors, 1 warning, 1 note in 2 files\n")
+
+
+def test_without_the_text_there_is_no_excerpt():
+    assert render("text", [NOTE], {}).splitlines() == [
+        "a b/größe,1:2.yaml:7:3: note[ICD999]: no such rule",
+        "  = help: two\\x0alines",
+        "",
+        "1 note in 1 file",
+    ]
+
+
+def test_colour_changes_nothing_but_colour():
+    import re
+
+    coloured = render("text", [ERROR, WARNING, NOTE], TEXTS, colour=True)
+    assert "\x1b[1;31m^^^^^^^^^^^^\x1b[0m" in coloured
+    assert re.sub("\x1b\\[[0-9;]*m", "", coloured) == render("text", [ERROR, WARNING, NOTE], TEXTS)
+
+
+def test_tabs_become_blanks_in_the_line_and_before_the_caret():
+    assert shown(3, 2, 8) == ["    messages:", "    ^^^^^^^^"]
+
+
+def test_wide_characters_take_two_columns():
+    assert shown(4, 1, 2) == ["温度: {at: 0, bits: 温}", "^^^^"]
+    assert shown(4, 19, 1) == ["温度: {at: 0, bits: 温}", " " * 20 + "^^"]
+
+
+def test_combining_characters_take_no_column():
+    assert shown(1, 4, 1, "e\u0301\u0300x") == ["e\u0301\u0300x", " ^"]
+
+
+def test_of_a_line_of_ten_thousand_columns_a_window_is_shown():
+    line, caret = shown(5, 9_001, 5)
+    assert line.startswith("...x")
+    assert line.endswith("y...")
+    assert line[caret.index("^") :].startswith("errory")
+    assert caret.count("^") == 5
+    assert len(line) == WIDTH
+
+
+@pytest.mark.parametrize("column", [1, 2, 29, 30, 31, 99, 100, 101, 9_001, 10_004, 10_005, 10_006])
+def test_the_caret_is_under_its_character_wherever_the_window_is(column):
+    line, caret = shown(5, column, 1)
+    whole = TEXTS["icd/demo.yaml"].splitlines()[4]
+    wanted = whole[column - 1 : column + 4]
+    assert line[len(caret) - 1 :].startswith(wanted[: max(1, len(line) - len(caret) - 3)].strip())
+    assert len(line) <= WIDTH
+
+
+def test_a_place_past_the_end_of_its_line_or_file_does_no_harm():
+    assert shown(6, 50, 3) == ["last", "    ^"]
+    assert render("text", [Finding("ICD001", "wrong", Place("icd/demo.yaml", 99))], TEXTS).count("\n") == 3
+
+
+def test_lines_end_where_yaml_ends_them():
+    lines = Lines("\ufeffone\r\ntwo\rthree\x85four\u2028five\n")
+    assert [lines[n] for n in range(1, 8)] == ["one", "two", "three", "four", "five", "", None]
+
+
+def test_nothing_in_an_icd_can_act_upon_the_terminal():
+    hostile = "\x1b[2J\x07\u202e\u2066\r\n\x00\x9b"
+    finding = Finding("ICD020", hostile, Place(f"a{hostile}", 1, 1, 3), hostile)
+    text = render("text", [finding], {f"a{hostile}": hostile * 5})
+    assert not set(text) & set(hostile) - {"[", "2", "J", "\n"}
+    assert printable(hostile) == "\\x1b[2J\\x07\\u202e\\u2066\\x0d\\x0a\\x00\\x9b"
+
+
+def test_a_message_of_ten_thousand_characters_is_cut():
+    assert len(render("text", [ERROR._replace(message="x" * 10_000)], TEXTS)) < 1_500
+
+
+@given(
+    st.text(st.characters(exclude_categories=("Cs",)), max_size=300),
+    st.integers(1, 5),
+    st.integers(1, 400),
+    st.integers(1, 400),
+)
+def test_any_line_gives_an_excerpt_that_fits(text, line, column, length):
+    found = excerpt(Lines(text), Place("demo.yaml", line, column, length))
+    if found is not None:
+        row, caret = found
+        assert "\n" not in row
+        assert len(row) <= WIDTH + 3
+        assert caret.strip("^ ") == ""
+        assert 1 <= caret.count("^") <= WIDTH

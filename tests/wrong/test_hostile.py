@@ -1,0 +1,94 @@
+"""Files made to hurt end in a finding, quickly; those that are too large to keep are made here."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from icdgen import reports
+from icdgen.icd.load import load
+from icdgen.icd.source import MAX_BYTES
+
+HEAD = "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}\n"
+
+
+@pytest.fixture
+def check(tmp_path, monkeypatch):
+    """Writes a file, loads it, and gives ``(code, message)`` of each finding; all of it within two seconds."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(text: str, longest: int = 20_000) -> list[tuple[str, str]]:
+        path = tmp_path / "demo.yaml"
+        path.write_text(text, encoding="utf-8")
+        started = time.perf_counter()
+        loaded = load([path.relative_to(tmp_path)])
+        printed = reports.render("text", loaded.findings, loaded.texts)
+        assert time.perf_counter() - started < 2
+        assert len(printed) < longest
+        return [(f.code, f.message) for f in loaded.findings]
+
+    return run
+
+
+def test_a_scalar_of_ten_megabytes(check):
+    assert check(HEAD + "messages: " + "x" * 10_000_000) == [
+        ("ICD001", f"the file has {len(HEAD) + 10_000_010:,} bytes, more than the {MAX_BYTES:,} allowed")
+    ]
+
+
+def test_a_scalar_as_large_as_a_file_may_be(check):
+    (found,) = check(HEAD + 'vocabulary: ["' + "x" * (MAX_BYTES - 200) + '"]\n')
+    assert found == ("ICD001", f"a text of {MAX_BYTES - 200:,} characters")
+
+
+@pytest.mark.parametrize("opening", ["[", "{a: ", "- "])
+def test_nesting_ten_thousand_deep(check, opening):
+    (found,) = check("a:\n  " + opening * 10_000)
+    assert found == ("ICD001", "nested more than 40 deep")
+
+
+def test_ten_thousand_levels_of_indentation(check):
+    lines = "".join(" " * level + "a:\n" for level in range(1_000))
+    (found,) = check(lines)
+    assert found == ("ICD001", "nested more than 40 deep")
+
+
+def test_a_formula_of_nothing_but_parentheses(check):
+    field = "{at: 0, bits: 8, name: Angle, type: uint, formula: %s}"
+    message = HEAD + "messages: [{name: Status, id: 130, kind: telemetry, length: 1, fields: [" + field + "]}]\n"
+    (found,) = check(message % ("(" * 900 + "raw" + ")" * 90))
+    assert found[0] == "ICD060"
+    (found,) = check(message % ("(" * 199 + "5"))
+    assert found[0] == "ICD060"
+
+
+def test_names_of_ten_thousand_characters_are_cut_in_reports(check):
+    one = "  - {name: " + "X" * 9_000 + ", id: 1, kind: telecommand, length: 3}\n"
+    codes = {code for code, _ in check(HEAD + "messages:\n" + one + one)}
+    assert {"ICD024", "ICD050", "ICD055"} <= codes
+
+
+def test_a_name_that_is_one_vocabulary_word_thousands_of_times(check):
+    message = "messages: [{name: " + "Cube" * 2_000 + ", id: 1, kind: telecommand, length: 3}]\n"
+    codes = {code for code, _ in check(HEAD + "vocabulary: [Cube]\n" + message)}
+    assert codes == {"ICD024"}
+
+
+def test_an_empty_vocabulary_word(check):
+    message = "messages: [{name: Status, id: 1, kind: telecommand, length: 0}]\n"
+    codes = {code for code, _ in check(HEAD + "vocabulary: ['']\n" + message)}
+    assert codes == {"ICD010"}
+
+
+def test_thousands_of_fields_over_one_another(check):
+    fields = "".join(f"      - {{at: 0, bits: 8, name: F{n}, type: uint}}\n" for n in range(3_000))
+    head = "messages:\n  - name: Status\n    id: 130\n    kind: telemetry\n    length: 1\n    fields:\n"
+    found = check(HEAD + head + fields, longest=1_000_000)
+    assert {code for code, _ in found} == {"ICD021"}
+    assert len(found) == 2_999
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    (found,) = load([tmp_path / "nothing.yaml"]).findings
+    assert (found.code, found.message) == ("ICD001", "cannot read the file: No such file or directory")
