@@ -128,6 +128,22 @@ def test_single_templates_can_be_replaced(icdgen, demo, tmp_path):
     assert (tmp_path / "out" / "demo.h").is_file()
 
 
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("line\n{% if %}\n", "icdgen.h.j2:2: Expected an expression"),
+        ("line\n{{ nothing_of_that_name }}\n", "icdgen.h.j2:2: 'nothing_of_that_name' is undefined"),
+    ],
+)
+def test_a_bad_template_is_named_with_its_line(icdgen, demo, tmp_path, text, words):
+    own = tmp_path / "mine"
+    own.mkdir()
+    (own / "icdgen.h.j2").write_text(text)
+    result = icdgen("--lang", "c", "--out", "out", "--templates", "mine", demo)
+    assert result.status == 2 and words in result.err
+    assert not (tmp_path / "out").exists()
+
+
 PLUGIN = '''
 from pathlib import PurePosixPath
 

@@ -11,7 +11,7 @@ from pathlib import PurePosixPath
 from typing import NamedTuple, Protocol
 
 from icdgen.icd.model import Icd
-from icdgen.icd.source import Map
+from icdgen.icd.tree import Map
 
 GROUP = "icdgen.backends"
 
@@ -19,6 +19,9 @@ _BUILT_IN = {
     "c": "icdgen.backends.c:CBackend",
     "python": "icdgen.backends.python:PythonBackend",
     "rust": "icdgen.backends.rust:RustBackend",
+    "vectors": "icdgen.backends.vectors:VectorsBackend",
+    "c-selftest": "icdgen.backends.c_selftest:CSelftestBackend",
+    "c-testee": "icdgen.backends.c_testee:CTesteeBackend",
 }
 
 

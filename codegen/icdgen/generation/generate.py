@@ -10,7 +10,7 @@ from icdgen import backends, memo
 from icdgen.checked import load_checked
 from icdgen.errors import UserError
 from icdgen.generation import manifest, write
-from icdgen.icd.load import Loaded
+from icdgen.icd.loaded import Loaded
 from icdgen.render import Renderer
 
 

@@ -1,0 +1,105 @@
+"""Expressions that read a field from the bytes of a frame, and that put it there."""
+
+from __future__ import annotations
+
+from icdgen import layout
+from icdgen.backends.c.storage import Storage, cast, mask
+from icdgen.icd.model import Field, Node
+from icdgen.layout import Piece
+
+
+def is_word(field: Field) -> bool:
+    """Whether the field is a byte, or a word of 2, 4 or 8 whole bytes that is loaded and stored as one."""
+    return field.type != "bytes" and field.at % 8 == 0 and field.bits in (8, 16, 32, 64)
+
+
+def order(node: Node) -> str:
+    """How the support header's loads and stores name the node's byte order."""
+    return "le" if node.byte_order == "little" else "be"
+
+
+def read(field: Field, node: Node, storage: Storage) -> str:
+    """The raw value of an integer, enum or bool field (the bits of a float) as an expression over ``buffer``."""
+    if is_word(field):
+        value = _load(field, node)
+        return _signed_whole(value, field.bits) if storage.signed else value
+    pieces = layout.pieces(field, node)
+    if field.type == "bool":
+        return f"({_byte(pieces[0])} & {mask(pieces[0].mask, 8)}) != 0u"
+    wide = 64 if field.bits > 32 else 32
+    if len(pieces) == 1:
+        value = _low_bits(pieces[0])
+    else:
+        value = " | ".join(_shifted(piece, wide) for piece in sorted(pieces, key=lambda p: p.at))
+    if not storage.signed:
+        return value if len(pieces) == 1 or storage.bits == wide else cast(value, storage.bits)
+    if field.bits == storage.bits:
+        return _signed_whole(value if storage.bits == wide else cast(value, storage.bits), storage.bits)
+    extended = f"icdgen_extend{wide}({value}, {mask(1 << (field.bits - 1), wide if wide == 64 else storage.bits)})"
+    return extended if storage.bits == wide else cast(extended, storage.bits, True)
+
+
+def _load(field: Field, node: Node) -> str:
+    byte = field.at // 8
+    if field.bits == 8:
+        return f"buffer[{byte}]"
+    return f"icdgen_load_u{field.bits}{order(node)}(&buffer[{byte}])"
+
+
+def _signed_whole(value: str, bits: int) -> str:
+    return f"icdgen_i{bits}({value})"
+
+
+def _byte(piece: Piece) -> str:
+    return f"buffer[{piece.byte}]"
+
+
+def _low_bits(piece: Piece) -> str:
+    """The run of bits, moved down to bit 0."""
+    if piece.shift == 0:
+        return _byte(piece) if piece.bits == 8 else f"{_byte(piece)} & {mask(piece.mask, 8)}"
+    return f"({_byte(piece)} >> {piece.shift}) & {mask((1 << piece.bits) - 1, 8)}"
+
+
+def _shifted(piece: Piece, wide: int) -> str:
+    """The run of bits, moved to its place in the value."""
+    low = cast(_low_bits(piece), wide)
+    return f"({low} << {piece.at})" if piece.at else low
+
+
+def put(field: Field, piece: Piece, storage: Storage, name: str) -> str:
+    """What the field contributes to the byte of ``piece``: an `int`; what goes beyond the byte is cut off by the caller."""
+    value = f"icdgen_bits_f{field.bits}(&message->{name})" if field.type == "float" else f"message->{name}"
+    if piece.at:
+        value = f"{cast(value, storage.bits) if storage.signed else value} >> {piece.at}"
+    if storage.bits > 8 or storage.signed:
+        value = cast(value, 8)
+    elif piece.at:
+        value = f"({value})"
+    top = piece.at + piece.bits == field.bits and not storage.signed
+    if not top and piece.shift + piece.bits < 8:
+        value = f"({value} & 0x{(1 << piece.bits) - 1:02X})"
+    return f"({value} << {piece.shift})" if piece.shift else value
+
+
+def store(field: Field, node: Node, storage: Storage, name: str) -> str:
+    """The statement that stores a field for which `is_word` holds."""
+    byte = field.at // 8
+    value = f"icdgen_bits_f{field.bits}(&message->{name})" if field.type == "float" else f"message->{name}"
+    if storage.signed or storage.bits > field.bits:
+        value = cast(value, field.bits)
+    if field.bits == 8:
+        return f"buffer[{byte}] = {value};"
+    return f"icdgen_store_u{field.bits}{order(node)}(&buffer[{byte}], {value});"
+
+
+def excess(field: Field, storage: Storage, name: str) -> str | None:
+    """An expression that is 0 if and only if the raw value fits; None where every value of the type fits."""
+    if field.type in ("bool", "float", "bytes") or field.bits == storage.bits:
+        return None
+    wide = 64 if storage.bits == 64 else 32
+    if not storage.signed:
+        beyond = ((1 << storage.bits) - 1) ^ field.raw_max
+        return f"message->{name} & {mask(beyond, storage.bits)}"
+    beyond = ((1 << wide) - 1) ^ ((1 << field.bits) - 1)
+    return f"({cast(f'message->{name}', wide)} + {mask(1 << (field.bits - 1), wide)}) & {mask(beyond, wide)}"

@@ -1,0 +1,163 @@
+"""Accessors of physical values: in double precision, and in whole thousandths or millionths without floating point."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import lru_cache
+from typing import NamedTuple
+
+from icdgen.backends.c.storage import Storage, cast
+from icdgen.icd import exact
+from icdgen.icd.formula import Scale
+from icdgen.icd.model import Field
+
+RAW = "{raw}"  # stands for the member in the expressions made here
+INT32, INT64 = (1 << 31) - 1, (1 << 63) - 1
+
+
+class Whole(NamedTuple):
+    """Integer accessors: ``getter`` over ``{raw}``; ``setter``, the raw value of a ``value`` from ``least`` to ``most``."""
+
+    prefix: str  # "milli" | "micro"
+    type: str  # "int32_t" | "int64_t"
+    low: int  # of the getter, over all raw values that fit
+    high: int
+    getter: str
+    least: str | None  # None: every value of the type is in range
+    most: str | None
+    setter: str
+
+
+class Scaled(NamedTuple):
+    """How the physical value of a raw value is computed, and the other way round."""
+
+    getter: str  # a double, over ``{raw}``
+    setter: tuple[str, ...]  # a function, and its arguments after the raw value
+    whole: Whole | None
+
+
+def scaled(field: Field, storage: Storage) -> Scaled:
+    """The accessors of a field with a scale."""
+    return _scaled(field.scale, field.raw_min, field.raw_max, storage)
+
+
+@lru_cache(maxsize=2048)
+def _scaled(scale: Scale, low: int, high: int, storage: Storage) -> Scaled:
+    terms = exact.terms(scale)
+    return Scaled(
+        _double_getter(terms, low, high, storage),
+        _double_setter(terms, low, high, storage),
+        _whole(scale, low, high, storage),
+    )
+
+
+def _ends(low: int, high: int, factor: int, offset: int = 0) -> tuple[int, int]:
+    first, last = low * factor + offset, high * factor + offset
+    return (first, last) if first <= last else (last, first)
+
+
+def _within(most: int, *values: int) -> bool:
+    return all(-most <= value <= most for value in values)
+
+
+def _computable(storage: Storage, factor: int, offset: int, most: int) -> bool:
+    """Whether raw * factor + offset stays within bounds whatever the storage holds, so that nothing overflows."""
+    product, total = _ends(storage.min, storage.max, factor), _ends(storage.min, storage.max, factor, offset)
+    return _within(most, *product, *total, factor, offset)
+
+
+def int64(value: int) -> str:
+    """A literal of 64 bits."""
+    return "INT64_MIN" if value == -INT64 - 1 else f"INT64_C({value})" if abs(value) > INT32 else str(value)
+
+
+def _plus(value: str, offset: int, bits: int) -> str:
+    if offset == 0:
+        return value
+    return f"{value} {'+' if offset > 0 else '-'} INT{bits}_C({abs(offset)})"
+
+
+def _double_getter(terms: exact.Terms, low: int, high: int, storage: Storage) -> str:
+    factor, offset, divisor = terms
+    if _within(1 << 53, *_ends(low, high, factor, offset)) and _computable(storage, factor, offset, INT64):
+        raw = cast(RAW, 64, True) if storage.bits == 64 and not storage.signed else RAW
+        product = raw if factor == 1 else f"{raw} * INT64_C({factor})"
+        return f"icdgen_quotient({_plus(product, offset, 64)}, {int64(divisor)})"
+    kind = f"{'i' if storage.signed else 'u'}64"
+    if offset > INT64:  # has no literal, but its negative has
+        return f"0.0 - icdgen_physical_{kind}({RAW}, {int64(-factor)}, {int64(-offset)}, {int64(divisor)})"
+    return f"icdgen_physical_{kind}({RAW}, {int64(factor)}, {int64(offset)}, {int64(divisor)})"
+
+
+def _double_setter(terms: exact.Terms, low: int, high: int, storage: Storage) -> tuple[str, ...]:
+    factor, offset, divisor = terms
+    value = "value"
+    if offset > INT64:
+        value, factor, offset = "-value", -factor, -offset
+    limits = (_limit(limit, storage) for limit in ((low, high) if storage.signed else (high,)))
+    function = f"icdgen_set_{'i' if storage.signed else 'u'}{storage.bits}"
+    return function, value, int64(factor), int64(offset), int64(divisor), *limits
+
+
+def _limit(value: int, storage: Storage) -> str:
+    if value == storage.min and storage.signed:
+        return f"INT{storage.bits}_MIN"
+    if value == storage.max:
+        return f"{'' if storage.signed else 'U'}INT{storage.bits}_MAX"
+    if storage.signed:
+        return int64(value)
+    return f"UINT64_C({value})" if value >= 1 << 32 else f"{value}u"
+
+
+def _whole(scale: Scale, low: int, high: int, storage: Storage) -> Whole | None:
+    """In thousandths where every raw value gives a whole number of them, else in millionths, else None."""
+    for per, prefix in ((1000, "milli"), (1_000_000, "micro")):
+        factor, offset = scale.factor * per, scale.offset * per
+        if factor.denominator == offset.denominator == 1:
+            return _parts(prefix, int(factor), int(offset), low, high, storage)
+    return None
+
+
+def _parts(prefix: str, factor: int, offset: int, low: int, high: int, storage: Storage) -> Whole | None:
+    bits, most_of_type = (32, INT32) if _computable(storage, factor, offset, INT32) else (64, INT64)
+    least, most = _accepted(factor, offset, low, high)
+    least, most = max(least, -most_of_type - 1), min(most, most_of_type)
+    differences = least - offset, most - offset
+    if not (_computable(storage, factor, offset, most_of_type) and _within(INT64, *differences)):
+        return None
+    wide = 32 if bits == 32 and _within(INT32, *differences) else 64
+    low_value, high_value = _ends(low, high, factor, offset)
+    return Whole(
+        prefix=prefix,
+        type=f"int{bits}_t",
+        low=low_value,
+        high=high_value,
+        getter=_whole_getter(factor, offset, bits, storage),
+        least=None if least == -most_of_type - 1 else int64(least),
+        most=None if most == most_of_type else int64(most),
+        setter=_whole_setter(factor, offset, wide, storage),
+    )
+
+
+def _accepted(factor: int, offset: int, low: int, high: int) -> tuple[int, int]:
+    """The least and the most value whose nearest raw value (ties to even) lies from ``low`` to ``high``."""
+    half = Fraction(abs(factor), 2)
+    first, last = (low, high) if factor > 0 else (high, low)
+    bottom, top = first * factor + offset - half, last * factor + offset + half
+    least, most = -int(-bottom // 1), int(top // 1)
+    return least + (least == bottom and first % 2), most - (most == top and last % 2)
+
+
+def _whole_getter(factor: int, offset: int, bits: int, storage: Storage) -> str:
+    raw = cast(RAW, 64, True) if storage.bits == 64 and not storage.signed else RAW
+    return _plus(raw if factor == 1 else f"{raw} * INT{bits}_C({factor})", offset, bits)
+
+
+def _whole_setter(factor: int, offset: int, wide: int, storage: Storage) -> str:
+    if factor > 0:
+        value = _plus("value", -offset, wide)
+    else:
+        value = f"{'-' if offset < 0 else ''}INT{wide}_C({abs(offset)}) - value"
+    if abs(factor) != 1:
+        value = f"icdgen_nearest{wide}({value}, {int64(abs(factor))})"
+    return cast(value, storage.bits, storage.signed)

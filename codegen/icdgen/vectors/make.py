@@ -1,0 +1,122 @@
+"""A node's vectors as data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from icdgen import codec
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Field, Icd, Message, Node
+from icdgen.vectors import patterns
+from icdgen.vectors.settings import bits_of, settings
+
+FORMAT = 1
+
+Raw = dict[str, "int | bytes"]
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One frame: ``frame`` is decoded to ``raw``, which is encoded to ``encoded`` (reserved bits 0)."""
+
+    why: str
+    frame: bytes
+    raw: Raw
+    encoded: bytes
+    physical: dict[str, Fraction]  # of the scaled fields
+    doubles: dict[str, str]  # their correctly rounded doubles, as 16 hex digits
+
+
+@dataclass(frozen=True, slots=True)
+class MessageVectors:
+    """All that is demanded of the code of one message."""
+
+    message: Message
+    default: Raw  # a fresh message: 0, empty, or what ``const`` says
+    rows: tuple[Row, ...]
+    lengths: tuple[int, ...]  # frames of these lengths are refused
+    unfit: dict[str, list[int]]  # raw values that encoding refuses, by field
+    settings: dict[str, list[tuple[str, int | None]]]  # doubles set as physical values, by field
+
+
+@dataclass(frozen=True, slots=True)
+class NodeVectors:
+    """The vectors of what a node declares; those of included nodes are in files of their own."""
+
+    node: Node
+    ids: dict[str, dict[int, str]]  # direction -> id -> message; every other id is unknown
+    enums: tuple[tuple[Enum, int | None], ...]  # with a value that has no member, where 64 bits leave one
+    messages: tuple[MessageVectors, ...]
+
+
+def make(icd: Icd, node: Node) -> NodeVectors:
+    """All vectors of a node. Deterministic."""
+    return NodeVectors(
+        node=node,
+        ids=_ids(icd, node),
+        enums=tuple((enum, _no_member(enum)) for enum in node.enums),
+        messages=tuple(message_vectors(node, message) for message in node.messages),
+    )
+
+
+def message_vectors(node: Node, message: Message) -> MessageVectors:
+    """The vectors of one message that ``node`` declares."""
+    frames = dict.fromkeys(frame for _, frame in patterns.frames(message))
+    whys = {frame: why for why, frame in reversed(list(patterns.frames(message)))}
+    rows = [_row(node, message, whys[frame], frame) for frame in frames]
+    for number, raw in enumerate(patterns.raw_columns(message)):
+        frame = codec.encode(node, message, raw)
+        if frame not in frames:
+            frames[frame] = None
+            rows.append(_row(node, message, f"chosen values {number}", frame))
+    scaled = [field for field in message.fields if field.scale]
+    return MessageVectors(
+        message=message,
+        default={field.name: _default(field) for field in message.fields},
+        rows=tuple(rows),
+        lengths=tuple(sorted({0, max(message.length - 1, 0), message.length + 1} - {message.length})),
+        unfit={field.name: unfit for field in message.fields if (unfit := patterns.unfit(field))},
+        settings={field.name: settings(field) for field in scaled},
+    )
+
+
+def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
+    """What the reference codec makes of a frame."""
+    return _row(node, message, why, frame)
+
+
+def _row(node: Node, message: Message, why: str, frame: bytes) -> Row:
+    raw = codec.decode(node, message, frame)
+    physical, doubles = {}, {}
+    for field in message.fields:
+        if field.scale:
+            value = raw[field.name]
+            assert isinstance(value, int)
+            physical[field.name] = field.scale.physical(value)
+            doubles[field.name] = bits_of(codec.physical_double(field, value) or 0.0)
+    return Row(why, frame, raw, codec.encode(node, message, raw), physical, doubles)
+
+
+def _default(field: Field) -> int | bytes:
+    if field.type == "bytes":
+        return bytes(field.bits // 8)
+    return field.const or 0
+
+
+def _ids(icd: Icd, node: Node) -> dict[str, dict[int, str]]:
+    ids: dict[str, dict[int, str]] = {TELECOMMAND: {}, TELEMETRY: {}, CONFIGURATION: {}}
+    for message in icd.messages_of(node):
+        if message.telecommand_id is not None:
+            ids[TELECOMMAND][message.telecommand_id] = message.name
+        if message.telemetry_id is not None:
+            ids[TELEMETRY][message.telemetry_id] = message.name
+    for pick in ("get_id", "set_id"):  # a set_id wins over an equal get_id
+        for message in icd.messages_of(node):
+            if message.kind == CONFIGURATION:
+                ids[CONFIGURATION][getattr(message, pick)] = message.name
+    return {direction: dict(sorted(found.items())) for direction, found in ids.items()}
+
+
+def _no_member(enum: Enum) -> int | None:
+    values = {member.value for member in enum.members}
+    return next(value for value in range(len(values) + 1) if value not in values)

@@ -1,0 +1,99 @@
+"""Which frames and which values are worth a vector."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+
+from icdgen.icd.model import Field, Message
+
+RANDOM_FRAMES = 4
+
+# Every byte and every nibble differs from its neighbours; the first has the top bit clear, the second set.
+_DISTINCT = (0x123456789ABCDEF0, 0xFEDCBA9876543210)
+
+_FLOATS = {
+    32: (
+        0x00000000, 0x80000000, 0x3F800000, 0xC2F6E979, 0x7F800000, 0xFF800000, 0x7FC00000, 0x7F800001, 0xFFA55A3C,
+        0x00000001, 0x807FFFFF, 0x7F7FFFFF, 0x00800000, 0x12345678,
+    ),
+    64: (
+        0x0000000000000000, 0x8000000000000000, 0x3FF0000000000000, 0xC05EDD2F1A9FBE77, 0x7FF0000000000000,
+        0xFFF0000000000000, 0x7FF8000000000000, 0x7FF0000000000001, 0xFFF5A55A3CC31E87, 0x0000000000000001,
+        0x800FFFFFFFFFFFFF, 0x7FEFFFFFFFFFFFFF, 0x0010000000000000, 0x123456789ABCDEF0,
+    ),
+}  # fmt: skip
+
+
+def frames(message: Message) -> Iterator[tuple[str, bytes]]:
+    """Frames given as bytes, reserved bits and all: what they are for, and the bytes."""
+    length = message.length
+    yield "all zeros", bytes(length)
+    if not length:
+        return
+    yield "all ones", b"\xff" * length
+    for number in range((length * 8 - 1).bit_length()):
+        code = _position_code(length, number)
+        yield f"bit {number} of each bit's position", code
+        yield f"bit {number} of each bit's position, inverted", bytes(byte ^ 0xFF for byte in code)
+    for number in range(RANDOM_FRAMES):
+        yield f"random {number}", random_frame(message, f"vector {number}")
+
+
+def _position_code(length: int, number: int) -> bytes:
+    """Bit p is bit ``number`` of p: over all numbers, no two bits of the frame hold the same code."""
+    return bytes(sum(((byte * 8 + bit) >> number & 1) << bit for bit in range(8)) for byte in range(length))
+
+
+def random_frame(message: Message, seed: str) -> bytes:
+    """Bytes that look random and are the same on every run; ``seed`` tells frames of one message apart."""
+    return hashlib.shake_128(f"{message.node}/{message.name}/{seed}".encode()).digest(message.length)
+
+
+def values(field: Field) -> list[int | bytes]:
+    """The raw values of a field that are worth a frame each, without repetition."""
+    if field.type == "bytes":
+        size = field.bits // 8
+        ascending = bytes(number & 0xFF for number in range(1, size + 1))
+        return [ascending, bytes(size), bytes(byte ^ 0xFF for byte in ascending)]
+    if field.type == "float":
+        return list(_FLOATS[field.bits])
+    if field.type == "bool":
+        return [0, 1]
+    return list(dict.fromkeys(v for v in _numbers(field) if field.raw_min <= v <= field.raw_max))
+
+
+def _numbers(field: Field) -> Iterator[int]:
+    low, high = field.raw_min, field.raw_max
+    yield from (0, low, high)
+    if field.type == "int":
+        yield from (-1, 1, low + 1)
+    for pattern in _DISTINCT:
+        value = pattern >> (64 - field.bits)
+        yield value - (1 << field.bits) if value > high else value
+    yield high - 1
+    if field.type == "enum" and field.enum is not None:
+        members = [member.value for member in field.enum.members]
+        yield from members
+        yield next(value for value in range(len(members) + 1) if value not in members)
+    if field.const is not None:
+        yield from (field.const, field.const + 1)
+    for special in field.special:
+        yield special.value
+
+
+def raw_columns(message: Message) -> Iterator[dict[str, int | bytes]]:
+    """Raw values of all fields, so that each field takes each of its values; neighbours are out of step."""
+    columns = [values(field) for field in message.fields]
+    for row in range(max(map(len, columns), default=0)):
+        yield {
+            field.name: column[(row + index) % len(column)]
+            for index, (field, column) in enumerate(zip(message.fields, columns, strict=True))
+        }
+
+
+def unfit(field: Field) -> list[int]:
+    """Raw values that encoding must refuse."""
+    if field.type not in ("uint", "int", "enum"):
+        return []
+    return [field.raw_max + 1, field.raw_min - 1]

@@ -1,0 +1,76 @@
+"""Which doubles are worth setting as the physical value of a scaled field."""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Iterator
+from fractions import Fraction
+
+from icdgen import codec
+from icdgen.icd.model import Field
+
+# Refused by every field: NaN (quiet, signalling, negative), the infinities, and numbers beyond any raw value.
+NEVER = (
+    "7ff8000000000000", "7ff0000000000001", "fff8000000000123", "7ff0000000000000", "fff0000000000000",
+    "7fefffffffffffff", "ffefffffffffffff",
+)  # fmt: skip
+
+
+def bits_of(value: float) -> str:
+    """The 16 hex digits of a double's bits, most significant first."""
+    return struct.pack(">d", value).hex()
+
+
+def settings(field: Field) -> list[tuple[str, int | None]]:
+    """Doubles (as their bits) and the raw value that setting each must give; None where it must be refused."""
+    found: dict[str, int | None] = {}
+    for value in _doubles(field):
+        if math.isfinite(value):
+            found[bits_of(value)] = _raw(field, value)
+    return list(found.items())
+
+
+def _raw(field: Field, value: float) -> int | None:
+    try:
+        return codec.raw_from_physical(field, value)
+    except codec.CodecError:
+        return None
+
+
+def _doubles(field: Field) -> Iterator[float]:
+    low, high = field.raw_min, field.raw_max
+    yield from (-0.0, 5e-324)
+    for raw in (low - 1, high, (low + high) // 2, low + (high - low) // 3):
+        near = float(_above(field, raw))
+        yield from (math.nextafter(near, -math.inf), near, math.nextafter(near, math.inf))
+    yield from _ties(field)
+
+
+def _above(field: Field, raw: int) -> Fraction:
+    """The exact physical value half way between ``raw`` and the next raw value."""
+    assert field.scale is not None
+    return field.scale.physical(raw + Fraction(1, 2))
+
+
+def _ties(field: Field) -> Iterator[float]:
+    """Doubles that lie exactly half way between two raw values, an even and an odd one below, at both ends of the range."""
+    assert field.scale is not None
+    half, offset = field.scale.factor / 2, field.scale.offset
+    common = math.lcm(half.denominator, offset.denominator)
+    # half way above raw r is ((2 r + 1) a + b) / common; a double needs the odd part of the denominator to cancel
+    a, b = int(half * common), int(offset * common)
+    odd = common // (common & -common)
+    divisor = math.gcd(2 * a, odd)
+    if (a + b) % divisor:
+        return
+    step = odd // divisor
+    first = -(a + b) // divisor * pow(2 * a // divisor, -1, step) % step if step > 1 else 0
+    low, high = field.raw_min, field.raw_max
+    lowest = low + (first - low) % step
+    highest = high - (high - first) % step
+    middle = first
+    for raw in (lowest, lowest + step, middle, middle + step, highest - step, highest):
+        value = _above(field, raw)
+        if low - 1 <= raw <= high and Fraction(float(value)) == value:
+            yield float(value)

@@ -1,0 +1,118 @@
+"""Vectors -> JSON text: one vector a line, so that a change of the ICD shows as a change of few lines."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from fractions import Fraction
+
+from icdgen import __version__
+from icdgen.icd.model import Field
+from icdgen.vectors.make import FORMAT, MessageVectors, NodeVectors, Row
+from icdgen.vectors.settings import NEVER
+
+
+def text(vectors: NodeVectors) -> str:
+    """The file of one node."""
+    node = vectors.node
+    head = {
+        "icdgen_vectors": FORMAT,
+        "generator": f"icdgen {__version__}",
+        "node": node.name,
+        "digest": node.digest[:16],
+        "includes": list(node.includes),
+    }
+    if node.node_type is not None:
+        head["node_type"] = node.node_type
+    if node.interface_version is not None:
+        head["interface_version"] = node.interface_version
+    parts = [f"{_json(key)}: {_json(value)}" for key, value in head.items()]
+    parts.append(f'"never_set": {_json(list(NEVER))}')
+    parts.append('"ids": {\n' + ",\n".join(_ids(vectors)) + "\n}")
+    parts.append(_array("enums", list(_enums(vectors))))
+    parts.append(_array("messages", [_message(message) for message in vectors.messages]))
+    return "{\n" + ",\n".join(parts) + "\n}\n"
+
+
+def decimal(value: Fraction) -> str:
+    """The number as an exact decimal, ``-12.34``; as ``1/3`` where it has none."""
+    denominator, digits = value.denominator, 0
+    while denominator != 1 and 10**digits % value.denominator:
+        if digits > denominator.bit_length():
+            return f"{value.numerator}/{value.denominator}"
+        digits += 1
+    scaled = abs(value.numerator) * 10**digits // value.denominator
+    sign = "-" if value < 0 else ""
+    whole, part = divmod(scaled, 10**digits)
+    return f"{sign}{whole}.{part:0{digits}}" if digits else f"{sign}{whole}"
+
+
+def raw_json(field: Field, value: int | bytes) -> int | str:
+    """A raw value as it stands in the vectors and in the testee protocol (there, of a bool, true or false)."""
+    if isinstance(value, bytes):
+        return value.hex()
+    if field.type == "float":
+        return f"{value:0{field.bits // 4}x}"
+    return value
+
+
+def _ids(vectors: NodeVectors) -> Iterator[str]:
+    for direction, known in vectors.ids.items():
+        yield f"{_json(direction)}: {_json({str(id): name for id, name in known.items()})}"
+
+
+def _enums(vectors: NodeVectors) -> Iterator[str]:
+    for enum, unknown in vectors.enums:
+        members = [[member.value, member.name] for member in enum.members]
+        yield _json({"name": enum.name, "members": members, "unknown": unknown})
+
+
+def _message(vectors: MessageVectors) -> str:
+    message = vectors.message
+    head: dict[str, object] = {"name": message.name, "kind": message.kind}
+    ids = {"id": message.id, "set_id": message.set_id, "get_id": message.get_id}
+    head.update((key, id) for key, id in ids.items() if id is not None)
+    head["length"] = message.length
+    parts = [_json(head)[1:-1]]
+    parts.append(_array("fields", [_field(vectors, field) for field in message.fields]))
+    parts.append(f'"refused_lengths": {_json(list(vectors.lengths))}')
+    parts.append(_array("vectors", [_row(message.fields, row) for row in vectors.rows]))
+    return "{" + ",\n".join(parts) + "}"
+
+
+def _field(vectors: MessageVectors, field: Field) -> str:
+    row: dict[str, object] = {"name": field.name, "type": field.type, "bits": field.bits}
+    if field.enum is not None:
+        row["enum"] = field.enum.name
+    if field.scale is not None:
+        row["factor"], row["offset"] = str(field.scale.factor), str(field.scale.offset)
+    row["default"] = raw_json(field, vectors.default[field.name])
+    if field.special:
+        row["special"] = [special.value for special in field.special]
+    if field.limits:
+        limits = {key: getattr(field.limits, key) for key in ("min", "max", "above", "below")}
+        row["limits"] = {key: decimal(value) for key, value in limits.items() if value is not None}
+    if field.name in vectors.unfit:
+        row["unfit"] = vectors.unfit[field.name]
+    if field.name in vectors.settings:
+        row["set"] = [list(pair) for pair in vectors.settings[field.name]]
+    return _json(row)
+
+
+def _row(fields: tuple[Field, ...], row: Row) -> str:
+    line: dict[str, object] = {"why": row.why, "bytes": row.frame.hex()}
+    if row.encoded != row.frame:
+        line["encoded"] = row.encoded.hex()
+    line["raw"] = [raw_json(field, row.raw[field.name]) for field in fields]
+    if row.physical:
+        line["physical"] = [decimal(value) for value in row.physical.values()]
+        line["doubles"] = list(row.doubles.values())
+    return _json(line)
+
+
+def _array(name: str, items: list[str]) -> str:
+    return f'"{name}": [\n' + ",\n".join(items) + "\n]" if items else f'"{name}": []'
+
+
+def _json(value: object) -> str:
+    return json.dumps(value, separators=(",", ":"))
