@@ -113,7 +113,7 @@ def _message(icd: Icd, message: Message, width: int | None) -> str:
     node = icd.node(message.node)
     facts = [
         f"{describe(message)} (hex {'/'.join(f'{i:02X}' for i in message.ids)})",
-        f"{message.length} bytes",
+        f"{message.length} byte{'' if message.length == 1 else 's'}",
         f"table {message.table}" if message.table else "",
         f"page {message.page}" if message.page else "",
         message.group,

@@ -1,0 +1,146 @@
+"""``check``, ``rule``, ``fmt``, ``show``, ``decode`` and ``encode`` from the outside: output, exit status, errors."""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+
+import pytest
+
+from tests.conftest import DEMO
+
+
+class TestCheck:
+    def test_clean_is_0_and_findings_are_1(self, icdgen, demo):
+        assert icdgen("check", demo).status == 0
+        demo.write_text(DEMO.replace("bits: 4", "bits: 14"))
+        result = icdgen("check", demo)
+        assert result.status == 1
+        assert "error[ICD020]" in result.out and "^^" in result.out
+
+    def test_the_shipped_icds_are_clean(self, icdgen):
+        result = icdgen("check")
+        assert (result.status, result.out) == (0, "no findings\n")
+
+    @pytest.mark.parametrize("form", ["json", "sarif"])
+    def test_json_forms_are_json(self, icdgen, demo, form):
+        demo.write_text(DEMO.replace("length: 3", "length: 2"))
+        assert "ICD020" in json.dumps(json.loads(icdgen("check", "--format", form, demo).out))
+
+    def test_github_annotations_name_file_line_and_column(self, icdgen, demo):
+        demo.write_text(DEMO.replace("length: 3", "length: 2"))
+        out = icdgen("check", "--format", "github", demo).out
+        assert out.startswith("::error ") and "file=icd/demo.yaml,line=15," in out
+
+    def test_an_unknown_format_is_misuse(self, icdgen, demo):
+        assert icdgen("check", "--format", "xml", demo).status == 2
+
+
+class TestRule:
+    def test_a_rule_is_explained_with_examples(self, icdgen):
+        out = icdgen("rule", "ICD021").out
+        assert "ICD021" in out and "Wrong" in out and "Right" in out
+
+    def test_without_a_code_all_rules_are_listed(self, icdgen):
+        out = icdgen("rule").out
+        assert "ICD020" in out and "ICD080" in out
+
+    def test_an_unknown_code_is_misuse(self, icdgen):
+        result = icdgen("rule", "ICD999")
+        assert result.status == 2 and "there is no rule ICD999" in result.err
+
+
+class TestFmt:
+    def test_check_names_files_and_writes_nothing(self, icdgen, demo):
+        untidy = DEMO.replace("bits: 4,  name", "bits: 4, name")
+        demo.write_text(untidy)
+        result = icdgen("fmt", "--check", demo)
+        assert result.status == 1 and "demo.yaml" in result.out
+        assert demo.read_text() == untidy
+
+    def test_a_second_run_changes_nothing(self, icdgen, demo):
+        icdgen("fmt", demo)
+        assert icdgen("fmt", "--check", demo).status == 0
+
+    @pytest.mark.parametrize("data", [b"a: [", b"\xff\xfe", b""])
+    def test_what_is_not_yaml_is_a_finding_and_left_alone(self, icdgen, demo, data):
+        demo.write_bytes(data)
+        result = icdgen("fmt", demo)
+        assert result.status == 1 and "ICD001" in result.err
+        assert demo.read_bytes() == data
+
+    def test_a_folder_means_its_icds_and_overlays(self, icdgen, demo):
+        overlay = demo.parent / "errata" / "demo.yaml"
+        overlay.parent.mkdir()
+        overlay.write_text("node:   demo\nerrata: 1\nentries: []\n")
+        icdgen("fmt", demo.parent)
+        assert overlay.read_text().startswith("errata: 1\n")
+
+
+class TestDecode:
+    def test_raw_and_physical_values_with_units_and_names(self, icdgen, demo):
+        out = icdgen("decode", "demo", "146", "2efb 01", "--icd", demo).out
+        assert "-1234" in out and "-12.34" in out and "deg" in out and "Run" in out
+
+    def test_json_for_programs(self, icdgen, demo):
+        data = json.loads(icdgen("decode", "demo", "Estimated Roll", "0x2E,0xFB,0x0D", "--icd", demo, "--format", "json").out)
+        assert [field["raw"] for field in data["fields"]] == [-1234, 13]
+
+    def test_a_frame_from_a_file_hex_or_binary_and_from_standard_input(self, icdgen, demo, tmp_path, monkeypatch):
+        (tmp_path / "frame.hex").write_text("2e fb\n01\n")
+        (tmp_path / "frame.bin").write_bytes(b"\x2e\xfb\x01")
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"2efb01")))
+        outs = {icdgen("decode", "demo", "146", frame, "--icd", demo).out for frame in ("@frame.hex", "@frame.bin", "-")}
+        assert len(outs) == 1
+
+    @pytest.mark.parametrize(
+        ("arguments", "words"),
+        [
+            (["demo", "146", "2efb"], "has 3 bytes, 2 given"),
+            (["demo", "147", "2efb01"], "147"),
+            (["demi", "146", "2efb01"], "demi"),
+            (["demo", "146", "2exb01"], "x"),
+            (["demo", "146", "@nowhere"], "cannot read nowhere"),
+        ],
+    )
+    def test_a_mistake_is_said_in_words(self, icdgen, demo, arguments, words):
+        result = icdgen("decode", *arguments, "--icd", demo)
+        assert result.status == 2 and words in result.err and "Traceback" not in result.err
+
+
+class TestEncode:
+    def test_physical_values_by_short_names(self, icdgen, demo):
+        assert "2e fb" in icdgen("encode", "demo", "Set Roll", "roll=-12.34", "--icd", demo).out
+
+    def test_raw_values(self, icdgen, demo):
+        assert "2e fb" in icdgen("encode", "demo", "20", "Roll Angle=-1234", "--raw", "--icd", demo).out
+
+    def test_what_does_not_fit_is_refused(self, icdgen, demo):
+        result = icdgen("encode", "demo", "20", "roll=400", "--icd", demo)
+        assert result.status == 2 and "-327.68 to 327.67" in result.err
+
+
+class TestShow:
+    def test_json_has_the_stable_form(self, icdgen, demo):
+        data = json.loads(icdgen("show", "--format", "json", "--icd", demo).out)
+        message = data["nodes"][0]["messages"][0]
+        assert {k: message[k] for k in ("name", "kind", "id", "length")} == {
+            "name": "Estimated Roll", "kind": "telemetry", "id": 146, "length": 3,
+        }  # fmt: skip
+        assert message["fields"][0]["scale"] == "1/100"
+
+    def test_a_message_for_people(self, icdgen, demo):
+        assert "Roll Angle" in icdgen("show", "demo", "146", "--icd", demo).out
+
+
+def test_an_icd_with_findings_stops_every_command_with_1(icdgen, demo):
+    demo.write_text(DEMO.replace("length: 3", "length: 2"))
+    for command in (["show"], ["decode", "demo", "146", "00"], ["encode", "demo", "20"]):
+        result = icdgen(*command, "--icd", demo)
+        assert result.status == 1 and "ICD020" in result.err
+
+
+def test_help_and_version(icdgen):
+    assert "generate" in icdgen("--help").out
+    assert "icdgen, version" in icdgen("--version").out
