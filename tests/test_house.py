@@ -1,0 +1,64 @@
+"""What must stay true of the repository itself."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from tests.conftest import ROOT
+
+PYTHON = [name for name in ("codegen", "tests", "bench", "examples") if (ROOT / name).is_dir()]
+
+
+def test_generated_is_what_the_backends_make_of_the_shipped_icds():
+    command = [sys.executable, "-m", "icdgen", "--check", "--out", "generated"]
+    command += [word for name in ("c", "python", "rust", "vectors") for word in ("--lang", name)]
+    result = subprocess.run([*command, "icd"], cwd=ROOT, capture_output=True, text=True)
+    assert result.returncode == 0, f"run scripts/regenerate\n{result.stdout}{result.stderr}"
+
+
+def test_the_generator_knows_no_device():
+    names = set()
+    for path in (ROOT / "icd").glob("*.yaml"):
+        data = yaml.safe_load(path.read_text(encoding="utf-8"))
+        names |= {data["node"]["name"], *data.get("vocabulary", [])} - {"common", "bootloader"}
+    word = re.compile("|".join(sorted(names | {"CubeSpace"})), re.IGNORECASE)
+    files = [p for top in ("codegen", "templates") for p in (ROOT / top).rglob("*") if p.is_file() and p.suffix != ".pyc"]
+    assert [f"{p.relative_to(ROOT)}: {m.group()}" for p in files if (m := word.search(p.read_text("utf-8")))] == []
+
+
+@pytest.mark.parametrize("command", [["ruff", "check"], ["black", "--check", "--quiet"]])
+def test_our_python_is_linted_and_formatted(command):
+    result = subprocess.run([sys.executable, "-m", *command, *PYTHON], cwd=ROOT, capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout + result.stderr
+
+
+def test_no_file_of_ours_outgrows_a_head():
+    large = {
+        str(p.relative_to(ROOT)): n
+        for top in ("codegen", "templates")
+        for p in (ROOT / top).rglob("*")
+        if p.suffix in (".py", ".j2") and (n := len(p.read_text("utf-8").splitlines())) > 700
+    }
+    assert large == {}
+
+
+def test_a_wheel_holds_templates_icds_and_schemas_and_works_alone(tmp_path):
+    subprocess.run(
+        [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", str(tmp_path), str(ROOT)], check=True
+    )
+    site = tmp_path / "site"
+    wheel = next(tmp_path.glob("*.whl"))
+    subprocess.run([sys.executable, "-m", "zipfile", "-e", str(wheel), str(site)], check=True)
+    code = f"import sys; sys.path.insert(0, {str(site)!r}); import icdgen; assert {str(site)!r} in icdgen.__file__; "
+    code += "from icdgen.cli import main; main(sys.argv[1:])"
+    command = [sys.executable, "-c", code, "--lang", "c", "--out", "out"]
+    result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
+    assert (tmp_path / "out" / "cubeacp.h").is_file()
+    assert Path(site, "icdgen", "icd", "schema.json").is_file()
