@@ -1,0 +1,88 @@
+"""The shipped ICDs: complete, clean with their errata, and caught by the rules without them."""
+
+from __future__ import annotations
+
+import shutil
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from icdgen.icd.load import load
+from tests.conftest import ROOT
+
+ICDS = ROOT / "icd"
+
+# node: telecommands, telemetry, configuration messages, fields
+COUNTS = {
+    "common": (14, 15, 12, 86),
+    "bootloader": (5, 3, 0, 23),
+    "cubeacp": (16, 73, 26, 1119),
+    "cubemag": (0, 4, 0, 17),
+    "cubewheel": (0, 3, 0, 4),
+}
+
+
+@pytest.fixture(scope="module")
+def icd():
+    return load([ICDS]).icd
+
+
+@pytest.fixture
+def as_printed(tmp_path) -> Path:
+    """The vendor layer without the errata."""
+    for path in ICDS.glob("*.yaml"):
+        shutil.copy(path, tmp_path)
+    return tmp_path
+
+
+def test_nothing_is_missing(icd):
+    found = {}
+    for node in icd.nodes:
+        kinds = Counter(message.kind for message in node.messages)
+        fields = sum(len(message.fields) for message in node.messages)
+        found[node.name] = (kinds["telecommand"], kinds["telemetry"], kinds["configuration"], fields)
+    assert found == COUNTS
+    messages = [message for node in icd.nodes for message in node.messages]
+    fields = [field for message in messages for field in message.fields]
+    enums = [enum for node in icd.nodes for enum in node.enums]
+    assert (len(messages), sum(len(m.ids) for m in messages)) == (171, 209)
+    assert (len(fields), sum(f.scale is not None for f in fields), sum(f.unit is not None for f in fields)) == (1249, 346, 312)
+    assert (len(enums), sum(len(e.members) for e in enums)) == (37, 233)
+    assert len(icd.node("cubeacp").loggable) == 63
+    assert [(m.kind, m.id) for m in icd.node("cubewheel").missing] == [("telemetry", 186)]
+
+
+def test_every_erratum_says_where_why_and_how_sure(icd):
+    entries = [entry for node in icd.nodes for entry in node.errata]
+    assert len(entries) > 300
+    assert all(entry.title and entry.why and entry.evidence and entry.confidence for entry in entries)
+    assert len({entry.id for entry in entries}) == len(entries)
+
+
+@pytest.mark.parametrize(
+    ("code", "where", "count"),
+    [
+        ("ICD024", "SRAM Latchup counters", 5),  # frames longer than what the manual describes
+        ("ICD042", "meter", 27),  # units spelt in several ways
+        ("ICD045", "CubeSense1 Current Measurements", 2),  # loggable frames of 4 bytes in slots of 6
+        ("ICD047", "Moment of Inertia Matrix", 7),  # composite frames that differ from their parts
+        ("ICD054", "Not Used", 1),  # two members of one name
+        ("ICD062", "", 154),  # formulas announced the wrong way round
+        ("ICD090", "", 2),  # an I2C address printed in three forms that disagree
+    ],
+)
+def test_without_the_errata_the_rules_find_the_faults_that_a_machine_can_find(as_printed, code, where, count):
+    findings = [finding for finding in load([as_printed]).findings if finding.code == code]
+    assert len(findings) == count
+    assert any(where in finding.message for finding in findings)
+
+
+def test_a_manual_that_says_something_else_makes_the_erratum_stale(tmp_path):
+    shutil.copytree(ICDS, tmp_path / "icd")
+    path = tmp_path / "icd" / "common.yaml"
+    line = next(line for line in path.read_text().splitlines() if "name: Interface version" in line)
+    path.write_text(path.read_text().replace(line, line.replace("const: 1", "const: 2")))
+    (finding,) = [f for f in load([path]).findings if f.code == "ICD080"]
+    assert "const: 1" in finding.message and "const: 2" in finding.message
+    assert finding.place.file.endswith("errata/common.yaml")
