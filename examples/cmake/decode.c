@@ -47,9 +47,10 @@ int main(int count, char **arguments)
     switch (telemetry.id) {
     case CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID: {
         const cubeacp_estimated_attitude_angles_t *const angles = &telemetry.as.estimated_attitude_angles;
-        printf(": roll %g, pitch %g, yaw %g deg", cubeacp_estimated_attitude_angles_estimated_roll_angle_deg(angles),
-               cubeacp_estimated_attitude_angles_estimated_pitch_angle_deg(angles),
-               cubeacp_estimated_attitude_angles_estimated_yaw_angle_deg(angles));
+        printf(
+            ": roll %g, pitch %g, yaw %g deg", cubeacp_estimated_attitude_angles_estimated_roll_angle_deg(angles),
+            cubeacp_estimated_attitude_angles_estimated_pitch_angle_deg(angles),
+            cubeacp_estimated_attitude_angles_estimated_yaw_angle_deg(angles));
         break;
     }
     case CUBEACP_CURRENT_ADCS_STATE_ID: {

@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 
 from icdgen import __version__
 from icdgen.backends import Identifier
-from icdgen.backends.c import about, decoding, encoding, rows
+from icdgen.backends.c import about, accessors, constants, decoding, encoding, rows
 from icdgen.backends.c.declared import declared
 from icdgen.backends.c.dispatch import dispatchers
 from icdgen.backends.c.plan import Plan, Planner
@@ -61,17 +61,17 @@ def _message(plan: Plan, loggable: dict[int, int]) -> dict[str, object]:
         "name": plan.stem,
         "upper": plan.stem.upper(),
         "length": plan.message.length,
-        "ids": rows.ids(plan),
-        "constants": rows.constants(plan),
+        "ids": constants.ids(plan),
+        "constants": constants.constants(plan),
         "members": rows.declarations(plan),
-        "initial": rows.initial(plan),
+        "initial": constants.initial(plan),
         "decode": decoding.statements(plan),
         "misfits": rows.misfits(plan),
         "excess_type": rows.excess_type(plan),
         "encode": encoding.statements(plan),
-        "whole_accessors": rows.whole_accessors(plan),
-        "accessors": rows.accessors(plan),
-        **rows.leads(plan),
+        "whole_accessors": accessors.whole_accessors(plan),
+        "accessors": accessors.accessors(plan),
+        **rows.heads(plan),
     }
 
 
@@ -112,12 +112,6 @@ def _node(node: Node, plans: list[Plan], planner: Planner) -> dict[str, object]:
     headers = [f"{name}.h" for name in node.includes]
     headers += [f"{node.name}/enums.h"] if node.enums else []
     headers += [f"{node.name}/{plan.file}.h" for plan in plans]
-    upper = node.name.upper()
-    constants = []
-    if node.node_type is not None:
-        constants.append(rows.Constant("/** What the node answers when asked for its type. */", f"{upper}_NODE_TYPE", f"{node.node_type}u"))
-    if node.interface_version is not None:
-        constants.append(rows.Constant("/** Version of the interface. */", f"{upper}_INTERFACE_VERSION", f"{node.interface_version}u"))
     return {
         "version": __version__,
         "node": node.name,
@@ -125,8 +119,8 @@ def _node(node: Node, plans: list[Plan], planner: Planner) -> dict[str, object]:
         "about": comment(["@file", f"{plain(node.title)}: all messages.", about.sentence(node.summary)]),
         "includes": ["icdgen.h", *headers],
         "title": plain(node.title),
-        "upper": upper,
+        "upper": node.name.upper(),
         "digest": node.digest[:16],
-        "constants": constants,
+        "constants": constants.of_node(node),
         "dispatchers": dispatchers(node, planner),
     }

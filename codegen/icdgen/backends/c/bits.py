@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from icdgen import layout
+from icdgen.backends.c.statement import grouped, joined
 from icdgen.backends.c.storage import Storage, cast, mask
 from icdgen.icd.model import Field, Node
 from icdgen.layout import Piece
+
+BITS = "{bits}"  # stands for the bits of the field in the expressions made here
 
 
 def is_word(field: Field) -> bool:
@@ -18,24 +23,40 @@ def order(node: Node) -> str:
     return "le" if node.byte_order == "little" else "be"
 
 
-def read(field: Field, node: Node, storage: Storage) -> str:
-    """The raw value of an integer, enum or bool field (the bits of a float) as an expression over ``buffer``."""
+class Read(NamedTuple):
+    """The bits of a field, as terms to be or-ed together, and how the raw value is made of them."""
+
+    bits: int  # 32 or 64: the type in which they are joined
+    terms: tuple[str, ...]
+    value: str  # over ``{bits}``
+
+    @property
+    def whole(self) -> str:
+        """The raw value in one expression."""
+        return self.value.format(bits=joined(self.terms))
+
+
+def read(field: Field, node: Node, storage: Storage) -> Read:
+    """The raw value of an integer, enum or bool field (the bits of a float) over ``buffer``."""
     if is_word(field):
-        value = _load(field, node)
-        return _signed_whole(value, field.bits) if storage.signed else value
+        return Read(32, (_load(field, node),), f"icdgen_i{field.bits}({BITS})" if storage.signed else BITS)
     pieces = layout.pieces(field, node)
     if field.type == "bool":
-        return f"({_byte(pieces[0])} & {mask(pieces[0].mask, 8)}) != 0u"
+        return Read(32, (f"{_byte(pieces[0])} & {mask(pieces[0].mask, 8)}",), f"({BITS}) != 0u")
     wide = 64 if field.bits > 32 else 32
     if len(pieces) == 1:
-        value = _low_bits(pieces[0])
-    else:
-        value = " | ".join(_shifted(piece, wide) for piece in sorted(pieces, key=lambda p: p.at))
+        return Read(wide, (_low_bits(pieces[0]),), _from_bits(field, storage, wide, joined=False))
+    terms = tuple(_shifted(piece, wide) for piece in sorted(pieces, key=lambda p: p.at))
+    return Read(wide, terms, _from_bits(field, storage, wide, joined=True))
+
+
+def _from_bits(field: Field, storage: Storage, wide: int, joined: bool) -> str:
     if not storage.signed:
-        return value if len(pieces) == 1 or storage.bits == wide else cast(value, storage.bits)
+        return cast(BITS, storage.bits) if joined and storage.bits != wide else BITS
     if field.bits == storage.bits:
-        return _signed_whole(value if storage.bits == wide else cast(value, storage.bits), storage.bits)
-    extended = f"icdgen_extend{wide}({value}, {mask(1 << (field.bits - 1), wide if wide == 64 else storage.bits)})"
+        return f"icdgen_i{storage.bits}({cast(BITS, storage.bits) if storage.bits != wide else BITS})"
+    sign = mask(1 << (field.bits - 1), 64 if wide == 64 else storage.bits)
+    extended = f"icdgen_extend{wide}({BITS}, {sign})"
     return extended if storage.bits == wide else cast(extended, storage.bits, True)
 
 
@@ -44,10 +65,6 @@ def _load(field: Field, node: Node) -> str:
     if field.bits == 8:
         return f"buffer[{byte}]"
     return f"icdgen_load_u{field.bits}{order(node)}(&buffer[{byte}])"
-
-
-def _signed_whole(value: str, bits: int) -> str:
-    return f"icdgen_i{bits}({value})"
 
 
 def _byte(piece: Piece) -> str:
@@ -64,7 +81,7 @@ def _low_bits(piece: Piece) -> str:
 def _shifted(piece: Piece, wide: int) -> str:
     """The run of bits, moved to its place in the value."""
     low = cast(_low_bits(piece), wide)
-    return f"({low} << {piece.at})" if piece.at else low
+    return f"{low} << {piece.at}" if piece.at else low
 
 
 def put(field: Field, piece: Piece, storage: Storage, name: str) -> str:
@@ -74,12 +91,10 @@ def put(field: Field, piece: Piece, storage: Storage, name: str) -> str:
         value = f"{cast(value, storage.bits) if storage.signed else value} >> {piece.at}"
     if storage.bits > 8 or storage.signed:
         value = cast(value, 8)
-    elif piece.at:
-        value = f"({value})"
     top = piece.at + piece.bits == field.bits and not storage.signed
     if not top and piece.shift + piece.bits < 8:
-        value = f"({value} & 0x{(1 << piece.bits) - 1:02X})"
-    return f"({value} << {piece.shift})" if piece.shift else value
+        value = f"{grouped(value)} & 0x{(1 << piece.bits) - 1:02X}"
+    return f"{grouped(value)} << {piece.shift}" if piece.shift else value
 
 
 def store(field: Field, node: Node, storage: Storage, name: str) -> str:

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from icdgen.backends import Identifier
 from icdgen.backends.c import encoding, physical
+from icdgen.backends.c.constants import constant_name, limits, specials
 from icdgen.backends.c.names import accessor_unit
 from icdgen.backends.c.plan import Plan, Planner
 from icdgen.backends.c.prefixes import part_of_unit
-from icdgen.backends.c.rows import constant_name, limits, specials
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.icd.tree import Map
 

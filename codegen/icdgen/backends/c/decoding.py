@@ -5,7 +5,9 @@ from __future__ import annotations
 from icdgen.backends.c import bits
 from icdgen.backends.c.plan import EMPTY, Member, Plan
 from icdgen.backends.c.runs import Flags, Row, row_macro
-from icdgen.backends.c.statement import call, joined
+from icdgen.backends.c.statement import STEP, call
+from icdgen.backends.c.text import WIDTH
+from icdgen.icd.model import Field
 
 
 def statements(plan: Plan) -> list[str]:
@@ -34,7 +36,17 @@ def _one(member: Member, plan: Plan) -> str:
     field, name, storage = member
     if field.type == "bytes":
         return f"memcpy(message->{name}, &buffer[{field.at // 8}], {field.bits // 8}u);"
-    value = bits.read(field, plan.node, storage)
+    read = bits.read(field, plan.node, storage)
+    line = _assigned(field, name, read.whole)
+    if len(STEP) + len(line) <= WIDTH or len(read.terms) == 1:
+        return line
+    local = f"bits_{field.at}"
+    first, *others = read.terms
+    joined = [f"uint{read.bits}_t {local} = {first};", *(f"{local} |= {term};" for term in others)]
+    return f"\n{STEP}".join([*joined, _assigned(field, name, read.value.format(bits=local))])
+
+
+def _assigned(field: Field, name: str, value: str) -> str:
     if field.type == "float":
-        return f"icdgen_set_f{field.bits}(&message->{name}, {value});"
+        return call(f"icdgen_set_f{field.bits}", (f"&message->{name}", value))
     return f"message->{name} = {value};"

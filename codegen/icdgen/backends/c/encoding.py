@@ -6,7 +6,7 @@ from icdgen import layout
 from icdgen.backends.c import bits
 from icdgen.backends.c.plan import Plan
 from icdgen.backends.c.runs import Flags, Row, row_macro
-from icdgen.backends.c.statement import STEP, call, joined
+from icdgen.backends.c.statement import assigned_byte, call
 
 
 class _Frame:
@@ -15,6 +15,7 @@ class _Frame:
     def __init__(self) -> None:
         self.whole: dict[int, tuple[int, str]] = {}  # first byte -> number of bytes, statement
         self.parts: dict[int, list[tuple[int, str]]] = {}  # byte -> (shift, term)
+        self.joined: dict[int, list[str]] = {}  # byte -> statements that its terms need
 
     def add(self, byte: int, shift: int, term: str) -> None:
         self.parts.setdefault(byte, []).append((shift, term))
@@ -60,10 +61,10 @@ def _flags(frame: _Frame, flags: Flags, plan: Plan) -> None:
     macro, arguments = f"ICDGEN_JOIN_{flags.macro}", (plan.type, "message", *flags.arguments(plan.names))
     if flags.count == 8:
         frame.whole[flags.byte] = 1, call(f"buffer[{flags.byte}] = {macro}", arguments)
-    elif flags.shift:
-        frame.add(flags.byte, flags.shift, "(" + call(macro, arguments, depth=2, end=f" << {flags.shift})"))
-    else:
-        frame.add(flags.byte, 0, call(macro, arguments, depth=2, end=""))
+        return
+    name = f"flags_{flags.byte}" if flags.shift == 0 else f"flags_{flags.byte}_{flags.shift}"
+    frame.joined.setdefault(flags.byte, []).append(call(f"const int {name} = {macro}", arguments))
+    frame.add(flags.byte, flags.shift, f"{name} << {flags.shift}" if flags.shift else name)
 
 
 def _in_order(frame: _Frame, length: int) -> list[str]:
@@ -75,8 +76,8 @@ def _in_order(frame: _Frame, length: int) -> list[str]:
             found.append(statement)
             byte += size
         elif byte in frame.parts:
-            terms = [term for _, term in sorted(frame.parts[byte])]
-            found.append(joined(f"buffer[{byte}] = ICDGEN_U8(", terms, ");"))
+            found += frame.joined.get(byte, ())
+            found.append(assigned_byte(f"buffer[{byte}]", [term for _, term in sorted(frame.parts[byte])]))
             byte += 1
         else:
             end = byte + 1

@@ -92,10 +92,6 @@ def _row(fields: Sequence[Field], storages: Sequence[Storage], first: int) -> Ro
     return Row(first, count, fields[first].at // 8, bits) if count >= LONG_ENOUGH else None
 
 
-def is_row(run: Flags | Row) -> bool:
-    return isinstance(run, Row)
-
-
 def row_macro(node: Node) -> str:
     """The end of the macro's name."""
     return f"ROW_{order(node).upper()}"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import cache
 from typing import NamedTuple
 
-from icdgen.icd.model import Enum, Field, Icd
 from icdgen.backends.c.names import Names
+from icdgen.icd.model import Enum, Field, Icd
 
 
 class Storage(NamedTuple):

@@ -1,0 +1,145 @@
+"""Generates C from ICDs, compiles it, and builds the test programs around it."""
+
+from __future__ import annotations
+
+import subprocess
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import jinja2
+
+from icdgen.backends.c import CBackend, encoding
+from icdgen.backends.c.plan import Plan, Planner
+from icdgen.icd.load import load
+from icdgen.icd.model import Icd
+from icdgen.render import Renderer
+
+HERE = Path(__file__).parent
+SHIPPED = HERE.parent.parent / "icd"
+WARNINGS = (
+    "-Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wcast-align -Wundef -Wdouble-promotion "
+    "-Wfloat-equal -Werror"
+).split()
+LANGUAGES = [(compiler, standard) for compiler in ("gcc", "clang") for standard in ("c99", "c11", "c2x")]
+LANGUAGES += [("g++", "c++17"), ("clang++", "c++17")]
+SANITIZERS = "-fsanitize=address,undefined -fno-sanitize-recover=all".split()
+
+_TYPES = {"uint": "UNSIGNED", "enum": "UNSIGNED", "int": "SIGNED", "bool": "FLAG", "float": "BITS", "bytes": "BYTES"}
+
+
+@cache
+def shipped() -> Icd:
+    """The ICDs of the project, errata applied."""
+    return read(SHIPPED)
+
+
+def read(*paths: Path) -> Icd:
+    """ICDs without the rules: tests give odd ones."""
+    loaded = load(list(paths), check=False)
+    assert not loaded.findings, loaded.findings
+    return loaded.icd
+
+
+@cache
+def _renderer() -> Renderer:
+    return Renderer("c")
+
+
+def generate(icd: Icd, folder: Path) -> Path:
+    """Writes the headers; the folder."""
+    for path, text in CBackend().files(icd, _renderer()):
+        target = folder / path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(text, encoding="utf-8")
+    return folder
+
+
+def compile(source: Path, *options: str | Path, compiler: str = "gcc", output: str | Path = "/dev/null") -> Path:
+    """Compiles and links; fails with what the compiler says."""
+    command = [compiler, *map(str, options), str(source), "-o", str(output)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, f"{' '.join(command)}\n{done.stderr[:4000]}"
+    return Path(output)
+
+
+def compile_all(icd: Icd, folder: Path, compiler: str, standard: str, *options: str) -> None:
+    """Compiles a program that includes every header of the folder, under all warnings."""
+    cpp = standard.startswith("c++")
+    source = folder / ("all.cpp" if cpp else "all.c")
+    headers = [*(f"{node.name}.h" for node in icd.nodes), *sorted(p.relative_to(folder) for p in folder.rglob("*.h"))]
+    source.write_text("".join(f'#include "{header}"\n' for header in headers) + "int main(void) { return 0; }\n")
+    of_language = ("-Wold-style-cast",) if cpp else ("-Wstrict-prototypes", "-Wmissing-prototypes")
+    compile(source, f"-std={standard}", *WARNINGS, *of_language, *options, f"-I{folder}", compiler=compiler)
+
+
+def wrappers(icd: Icd) -> str:
+    """A source that calls every decode and encode function, each from a function of its own."""
+    text = "".join(f'#include "{node.name}.h"\n' for node in icd.nodes)
+    for stem in (target.plan.stem for target in targets(icd)):
+        for head, call in (
+            (f"d_{stem}({stem}_t *m, const uint8_t *b, size_t n)", f"{stem}_decode(m, b, n)"),
+            (f"e_{stem}(const {stem}_t *m, uint8_t *b, size_t n)", f"{stem}_encode(m, b, n)"),
+        ):
+            text += f"icd_status_t {head};\nicd_status_t {head} {{ return {call}; }}\n"
+    return text
+
+
+@dataclass(frozen=True)
+class Target:
+    """A message with where each raw value stands in the record that the test program reads and writes."""
+
+    plan: Plan
+    places: tuple[int, ...]
+    size: int
+
+
+def targets(icd: Icd) -> list[Target]:
+    """All messages, in the order of the test program."""
+    planner = Planner(icd)
+    found = []
+    for node in icd.nodes:
+        for message in node.messages:
+            places, at = [], 0
+            for field in message.fields:
+                places.append(at)
+                at += field.bits // 8 if field.type == "bytes" else 8
+            found.append(Target(planner.plan(message), tuple(places), at))
+    return found
+
+
+def frames_source(icd: Icd) -> str:
+    """The test program of ``frames.c.j2``."""
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), trim_blocks=True, lstrip_blocks=True)
+    return environment.get_template("frames.c.j2").render(
+        nodes=[node.name for node in icd.nodes], messages=[_row(target) for target in targets(icd)]
+    )
+
+
+def _row(target: Target) -> dict[str, object]:
+    plan = target.plan
+    collect, assign, fields = [], [], []
+    for (field, name, storage), place in zip(plan.members, target.places, strict=True):
+        fields.append({"at": field.at, "bits": field.bits, "type": _TYPES[field.type], "place": place})
+        if field.type == "bytes":
+            collect.append(f"memcpy(record + {place}, message.{name}, {field.bits // 8});")
+            assign.append(f"memcpy(message.{name}, record + {place}, {field.bits // 8});")
+        elif field.type == "float":
+            word = f"uint{field.bits}_t"
+            collect.append(f"{{ {word} b; memcpy(&b, &message.{name}, sizeof b); record_put(record, {place}, b); }}")
+            get = f"const {word} b = ({word})record_get(record, {place});"
+            assign.append(f"{{ {get} memcpy(&message.{name}, &b, sizeof b); }}")
+        else:
+            collect.append(f"record_put(record, {place}, (uint64_t)message.{name});")
+            assign.append(f"message.{name} = ({storage.type})record_get(record, {place});")
+    return {
+        "stem": plan.stem,
+        "big_endian": str(plan.node.byte_order == "big").lower(),
+        "msb_first": str(plan.node.bit_order == "msb0").lower(),
+        "length": plan.message.length,
+        "record": target.size,
+        "misfit": bool(encoding.excess(plan)),
+        "fields": fields,
+        "collect": collect,
+        "assign": assign,
+    }

@@ -1,0 +1,82 @@
+"""All headers compile without a warning: as C and C++, with gcc and clang, for hosts and microcontrollers."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from tests.c import harness
+
+CORTEX_M = shutil.which("arm-none-eabi-gcc")
+
+
+@pytest.fixture(scope="module")
+def headers(tmp_path_factory):
+    return harness.generate(harness.shipped(), tmp_path_factory.mktemp("headers"))
+
+
+@pytest.mark.parametrize(("compiler", "standard"), harness.LANGUAGES)
+def test_without_a_warning(headers, compiler, standard):
+    harness.compile_all(harness.shipped(), headers, compiler, standard)
+
+
+@pytest.mark.parametrize(("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")])
+@pytest.mark.parametrize("option", ["-DICDGEN_PORTABLE", "-O2", "-Os", "-fsanitize=address,undefined"])
+def test_without_a_warning_in_other_settings(headers, compiler, standard, option):
+    harness.compile_all(harness.shipped(), headers, compiler, standard, option, "-c")
+
+
+@pytest.mark.parametrize("option", ["-O1", "-O2", "-O3", "-Os"])
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_without_a_warning_of_the_optimiser_where_functions_are_used(headers, tmp_path, compiler, option):
+    source = tmp_path / "used.c"
+    source.write_text(harness.wrappers(harness.shipped()))
+    more = ("-Wstringop-overflow=4", "-Warray-bounds=2") if compiler == "gcc" else ()
+    options = ("-std=c99", option, "-D_FORTIFY_SOURCE=2", *harness.WARNINGS, *more, "-c", f"-I{headers}")
+    harness.compile(source, *options, compiler=compiler)
+
+
+def test_every_header_stands_alone(headers):
+    for header in sorted(headers.rglob("*.h")):
+        harness.compile(header, "-std=c99", "-fsyntax-only", "-Werror", "-xc")
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_no_double_needs_no_floating_point_registers(headers, compiler):
+    harness.compile_all(
+        harness.shipped(), headers, compiler, "c99", "-DICDGEN_NO_DOUBLE", "-mgeneral-regs-only", "-O2", "-c"
+    )
+
+
+def test_no_double_leaves_no_arithmetic_behind(headers, tmp_path):
+    source = tmp_path / "all.c"
+    source.write_text("".join(f'#include "{node.name}.h"\n' for node in harness.shipped().nodes))
+    done = subprocess.run(
+        ["gcc", "-std=c99", "-E", "-P", "-DICDGEN_NO_DOUBLE", f"-I{headers}", source], capture_output=True, text=True
+    )
+    without_members = re.sub(r"(?m)^ *(?:double|float) \w+;$", "", done.stdout)
+    assert without_members != done.stdout
+    helpers = re.findall(r"(?:double|float) \*value", done.stdout)
+    assert len(helpers) == len(re.findall(r"\b(?:double|float)\b", without_members)) == 4
+
+
+@pytest.mark.skipif(not CORTEX_M, reason="needs gcc-arm-none-eabi")
+@pytest.mark.parametrize("cpu", ["cortex-m0", "cortex-m4", "cortex-m7"])
+@pytest.mark.parametrize("option", ["-DICDGEN_NO_DOUBLE", "-UICDGEN_NO_DOUBLE"])
+def test_cortex_m(headers, cpu, option):
+    cpu_options = (f"-mcpu={cpu}", "-mthumb", "-Os", "-c", "-ffreestanding", option)
+    harness.compile_all(harness.shipped(), headers, "arm-none-eabi-gcc", "c99", *cpu_options)
+
+
+@pytest.mark.skipif(not CORTEX_M, reason="needs gcc-arm-none-eabi")
+def test_cortex_m4_needs_at_most_12_bytes_of_code_a_field(headers, tmp_path):
+    source = tmp_path / "size.c"
+    source.write_text(harness.wrappers(harness.shipped()))
+    fields = sum(len(target.plan.members) for target in harness.targets(harness.shipped()))
+    options = ("-mcpu=cortex-m4", "-mthumb", "-Os", "-std=c99", "-c", f"-I{headers}")
+    harness.compile(source, *options, compiler="arm-none-eabi-gcc", output=tmp_path / "size.o")
+    text = subprocess.run(["arm-none-eabi-size", tmp_path / "size.o"], capture_output=True, text=True).stdout
+    assert int(text.splitlines()[1].split()[0]) <= 12 * fields

@@ -1,0 +1,142 @@
+"""What the files look like, which of them change, and that all names they declare are known to the name rules."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from icdgen.backends.c import CBackend
+from icdgen.backends.c.text import comment, literal, plain
+from icdgen.icd.model import Icd
+from tests.c import harness, odd
+
+
+def files(icd: Icd) -> dict[str, str]:
+    return {str(path): text for path, text in CBackend().files(icd, harness._renderer())}
+
+
+@pytest.fixture(scope="module")
+def shipped() -> dict[str, str]:
+    return files(harness.shipped())
+
+
+def without_a_field(icd: Icd, node_name: str, message_name: str, field_name: str) -> Icd:
+    def changed(node):
+        messages = tuple(
+            dataclasses.replace(m, fields=tuple(f for f in m.fields if f.name != field_name))
+            if m.name == message_name
+            else m
+            for m in node.messages
+        )
+        return dataclasses.replace(node, messages=messages, digest="0" * 64)
+
+    return Icd(tuple(changed(n) if n.name == node_name else n for n in icd.nodes))
+
+
+def test_a_message_or_an_enumeration_is_in_a_file_of_its_node(shipped):
+    icd = harness.shipped()
+    messages = sum(len(node.messages) for node in icd.nodes)
+    enums = sum(bool(node.enums) for node in icd.nodes)
+    assert len(shipped) == 1 + len(icd.nodes) + enums + messages
+    assert "cubeacp/estimated_attitude_angles.h" in shipped and "cubeacp.h" in shipped and "icdgen.h" in shipped
+
+
+def test_deleting_a_field_changes_only_its_message_and_the_digest_of_its_node(shipped):
+    icd = without_a_field(harness.shipped(), "cubeacp", "Estimated Attitude Angles", "Estimated Yaw Angle")
+    changed = {path for path, text in files(icd).items() if shipped[path] != text}
+    assert changed == {"cubeacp/estimated_attitude_angles.h", "cubeacp.h"}
+    digest = re.compile(r'_DIGEST "[0-9a-f]{16}"')
+    assert digest.sub("", files(icd)["cubeacp.h"]) == digest.sub("", shipped["cubeacp.h"])
+
+
+def test_output_is_the_same_every_time_and_says_nothing_of_the_machine(shipped):
+    assert files(harness.shipped()) == shipped
+    for path, text in shipped.items():
+        assert text.endswith("\n") and not text.endswith("\n\n"), path
+        assert not re.search(r"[ \t]+$|\t|\r|\n\n\n", text, re.M), path
+        assert "/work/" not in text and "/home/" not in text and "Copyright" not in text and "SPDX" not in text
+
+
+def test_lines_keep_to_the_width_where_names_allow_it(shipped):
+    for path, text in shipped.items():
+        for line in text.splitlines():
+            assert len(line) <= 120 or re.fullmatch(r"\w+\(|#define \w+ \S+", line), f"{path}: {line}"
+
+
+@pytest.mark.skipif(not shutil.which("clang-format"), reason="needs clang-format")
+def test_headers_are_as_clang_format_lays_them_out(shipped, tmp_path):
+    for path, text in shipped.items():
+        target = tmp_path / path
+        target.parent.mkdir(exist_ok=True)
+        target.write_text(text, encoding="utf-8")
+    style = f"--style=file:{harness.HERE.parent.parent / '.clang-format'}"
+    done = subprocess.run(
+        ["clang-format", style, "--dry-run", "-Werror", *map(str, sorted(tmp_path.rglob("*.h")))],
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr[:4000]
+
+
+@pytest.mark.parametrize("odd_ones", [False, True], ids=["shipped", "odd"])
+def test_every_declared_name_is_known_to_the_name_rules(tmp_path, odd_ones):
+    icd = harness.read(*odd.write(tmp_path)) if odd_ones else harness.shipped()
+    known = {one.text for one in CBackend().identifiers(icd)}
+    undeclared = []
+    for path, text in files(icd).items():
+        if path == "icdgen.h":
+            continue
+        code = re.sub(r'/\*.*?\*/|"(?:\\.|[^"\\])*"', "", text, flags=re.S)
+        names = re.findall(r"^#define (\w+)", code, re.M)
+        names += re.findall(r"^static inline [\w \n*]*?(\w+)\(", code, re.M)
+        names += re.findall(r"^(?:typedef \w+|\}) (\w+);", code, re.M)
+        names += re.findall(r"^    (\w+) = \w+,?$", code, re.M)
+        for body in re.findall(r"^typedef struct \{(.*?)^\}", code, re.M | re.S):
+            names += [n for n in re.findall(r"(\w+)(?:\[\d+\])?;", body) if n not in ("id", "as", "empty")]
+        undeclared += [f"{path}: {name}" for name in names if name not in known]
+        assert path in known
+    assert not undeclared
+
+
+def test_no_two_names_of_the_shipped_icds_clash():
+    seen = {}
+    for one in CBackend().identifiers(harness.shipped()):
+        assert (one.scope, one.text) not in seen, (one, seen[one.scope, one.text])
+        seen[one.scope, one.text] = one
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("a */ b", "a * / b"),
+        ("a /* b", "a / * b"),
+        ("/*/", "/ * /"),
+        ("what??/", "what? ?/"),
+        ("a\nb\t c", "a b c"),
+        ("a\x07b\u202ec", "a<U+0007>b<U+202E>c"),
+        ("Größe °", "Größe °"),
+    ],
+)
+def test_text_in_comments_is_harmless(text, expected):
+    assert plain(text) == expected
+
+
+def test_long_comments_are_wrapped():
+    block = comment(["word " * 60], "    ")
+    assert block.startswith("    /**\n     * word") and block.endswith("\n     */")
+    assert max(map(len, block.splitlines())) <= 120
+
+
+@pytest.mark.parametrize("text", [*odd.HOSTILE, "", "?", "???", '"', "\\", "\\\\n", "\0001", "\u20acuro"])
+def test_string_literals_hold_the_text(tmp_path, text):
+    source = tmp_path / "text.c"
+    source.write_text(
+        f"#include <stdio.h>\nint main(void)\n{{\n    static const char text[] = {literal(text)};\n"
+        f"    fwrite(text, 1, sizeof text - 1, stdout);\n    return 0;\n}}\n"
+    )
+    program = harness.compile(source, "-std=c99", "-Wall", "-Werror", "-Wno-trigraphs", output=tmp_path / "text")
+    assert subprocess.run([program], capture_output=True).stdout.decode() == text

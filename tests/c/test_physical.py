@@ -1,0 +1,177 @@
+"""Physical values are the correctly rounded doubles of the exact ones, and setting them finds the nearest raw value.
+
+Exhaustive for fields of up to 16 bits; extremes and random values for wider ones. The reference codec judges.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+import struct
+import subprocess
+from array import array
+from collections import defaultdict
+from fractions import Fraction
+from math import lcm
+from pathlib import Path
+
+import jinja2
+import pytest
+
+from icdgen import codec
+from icdgen.backends.c import physical
+from icdgen.backends.c.names import accessor_unit
+from icdgen.backends.c.plan import Member, Plan, Planner
+from icdgen.backends.c.prefixes import part_of_unit
+from icdgen.icd.model import Field, Icd
+from tests.c import harness, odd
+
+REFUSED = 0x5245465553454421
+
+
+def test_every_scaled_field_of_the_shipped_icds(tmp_path):
+    compared = compare(harness.shipped(), tmp_path)
+    assert compared > 30_000_000
+
+
+@pytest.mark.parametrize("option", ["-O2", "-ffast-math", "-mfpmath=387"])
+def test_odd_scales_with_any_arithmetic_of_the_compiler(tmp_path, option):
+    folder = tmp_path / "icd"
+    folder.mkdir()
+    assert compare(harness.read(*odd.write(folder)), tmp_path, option, wide=300) > 100_000
+
+
+def compare(icd: Icd, folder: Path, *options: str, wide: int = 4000) -> int:
+    """The number of comparisons; fails on any difference."""
+    scaled = [
+        (plan, member)
+        for plan in (Planner(icd).plan(m) for node in icd.nodes for m in node.messages)
+        for member in plan.members
+        if member.field.scale
+    ]
+    harness.generate(icd, folder)
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(harness.HERE), trim_blocks=True, lstrip_blocks=True)
+    template = environment.get_template("physical.c.j2")
+    nodes = [node.name for node in icd.nodes]
+    source = folder / "physical.c"
+    source.write_text(template.render(nodes=nodes, fields=[row(plan, member) for plan, member in scaled]))
+    program = harness.compile(
+        source, "-std=c99", "-O2", *options, "-fsanitize=undefined", "-fno-sanitize-recover=all",
+        f"-I{folder}", output=folder / "physical",
+    )  # fmt: skip
+    alike = defaultdict(list)
+    for number, (_, (field, _, storage)) in enumerate(scaled):
+        alike[field.scale, field.bits, field.signed, storage.bits].append(number)
+    with subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        for numbers in alike.values():
+            field = scaled[numbers[0]][1].field
+            process.stdin.write(struct.pack(f"<H{len(numbers)}H", len(numbers), *numbers))
+            for table in tables(field, wide):
+                process.stdin.write(table)
+        out = process.communicate()[0].decode()
+    assert process.returncode == 0, out
+    return int(out.split()[0])
+
+
+def row(plan: Plan, member: Member) -> dict[str, object]:
+    field, name, storage = member
+    whole = physical.scaled(field, storage).whole
+    end = f"{name}_{accessor_unit(field)}"
+    found = {
+        "type": plan.type,
+        "name": name,
+        "storage": storage.type,
+        "exact": str(_survives(field)).lower(),
+        "getter": f"{plan.stem}_{end}",
+        "setter": f"{plan.stem}_set_{end}",
+        "get_whole": None,
+    }
+    if whole:
+        suffix, _ = part_of_unit(field, whole.prefix)
+        found["get_whole"] = f"{plan.stem}_{name}_{suffix}"
+        found["set_whole"] = f"{plan.stem}_set_{name}_{suffix}"
+        found["whole"] = whole.type
+    return found
+
+
+def _survives(field: Field) -> bool:
+    """Whether doubles tell all physical values apart, so that the way back leads to the same raw value."""
+    ends = (field.scale.physical(raw) / field.scale.factor for raw in (field.raw_min, field.raw_max))
+    return max(map(abs, ends)) < 2**52
+
+
+def tables(field: Field, wide: int):
+    """What the test program compares with, as bytes; ``wide`` values of a field of more than 16 bits."""
+    source = random.Random(f"{field.scale}{field.bits}")
+    raws = raw_values(field, wide, source)
+    q = lcm(field.scale.factor.denominator, field.scale.offset.denominator)
+    p, c = int(field.scale.factor * q), int(field.scale.offset * q)
+    doubles = array("d", [(raw * p + c) / q for raw in raws])
+    for raw in source.sample(raws, min(300, len(raws))):
+        assert codec.physical_double(field, raw) == (raw * p + c) / q
+    yield table(words(raws), doubles.tobytes())
+    values = physical_values(field, wide // 10, source)
+    yield table(array("d", values).tobytes(), words([set_by_codec(field, value) for value in values]))
+    per = next((per for per in (1000, 10**6) if (per * p) % q == (per * c) % q == 0), None)
+    whole = [(raw * p + c) * per // q for raw in raws] if per else []
+    if not per or not all(-(2**63) <= value < 2**63 for value in whole):
+        yield table(b"", b"")
+        yield table(b"", b"")
+        return
+    yield table(words(raws), words(whole))
+    small = all(-(2**31) <= field.scale.physical(end) * per < 2**31 for end in storage_ends(field))
+    low, high = (-(2**31), 2**31 - 1) if small else (-(2**63), 2**63 - 1)
+    numbers = [value for value in whole_values(field, per, wide // 10, source) if low <= value <= high]
+    yield table(words(numbers), words([set_by_codec(field, Fraction(value, per)) for value in numbers]))
+
+
+def storage_ends(field: Field) -> tuple[int, int]:
+    bits = next(b for b in (8, 16, 32, 64) if field.bits <= b)
+    return (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if field.signed else (0, (1 << bits) - 1)
+
+
+def table(keys: bytes, values: bytes) -> bytes:
+    return struct.pack("<I", len(keys) // 8) + keys + values
+
+
+def words(values: list[int]) -> bytes:
+    return array("Q", [value & 0xFFFFFFFFFFFFFFFF for value in values]).tobytes()
+
+
+def set_by_codec(field: Field, value: float | Fraction) -> int:
+    try:
+        return codec.raw_from_physical(field, value)
+    except codec.CodecError:
+        return REFUSED
+
+
+def raw_values(field: Field, wide: int, source: random.Random) -> list[int]:
+    if field.bits <= 16:
+        return list(range(field.raw_min, field.raw_max + 1))
+    near = [field.raw_min, field.raw_min + 1, -1, 0, 1, field.raw_max - 1, field.raw_max]
+    near = [raw for raw in near if field.raw_min <= raw <= field.raw_max]
+    small = [source.getrandbits(source.randint(1, field.bits)) + field.raw_min for _ in range(wide // 2)]
+    return near + small + [source.randint(field.raw_min, field.raw_max) for _ in range(wide // 2)]
+
+
+def physical_values(field: Field, count: int, source: random.Random) -> list[float]:
+    """Doubles at and beside ties, at and beyond the limits, and the strangest ones."""
+    values = [math.nan, -math.nan, math.inf, -math.inf, 0.0, -0.0, 5e-324, -5e-324, 2.2e-308, 1.7e308, -1.7e308]
+    values += [2.0**exponent * sign for exponent in range(-70, 130, 3) for sign in (1, -1)]
+    raws = [field.raw_min, field.raw_max] * 3 + [source.randint(field.raw_min, field.raw_max) for _ in range(count)]
+    for raw in raws:
+        for part in (Fraction(1, 2), Fraction(-1, 2), Fraction(0), Fraction(source.randint(-99, 99), 100)):
+            exact = field.scale.physical(raw + part)
+            nearest = exact.numerator / exact.denominator
+            values += [nearest, math.nextafter(nearest, math.inf), math.nextafter(nearest, -math.inf)]
+    return values
+
+
+def whole_values(field: Field, per: int, count: int, source: random.Random) -> list[int]:
+    values = [0, 1, -1, 2**31 - 1, -(2**31), 2**63 - 1, -(2**63)]
+    raws = [field.raw_min, field.raw_max] * 3 + [source.randint(field.raw_min, field.raw_max) for _ in range(count)]
+    for raw in raws:
+        for part in (Fraction(1, 2), Fraction(-1, 2), Fraction(source.randint(-99, 99), 100)):
+            middle = math.floor(field.scale.physical(raw + part) * per)
+            values += [middle - 1, middle, middle + 1]
+    return values
