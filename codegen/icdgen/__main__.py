@@ -8,6 +8,13 @@ import sys
 
 def main() -> None:
     """Runs the command line and exits: 0 clean, 1 findings, 2 misuse."""
+    try:
+        _main()
+    except KeyboardInterrupt:  # while modules are still being loaded; later `cli` says more
+        sys.exit(130)
+
+
+def _main() -> None:
     from icdgen import memo
 
     arguments = sys.argv[1:]
@@ -16,12 +23,20 @@ def main() -> None:
         note = memo.holds("runs", name)
     except OSError:
         name, note = "", None
-    if note is not None:
-        print(note)
+    if note is not None and _said(note):
         sys.exit(0)
     from icdgen import cli
 
     cli.main(arguments, name)
+
+
+def _said(note: str) -> bool:
+    """Whether the note, if there is one, could be printed; the way through `cli` knows what to say if not."""
+    try:
+        print(note, end="\n" if note else "", flush=True)
+    except (OSError, ValueError):
+        return False
+    return True
 
 
 if __name__ == "__main__":

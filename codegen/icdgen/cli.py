@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import sys
 from importlib import import_module
 
@@ -9,6 +10,7 @@ import click
 
 from icdgen import __version__
 from icdgen.errors import UserError
+from icdgen.reports.excerpt import shown
 
 # Name -> module in ``icdgen.commands``; the module has a click command of the same name.
 _COMMANDS = {
@@ -39,6 +41,12 @@ class _Commands(click.Group):
             args = [_DEFAULT, *args]
         return super().parse_args(ctx, args)
 
+    def invoke(self, ctx: click.Context) -> object:
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError:  # click would say 1, which means findings
+            ctx.exit(141)
+
 
 @click.group(
     cls=_Commands,
@@ -56,30 +64,61 @@ def icdgen(ctx: click.Context) -> None:
 
 def main(arguments: list[str], run: str = "") -> None:
     """Runs a command line and exits. ``run`` names the record under which a generation may be remembered."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     try:
-        status = icdgen.main(arguments, prog_name="icdgen", standalone_mode=False, obj={"run": run})
+        status = _run(arguments, run)
     except UserError as error:
         _complain(str(error), error.help)
         status = 2
     except click.ClickException as error:
-        error.show()
+        context = getattr(error, "ctx", None)
+        _complain(error.format_message(), f"`{context.command_path} --help` says what there is" if context else "")
         status = 2
     except (click.Abort, KeyboardInterrupt):
         _complain("interrupted")
         status = 130
     except BrokenPipeError:
-        sys.stderr.close()
         status = 141
+    except OSError as error:
+        _complain(
+            f"{error.filename or 'the output cannot be written'}: {error.strerror}", "check the path, or the disk"
+        )
+        status = 2
     except RecursionError:
-        _complain("the input is nested too deeply")
+        _complain("the input is nested too deeply", "an ICD needs five levels, icdgen.toml two")
         status = 2
     except MemoryError:
         _complain("out of memory")
         status = 2
-    sys.exit(status if isinstance(status, int) else 0)
+    if status != 0:
+        _let_go()
+    sys.exit(status)
+
+
+def _run(arguments: list[str], run: str) -> int:
+    try:
+        status = icdgen.main(arguments, prog_name="icdgen", standalone_mode=False, obj={"run": run})
+    except SystemExit as end:
+        status = end.code
+    if sys.stdout is not None:
+        sys.stdout.flush()
+    return status if isinstance(status, int) else 0
+
+
+def _let_go() -> None:
+    """What could not be written is not tried again, with a traceback, when Python ends."""
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except OSError:
+        sys.stdout = None
 
 
 def _complain(message: str, help: str = "") -> None:
-    click.echo(f"icdgen: error: {message}", err=True)
-    if help:
-        click.echo(f"  help: {help}", err=True)
+    text = f"icdgen: error: {message}" + (f"\n  help: {help}" if help else "")
+    try:
+        click.echo("\n".join(shown(line) for line in text.split("\n")), err=True)
+    except OSError:
+        return  # there is nobody left to tell

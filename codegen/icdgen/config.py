@@ -1,15 +1,17 @@
 """``icdgen.toml``: what a project generates, so that its build step is just ``icdgen``.
 
-    icds = ["icd/cubeacp.yaml"]      # files or folders, relative to this file
-    lang = ["c", "python"]
-    out = "generated"
+icds = ["icd/thruster.yaml"]     # files or folders, relative to this file
+lang = ["c", "python"]
+out = "generated"
 """
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from icdgen import memo
 from icdgen.errors import UserError
 
 NAME = "icdgen.toml"
@@ -24,20 +26,20 @@ class Config:
     lang: list[str] = field(default_factory=list)
     out: Path | None = None
     templates: Path | None = None
-    looked_at: list[Path] = field(default_factory=list)
+    looked_at: dict[Path, str] = field(default_factory=dict)  # `memo.fingerprint` as of just before it was read
 
 
 def find(start: Path) -> Config:
     """The configuration of the nearest folder upwards that has one. Raises `UserError` if it can't be read."""
-    looked_at = []
+    looked_at = {}
     for folder in (start, *start.parents):
         path = folder / NAME
-        looked_at.append(path)
-        if path.is_file():
+        looked_at[path] = memo.fingerprint(str(path))
+        if os.path.isfile(path):
             config = _read(path)
             config.looked_at = looked_at
             return config
-        if (folder / ".git").exists():
+        if os.path.exists(folder / ".git"):
             break
     return Config(looked_at=looked_at)
 
@@ -47,16 +49,26 @@ def _read(path: Path) -> Config:
 
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read: {error.strerror}", "make it readable") from None
+    except UnicodeDecodeError as error:
         raise UserError(f"{path}: cannot be read ({error})", "save it as UTF-8") from None
     except tomllib.TOMLDecodeError as error:
         raise UserError(f"{path}: not TOML: {error}", "see https://toml.io") from None
     for key, value in data.items():
         if key not in _KEYS:
             raise UserError(f"{path}: unknown key `{key}`", f"known keys: {', '.join(_KEYS)}")
-        if not isinstance(value, _KEYS[key]) or (isinstance(value, list) and not all(isinstance(v, str) for v in value)):
+        if not isinstance(value, _KEYS[key]) or (
+            isinstance(value, list) and not all(isinstance(v, str) for v in value)
+        ):
             kind = "a list of texts" if _KEYS[key] is list else "a text"
-            raise UserError(f"{path}: `{key}` must be {kind}", f'for instance {key} = {["..."] if _KEYS[key] is list else "..."}')
+            raise UserError(
+                f"{path}: `{key}` must be {kind}", f'for instance {key} = {["..."] if _KEYS[key] is list else "..."}'
+            )
+        if any(not text or "\0" in text for text in (value if isinstance(value, list) else [value])):
+            raise UserError(
+                f"{path}: `{key}` holds an empty text, or a NUL character", "write a path or a name, or take it out"
+            )
     base = path.parent
     return Config(
         icds=[base / item for item in data.get("icds", [])],

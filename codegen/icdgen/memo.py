@@ -8,10 +8,13 @@ next to nothing.
 from __future__ import annotations
 
 import os
+import stat
 import sys
 from hashlib import sha256
 
 ABSENT = "-"
+UNKNOWN = "?"  # what can't be read, or not twice; never equal to anything
+MOST = 300  # files of one kind in the cache
 
 
 def folder() -> str | None:
@@ -21,23 +24,45 @@ def folder() -> str | None:
         return None
     if chosen:
         return chosen
-    base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    base = os.environ.get("XDG_CACHE_HOME", "")
+    if not os.path.isabs(base):
+        home = os.path.expanduser("~")
+        if not os.path.isdir(home):  # as that of a service is not, and it is not for us to make
+            return None
+        base = os.path.join(home, ".cache")
     return os.path.join(base, "icdgen")
 
 
 def fingerprint(path: str) -> str:
-    """SHA-256 of a file, of a folder's list of names, or `ABSENT`."""
+    """SHA-256 of a file, of a folder's list of names, or `ABSENT`, or `UNKNOWN`."""
     try:
-        with open(path, "rb") as file:
-            return sha256(file.read()).hexdigest()
-    except IsADirectoryError:
-        return sha256("\0".join(sorted(os.listdir(path))).encode("utf-8", "surrogateescape")).hexdigest()
-    except OSError:
+        mode = os.stat(path).st_mode
+        if stat.S_ISREG(mode):
+            with open(path, "rb") as file:
+                return sha256(file.read()).hexdigest()
+        if stat.S_ISDIR(mode):
+            return sha256("\0".join(sorted(os.listdir(path))).encode("utf-8", "surrogateescape")).hexdigest()
+    except (FileNotFoundError, NotADirectoryError):
         return ABSENT
+    except OSError:
+        return UNKNOWN
+    return UNKNOWN
+
+
+_known: list[str] = []  # the digest of the tool, once it is needed
 
 
 def tool() -> str:
-    """Digest of everything that decides what the tool does: its own files, its templates, the interpreter, jinja2."""
+    """Digest of everything that decides what the tool does: its own files, its templates, the interpreter, jinja2.
+
+    As of when it is first asked for: what changes later is not what runs.
+    """
+    if not _known:
+        _known.append(_digest())
+    return _known[0]
+
+
+def _digest() -> str:
     package = os.path.dirname(os.path.abspath(__file__))
     data = os.path.join(package, "data")
     root = data if os.path.isdir(data) else os.path.dirname(os.path.dirname(package))
@@ -76,17 +101,10 @@ def key(*parts: str) -> str:
 
 def holds(kind: str, name: str) -> str | None:
     """The note of the record if there is one and every file it lists is unchanged, else None."""
-    top = folder()
-    if top is None:
+    data = recall(kind, name)
+    if data is None:
         return None
-    try:
-        with open(os.path.join(top, kind, name), encoding="utf-8", errors="surrogateescape") as file:
-            seal, _, body = file.read().partition("\n")
-    except OSError:
-        return None
-    if sha256(body.encode("utf-8", "surrogateescape")).hexdigest() != seal:
-        return None
-    note, *lines = body.split("\n")
+    note, *lines = data.decode("utf-8", "surrogateescape").split("\n")
     for line in lines:
         expected, _, path = line.partition(" ")
         if fingerprint(path) != expected:
@@ -95,12 +113,28 @@ def holds(kind: str, name: str) -> str | None:
 
 
 def remember(kind: str, name: str, note: str, files: dict[str, str]) -> None:
-    """Keeps a record: path -> fingerprint. Never fails; a cache that can't be written is no cache."""
-    top = folder()
-    if top is None or any("\n" in path for path in files):
+    """Keeps a record: path -> fingerprint of what was read or written there. Never fails."""
+    if UNKNOWN in files.values() or any("\n" in path for path in files):
         return
     body = "\n".join([note, *(f"{print_} {path}" for path, print_ in files.items())])
-    data = body.encode("utf-8", "surrogateescape")
+    seal(kind, name, body.encode("utf-8", "surrogateescape"))
+
+
+def recall(kind: str, name: str) -> bytes | None:
+    """What `seal` kept under this name, if it is still exactly that."""
+    top = folder()
+    if top is None:
+        return None
+    try:
+        with open(os.path.join(top, kind, name), "rb") as file:
+            digest, _, data = file.read().partition(b"\n")
+    except OSError:
+        return None
+    return data if sha256(data).hexdigest().encode() == digest else None
+
+
+def seal(kind: str, name: str, data: bytes) -> None:
+    """Keeps data with its digest. Never fails; a cache that can't be written is no cache."""
     keep(kind, name, sha256(data).hexdigest().encode() + b"\n" + data)
 
 
@@ -113,8 +147,23 @@ def keep(kind: str, name: str, data: bytes) -> None:
     part = f"{target}.{os.getpid()}"
     try:
         os.makedirs(os.path.dirname(target), mode=0o700, exist_ok=True)
-        with open(part, "wb") as file:
-            file.write(data)
-        os.replace(part, target)
+        try:
+            with open(part, "wb") as file:
+                file.write(data)
+            os.replace(part, target)
+        except BaseException:
+            os.unlink(part)
+            raise
+        _prune(os.path.dirname(target))
     except OSError:
         return
+
+
+def _prune(top: str) -> None:
+    """Removes the oldest files where there are more than `MOST`."""
+    with os.scandir(top) as entries:
+        files = list(entries)
+    if len(files) > MOST:
+        files.sort(key=lambda entry: entry.stat().st_mtime_ns)
+        for entry in files[:-MOST]:
+            os.unlink(entry.path)

@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
-from icdgen import places
+from icdgen import memo, places
 from icdgen.errors import UserError
 
 
 class Renderer:
-    """Renders the templates of one backend; those in ``override`` (``--templates DIR``) win over the shipped ones."""
+    """Renders the templates of one backend; those in ``override`` (``--templates DIR``) win over the shipped ones.
 
-    def __init__(self, backend: str, override: Path | None = None, cache: Path | None = None) -> None:
+    ``looked_at`` tells of every file below ``override`` that was read or looked for: `memo.fingerprint` as of just before.
+    """
+
+    def __init__(self, backend: str, override: Path | None = None) -> None:
         import jinja2
 
-        folders = [override / backend, override] if override else []
-        folders.append(places.templates() / backend)
-        bytecode = None
-        if cache is not None:
-            cache.mkdir(parents=True, exist_ok=True)
-            bytecode = jinja2.FileSystemBytecodeCache(str(cache))
+        own = [override / backend, override] if override else []
+        self.looked_at: dict[Path, str] = {}
         self._environment = jinja2.Environment(
-            loader=jinja2.FileSystemLoader(folders),
-            bytecode_cache=bytecode,
+            loader=_loader(own, places.templates() / backend, self.looked_at),
+            bytecode_cache=_bytecode(),
             undefined=jinja2.StrictUndefined,
             trim_blocks=True,
             lstrip_blocks=True,
@@ -40,7 +40,13 @@ class Renderer:
             where = f"{error.filename or template}:{error.lineno}"
             raise UserError(f"{where}: {error.message}", "mend the template") from None
         except TemplateError as error:
-            raise UserError(f"{_where(error, template)}: {error.message or type(error).__name__}", "mend the template") from None
+            raise UserError(
+                f"{_where(error, template)}: {error.message or type(error).__name__}", "mend the template"
+            ) from None
+        except Exception as error:  # whatever an expression in a template may do
+            raise UserError(
+                f"{_where(error, template)}: {type(error).__name__}: {error}", "mend the template"
+            ) from error
 
 
 def _where(error: Exception, template: str) -> str:
@@ -52,3 +58,33 @@ def _where(error: Exception, template: str) -> str:
             found = f"{file}:{trace.tb_lineno}"
         trace = trace.tb_next
     return found
+
+
+def _loader(own: list[Path], shipped: Path, looked_at: dict[Path, str]):
+    import jinja2
+    from jinja2.loaders import split_template_path
+
+    class Loader(jinja2.FileSystemLoader):
+        def get_source(self, environment, template):
+            for folder in own:
+                path = folder.joinpath(*split_template_path(template))
+                looked_at[path] = memo.fingerprint(os.fspath(path))
+            return super().get_source(environment, template)
+
+    return Loader([*own, shipped])
+
+
+def _bytecode():
+    """Compiled templates, remembered under the tool that compiled them."""
+    import jinja2
+
+    class Cache(jinja2.BytecodeCache):
+        def load_bytecode(self, bucket) -> None:
+            data = memo.recall("templates", memo.key("template", bucket.key))
+            if data is not None:
+                bucket.bytecode_from_string(data)
+
+        def dump_bytecode(self, bucket) -> None:
+            memo.seal("templates", memo.key("template", bucket.key), bucket.bytecode_to_string())
+
+    return Cache()

@@ -19,10 +19,10 @@ class Column(NamedTuple):
     fixed: bool = False
 
 
-def width_of(stream: TextIO) -> int | None:
-    """Columns of the terminal that the stream goes to; None if it is not a terminal."""
+def width_of(stream: TextIO | None) -> int | None:
+    """Columns of the terminal that the stream goes to; None if it is not a terminal, or closed."""
     try:
-        return os.get_terminal_size(stream.fileno()).columns if stream.isatty() else None
+        return os.get_terminal_size(stream.fileno()).columns if stream is not None and stream.isatty() else None
     except (OSError, ValueError):
         return None
 

@@ -15,7 +15,7 @@ def test_paths_are_relative_to_the_file_and_the_nearest_one_upwards_counts(tmp_p
     found = config.find(below)
     assert found.icds == [tmp_path / "icd/a.yaml"]
     assert (found.lang, found.out) == (["c"], tmp_path / "gen")
-    assert found.looked_at == [below / "icdgen.toml", tmp_path / "src" / "icdgen.toml", tmp_path / "icdgen.toml"]
+    assert list(found.looked_at) == [below / "icdgen.toml", tmp_path / "src" / "icdgen.toml", tmp_path / "icdgen.toml"]
 
 
 def test_the_search_ends_at_the_top_of_the_checkout(tmp_path):

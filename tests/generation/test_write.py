@@ -135,3 +135,12 @@ def test_a_folder_that_cannot_be_written_is_a_clear_error(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(UserError):
         generate(tmp_path / "file", a_h="one\n")
+
+
+def test_a_manifest_with_names_that_are_none_is_no_obstacle(tmp_path):
+    (tmp_path / "folder").mkdir()
+    manifest.path(tmp_path, "c").write_text(manifest.text({"a\0b": "", "folder": "", ".": ""}))
+    generate(tmp_path, a_h="one\n")
+    assert (tmp_path / "folder").is_dir() and (tmp_path / "a.h").exists()
+    manifest.path(tmp_path, "c").write_text("[" * 100_000)
+    generate(tmp_path, a_h="one\n")

@@ -33,7 +33,7 @@ def check(tmp_path, monkeypatch):
 
 def test_a_scalar_of_ten_megabytes(check):
     assert check(HEAD + "messages: " + "x" * 10_000_000) == [
-        ("ICD001", f"the file has {len(HEAD) + 10_000_010:,} bytes, more than the {MAX_BYTES:,} allowed")
+        ("ICD001", f"the file has more than the {MAX_BYTES:,} bytes allowed")
     ]
 
 
@@ -92,3 +92,31 @@ def test_thousands_of_fields_over_one_another(check):
 def test_a_file_that_is_not_there(tmp_path):
     (found,) = load([tmp_path / "nothing.yaml"]).findings
     assert (found.code, found.message) == ("ICD001", "cannot read the file: No such file or directory")
+
+
+def test_a_nul_written_as_an_escape(check):
+    (found,) = check(HEAD + 'include: ["a\\0b.yaml"]\n')[:1]
+    assert found == ("ICD001", "the text holds a NUL character")
+
+
+def test_an_overlay_that_is_no_file_is_not_passed_over(tmp_path):
+    (tmp_path / "demo.yaml").write_text(HEAD)
+    (tmp_path / "errata").mkdir()
+    overlay = tmp_path / "errata" / "demo.yaml"
+    overlay.mkdir()
+    assert [f.code for f in load([tmp_path / "demo.yaml"]).findings] == ["ICD001"]
+    overlay.rmdir()
+    overlay.symlink_to("nowhere.yaml")
+    assert [f.code for f in load([tmp_path / "demo.yaml"]).findings] == ["ICD001"]
+
+
+@pytest.mark.parametrize("name", ["other", "../../x", "null"])
+def test_an_erratum_that_renames_its_node(tmp_path, name):
+    (tmp_path / "demo.yaml").write_text(HEAD)
+    (tmp_path / "errata").mkdir()
+    (tmp_path / "errata" / "demo.yaml").write_text(
+        "errata: 1\nnode: demo\nentries:\n  - id: X-1\n    title: t\n    where: {section: node}\n    printed: {name: demo}\n"
+        f"    held: {{name: {name}}}\n    why: w\n    evidence: e\n    confidence: certain\n"
+    )
+    codes = {f.code for f in load([tmp_path / "demo.yaml"]).findings}
+    assert codes == (set() if name == "other" else {"ICD010"})

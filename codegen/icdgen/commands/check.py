@@ -11,7 +11,9 @@ from icdgen.commands.common import chosen, icd_arguments, print_findings
 
 @click.command()
 @icd_arguments
-@click.option("--format", "form", type=click.Choice(["text", "json", "github", "sarif"]), default="text", show_default=True)
+@click.option(
+    "--format", "form", type=click.Choice(["text", "json", "github", "sarif"]), default="text", show_default=True
+)
 def check(icds, form) -> None:
     """Check ICDs and report every finding. Exit status: 0 clean, 1 findings."""
     from icdgen.icd.load import load

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from pathlib import Path
+from typing import BinaryIO
 
 import click
 
@@ -14,6 +14,7 @@ from icdgen.errors import UserError
 _KIND = click.option(
     "--kind", type=click.Choice(["telecommand", "telemetry", "configuration"]), help="Where an id alone is ambiguous."
 )
+_MOST = 1_000_000  # bytes that are read for a frame
 _FORMAT = click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 
 
@@ -41,7 +42,7 @@ def decode(node, message, frame, icds, kind, form) -> None:
 @_FORMAT
 @click.option("--raw", is_flag=True, help="Values are raw values, and are not held against limits.")
 def encode(node, message, assignments, icds, kind, form, raw) -> None:
-    """Encode a message of NODE from physical values: icdgen encode cubeacp "Set Wheel Speed" x=100 y=-100 z=0."""
+    """Encode a message of NODE from physical values: icdgen encode wheels "Set Speed" x=100 y=-100 z=0."""
     from icdgen import values
 
     _print(values.encode(load_or_exit(icds).icd, node, message, list(assignments), raw=raw, kind=kind), form)
@@ -51,19 +52,25 @@ def _bytes(frame: str) -> bytes:
     from icdgen import values
 
     if frame == "-":
-        return _text_or_binary(sys.stdin.buffer.read())
+        if sys.stdin is None:
+            raise UserError("standard input is closed", "pipe the frame in, or give it as an argument")
+        return _frame_in(sys.stdin.buffer, "standard input")
     if frame.startswith("@"):
         try:
-            return _text_or_binary(Path(frame[1:]).read_bytes())
+            with open(frame[1:], "rb") as file:
+                return _frame_in(file, frame[1:])
         except OSError as error:
             raise UserError(f"cannot read {frame[1:]}: {error.strerror}", "check the path after the @") from None
     return values.parse_hex(frame)
 
 
-def _text_or_binary(data: bytes) -> bytes:
+def _frame_in(file: BinaryIO, name: str) -> bytes:
     """Hex if it is text; a file that is no text is the frame itself."""
     from icdgen import values
 
+    data = file.read(_MOST + 1)
+    if len(data) > _MOST:
+        raise UserError(f"{name} holds more than {_MOST:,} bytes", "give one frame, as hex or as it is")
     if all(byte in b"\t\n\r" or 32 <= byte < 127 for byte in data):
         return values.parse_hex(data.decode("ascii"))
     return data
@@ -73,6 +80,6 @@ def _print(frame, form: str) -> None:
     from icdgen import tables, values
 
     if form == "json":
-        click.echo(json.dumps(frame.to_json(), indent=1, ensure_ascii=False))
+        click.echo(json.dumps(frame.to_json(), indent=1))
     else:
         click.echo(values.to_text(frame, tables.width_of(sys.stdout)), nl=False)

@@ -11,23 +11,45 @@ import click
 
 from icdgen import config, places
 from icdgen.diagnostics import Finding
+from icdgen.errors import UserError
 from icdgen.icd.loaded import Loaded
+from icdgen.reports.excerpt import printable
+
+
+class _Path(click.Path):
+    """A path; an empty one, such as an unset variable gives, is not the current folder."""
+
+    def convert(self, value, param, ctx):
+        if value == "":
+            self.fail("the path is empty", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+PATH = _Path(path_type=Path)
+
+
+def say(text: str, err: bool = False) -> None:
+    """Prints lines in which a name may stand, so that no name can act upon a terminal."""
+    click.echo("\n".join(printable(line) for line in text.split("\n")), err=err)
 
 
 def icd_arguments(command: Callable) -> Callable:
     """``[ICD]...``: files or folders; without them what ``icdgen.toml`` names, else the shipped ones."""
-    return click.argument("icds", nargs=-1, metavar="[ICD]...", type=click.Path(path_type=Path))(command)
+    return click.argument("icds", nargs=-1, metavar="[ICD]...", type=PATH)(command)
 
 
 def icd_option(command: Callable) -> Callable:
     """``--icd FILE`` (repeatable), for commands whose arguments are something else."""
     text = "ICD file or folder (default: those of icdgen.toml, else those shipped)."
-    return click.option("--icd", "icds", multiple=True, type=click.Path(path_type=Path), help=text)(command)
+    return click.option("--icd", "icds", multiple=True, type=PATH, help=text)(command)
 
 
 def chosen(icds: tuple[Path, ...]) -> tuple[list[Path], config.Config]:
     """The ICDs to work on, relative to the current folder where they lie in it, and the configuration."""
-    found = config.find(Path.cwd())
+    try:
+        found = config.find(Path.cwd())
+    except FileNotFoundError:
+        raise UserError("the current folder is no longer there", "change to another one") from None
     paths = list(icds) or found.icds or [places.icds()]
     return [_short(path) for path in paths], found
 
@@ -53,7 +75,7 @@ def print_findings(findings: list[Finding], texts: dict[str, str], form: str, er
     from icdgen import reports
 
     stream = sys.stderr if err else sys.stdout
-    colour = form == "text" and stream.isatty() and "NO_COLOR" not in os.environ
+    colour = form == "text" and stream is not None and stream.isatty() and "NO_COLOR" not in os.environ
     report = reports.get(form)
     text = report(findings, texts, colour=True) if colour else report(findings, texts)
-    click.echo(text, err=err, nl=not text.endswith("\n"), color=colour or None)
+    click.echo(text, err=err, nl=bool(text) and not text.endswith("\n"), color=colour or None)

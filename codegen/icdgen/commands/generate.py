@@ -8,18 +8,20 @@ from pathlib import Path
 import click
 
 from icdgen import backends
-from icdgen.commands.common import chosen, icd_arguments, print_findings
+from icdgen.commands.common import PATH, chosen, icd_arguments, print_findings, say
 from icdgen.errors import UserError
 from icdgen.generation.generate import Job, Outcome, remember, run
 
 
 @click.command()
 @icd_arguments
-@click.option("--lang", "-l", "languages", multiple=True, help=f"What to generate: {', '.join(backends.names())}. Repeatable.")
-@click.option("--out", "-o", type=click.Path(path_type=Path), help="Folder to write to (default: generated/LANG).")
+@click.option(
+    "--lang", "-l", "languages", multiple=True, help=f"What to generate: {', '.join(backends.names())}. Repeatable."
+)
+@click.option("--out", "-o", type=PATH, help="Folder to write to (default: generated/LANG).")
 @click.option("--check", is_flag=True, help="Write nothing; exit 1 with a short diff if the output is not current.")
-@click.option("--depfile", type=click.Path(path_type=Path), help="Also write a Make/Ninja dependency file.")
-@click.option("--templates", type=click.Path(path_type=Path), help="Folder of templates that replace shipped ones of the same name.")
+@click.option("--depfile", type=PATH, help="Also write a Make/Ninja dependency file.")
+@click.option("--templates", type=PATH, help="Folder of templates that replace shipped ones of the same name.")
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing on success.")
 @click.pass_obj
 def generate(obj, icds, languages, out, check, depfile, templates, quiet) -> None:
@@ -43,13 +45,13 @@ def generate(obj, icds, languages, out, check, depfile, templates, quiet) -> Non
     if check and outcome.changes:
         from icdgen.generation.differences import short_diff
 
-        click.echo(short_diff(outcome.plans), nl=False)
+        say(short_diff(outcome.plans).rstrip("\n"))
         sys.exit(1)
     for name in (plan.out / name for plan in outcome.plans for name in plan.edited):
-        click.echo(f"icdgen: warning: {name} is no longer generated, but was edited: kept", err=True)
+        say(f"icdgen: warning: {name} is no longer generated, but was edited: kept", err=True)
     note = "" if quiet else _summary(job, outcome)
     if note:
-        click.echo(note)
+        say(note)
     if not check or not outcome.changes:
         remember((obj or {}).get("run", ""), "" if quiet else _current(job, outcome), job, outcome)
 

@@ -14,7 +14,9 @@ from icdgen.commands.common import icd_option, load_or_exit
 @click.argument("node", required=False)
 @click.argument("item", required=False)
 @icd_option
-@click.option("--kind", type=click.Choice(["telecommand", "telemetry", "configuration"]), help="Where an id alone is ambiguous.")
+@click.option(
+    "--kind", type=click.Choice(["telecommand", "telemetry", "configuration"]), help="Where an id alone is ambiguous."
+)
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 def show(node, item, icds, kind, form) -> None:
     """Show the nodes, the messages of NODE, or one ITEM of it: a message by id or name, an enumeration, an erratum.
@@ -28,7 +30,7 @@ def show(node, item, icds, kind, form) -> None:
     if form == "json":
         if node is not None:
             raise click.UsageError("--format json shows everything: leave NODE out")
-        click.echo(json.dumps(forms.to_json(icd), indent=1, ensure_ascii=False))
+        click.echo(json.dumps(forms.to_json(icd), indent=1))
         return
     selection = [word for word in (node, item) if word is not None]
     click.echo(forms.to_text(icd, selection, tables.width_of(sys.stdout), kind), nl=False)

@@ -24,13 +24,14 @@ class Job:
     templates: Path | None = None
     depfile: Path | None = None
     check: bool = False
-    configs: list[Path] = field(default_factory=list)  # configuration files that were read or looked for
+    configs: dict[Path, str] = field(default_factory=dict)  # configuration files that were read or looked for
 
 
 @dataclass
 class Outcome:
     loaded: Loaded
     plans: list[write.Plan] = field(default_factory=list)
+    inputs: dict[Path, str] = field(default_factory=dict)  # what decides the output -> its `memo.fingerprint` when read
 
     @property
     def changes(self) -> bool:
@@ -40,17 +41,17 @@ class Outcome:
 def run(job: Job) -> Outcome:
     """Writes nothing if the ICDs have errors or ``job.check`` is set. Raises `UserError`, `backends.UnknownBackend`."""
     chosen = [backends.get(name) for name in dict.fromkeys(job.languages)]
-    if job.templates is not None and not job.templates.is_dir():
+    if job.templates is not None and not os.path.isdir(job.templates):
         raise UserError(f"there is no folder {job.templates}", "--templates names a folder of templates")
     outcome = Outcome(load_checked(job.icds))
     if not outcome.loaded.ok:
         return outcome
-    top = memo.folder()
+    outcome.inputs = outcome.loaded.inputs | job.configs
     for backend in chosen:
-        cache = Path(top) / "templates" if top else None
-        render = Renderer(backend.name, job.templates, cache)
+        render = Renderer(backend.name, job.templates)
         out = job.out / backend.name if len(chosen) > 1 else job.out
         outcome.plans.append(write.plan(out, backend.name, backend.files(outcome.loaded.icd, render)))
+        outcome.inputs |= render.looked_at
     if not job.check:
         for plan in outcome.plans:
             write.apply(plan)
@@ -59,28 +60,29 @@ def run(job: Job) -> Outcome:
     return outcome
 
 
-def _write_depfile(job: Job, outcome: Outcome) -> None:
+def _depfile(outcome: Outcome) -> tuple[bytes, set[str]]:
+    """What a dependency file says, and the files that it names."""
     targets = [os.path.join(plan.out, name) for plan in outcome.plans for name in plan.files]
-    needs = [str(path) for path in _inputs(job, outcome) if path.is_file()]
+    needs = [str(path) for path in outcome.inputs if path.is_file()]
     text = " \\\n  ".join(map(_escape, targets)) + ": \\\n  " + " \\\n  ".join(map(_escape, needs)) + "\n"
-    if not job.depfile.exists() or job.depfile.read_text(encoding="utf-8") != text:
+    return text.encode("utf-8", "surrogateescape"), {os.path.realpath(path) for path in (*targets, *needs)}
+
+
+def _write_depfile(job: Job, outcome: Outcome) -> None:
+    data, named = _depfile(outcome)
+    depfile = Path(os.path.realpath(job.depfile))
+    if str(depfile) in named:
+        raise UserError(f"{job.depfile} is an input or an output", "give the dependency file a name of its own")
+    if write.read(depfile) != data:
         try:
-            write.replace(job.depfile, text.encode("utf-8"))
+            write.replace(depfile, data)
         except OSError as error:
-            raise UserError(f"cannot write {job.depfile}: {error.strerror}") from None
-
-
-def _inputs(job: Job, outcome: Outcome) -> list[Path]:
-    found = list(outcome.loaded.inputs)
-    found += job.configs
-    if job.templates is not None:
-        found += sorted(path for path in job.templates.rglob("*"))
-        found.append(job.templates)
-    found += [path for path in job.icds if path.is_dir()]
-    return found
+            raise UserError(f"cannot write {job.depfile}: {error.strerror}", "choose another place for it") from None
 
 
 def _escape(path: str) -> str:
+    if "\n" in path:
+        raise UserError(f"{path} cannot be named in a dependency file", "rename what has a line end in its name")
     return path.replace("\\", "\\\\").replace(" ", "\\ ").replace("#", "\\#").replace("$", "$$").replace(":", "\\:")
 
 
@@ -88,12 +90,11 @@ def remember(name: str, note: str, job: Job, outcome: Outcome) -> None:
     """So that the same command over the same files, with its outputs still in place, ends at once."""
     if not name or outcome.loaded.findings or set(job.languages) - set(backends.names()):
         return
-    files = {os.path.abspath(path): memo.fingerprint(str(path)) for path in _inputs(job, outcome)}
+    files = {os.path.abspath(path): seen for path, seen in outcome.inputs.items()}
     for plan in outcome.plans:
         for file, data in plan.files.items():
             files[os.path.abspath(plan.out / file)] = manifest.digest(data)
-        path = manifest.path(plan.out, plan.language)
-        files[os.path.abspath(path)] = memo.fingerprint(str(path))
-    if job.depfile is not None:
-        files[os.path.abspath(job.depfile)] = memo.fingerprint(str(job.depfile))
+        files[os.path.abspath(manifest.path(plan.out, plan.language))] = manifest.digest(plan.manifest.encode())
+    if job.depfile is not None and not job.check:
+        files[os.path.abspath(job.depfile)] = manifest.digest(_depfile(outcome)[0])
     memo.remember("runs", name, note, files)

@@ -16,7 +16,7 @@ def read(out: Path, language: str) -> dict[str, str]:
     try:
         data = json.loads(path(out, language).read_text(encoding="utf-8"))
         files = data["files"]
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return {}
     if not isinstance(files, dict):
         return {}
@@ -34,4 +34,4 @@ def digest(data: bytes) -> str:
 
 def _is_inside(name: str) -> bool:
     parts = Path(name).parts
-    return bool(parts) and ".." not in parts and not Path(name).is_absolute()
+    return bool(parts) and "\0" not in name and ".." not in parts and not Path(name).is_absolute()

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import stat
 import tempfile
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -40,10 +42,14 @@ def plan(out: Path, language: str, files: Iterable[tuple[PurePosixPath, str]]) -
                 f"two outputs would share the file name {name}",
                 "names that differ only in case clash on some systems: give one of them an `identifier:`",
             )
-        made.files[str(name)] = text.encode("utf-8")
+        try:
+            made.files[str(name)] = text.encode("utf-8")
+        except UnicodeEncodeError as error:
+            what = f"U+{ord(text[error.start]):04X}, which is no character"
+            raise UserError(f"{name} would hold {what}", "mend the template") from None
     ours = manifest.read(out, language)
     for name, data in made.files.items():
-        now = _read(out / name)
+        now = read(out / name)
         if now == data:
             continue
         if now is not None and name not in ours:
@@ -54,7 +60,7 @@ def plan(out: Path, language: str, files: Iterable[tuple[PurePosixPath, str]]) -
         made.write.append(name)
     for name, digest in ours.items():
         if name not in made.files:
-            now = _read(out / name)
+            now = read(out / name) if os.path.isfile(out / name) else None
             if now is not None:
                 (made.remove if manifest.digest(now) == digest else made.edited).append(name)
     made.manifest = manifest.text({name: manifest.digest(data) for name, data in made.files.items()})
@@ -71,13 +77,15 @@ def apply(made: Plan) -> None:
         for name in made.write:
             replace(made.out / name, made.files[name])
         target = manifest.path(made.out, made.language)
-        if _read(target) != made.manifest.encode():
+        if read(target) != made.manifest.encode():
             replace(target, made.manifest.encode())
         for name in made.remove:
             (made.out / name).unlink(missing_ok=True)
             _remove_empty(made.out, (made.out / name).parent)
     except OSError as error:
-        raise UserError(f"cannot write {error.filename}: {error.strerror}", "choose another folder with --out") from None
+        raise UserError(
+            f"cannot write {error.filename}: {error.strerror}", "choose another folder with --out"
+        ) from None
 
 
 _UMASK = os.umask(0)
@@ -85,7 +93,13 @@ os.umask(_UMASK)
 
 
 def replace(target: Path, data: bytes) -> None:
-    """Writes a file so that a reader sees the old content or the new one, never a part."""
+    """Writes a file so that a reader sees the old content or the new one, never a part. The file's mode stays."""
+    try:
+        mode = os.stat(target).st_mode
+    except OSError:
+        mode = stat.S_IFREG | 0o666 & ~_UMASK
+    if not stat.S_ISREG(mode):
+        raise FileExistsError(errno.EEXIST, "it is not a file", str(target))
     try:
         handle, name = tempfile.mkstemp(dir=target.parent, prefix=".icdgen-")
     except FileNotFoundError:
@@ -94,15 +108,18 @@ def replace(target: Path, data: bytes) -> None:
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(data)
-        os.chmod(name, 0o666 & ~_UMASK)
+        os.chmod(name, stat.S_IMODE(mode))
         os.replace(name, target)
     except BaseException:
         os.unlink(name)
         raise
 
 
-def _read(path: Path) -> bytes | None:
+def read(path: Path) -> bytes | None:
+    """The content of what we may write; None if it is not there. Raises `UserError` if it can't be read."""
     try:
+        if not stat.S_ISREG(os.stat(path).st_mode):
+            raise UserError(f"{path} is in the way: it is not a file", "move it away, or choose another place")
         with open(path, "rb") as file:
             return file.read()
     except (FileNotFoundError, NotADirectoryError):

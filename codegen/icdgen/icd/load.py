@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from pathlib import Path
 
-from icdgen.diagnostics import Finding, Findings, in_order
+from icdgen import memo
+from icdgen.diagnostics import Finding, Findings, Place, in_order
 from icdgen.icd import errata, source
 from icdgen.icd.build import Builder, Scope
 from icdgen.icd.loaded import Loaded
@@ -19,7 +21,7 @@ def load(paths: list[Path], check: bool = True) -> Loaded:
     """The ICDs of ``paths`` (files, or folders of files) with all that they include. Never raises for bad input."""
     loader = _Loader()
     for path in paths:
-        for file in sorted(path.glob("*.yaml")) if path.is_dir() else [path]:
+        for file in loader.folder(path) if os.path.isdir(path) else [path]:
             loader.node(file, ())
     icd = Icd(tuple(loader.nodes))
     findings = loader.findings
@@ -35,30 +37,50 @@ class _Loader:
         self.nodes: list[Node] = []
         self.by_path: dict[Path, Node | None] = {}
         self.findings: list[Finding] = []
-        self.inputs: dict[Path, bytes | None] = {}
+        self.inputs: dict[Path, str] = {}
+        self.contents: dict[Path, bytes] = {}
+        self.first: dict[Path, Path] = {}  # resolved path -> the path by which the file was read
         self.texts: dict[str, str] = {}
         self.applied: list[errata.Applied] = []
         self.broken: set[int] = set()
         self.trees: list[Map] = []  # kept alive: ``broken`` and the overlays go by identity
         self.unreadable = False
 
+    def folder(self, path: Path) -> list[Path]:
+        """The ICDs of a folder."""
+        self.inputs[path] = memo.fingerprint(str(path))
+        files = sorted(path.glob("*.yaml"))
+        if not files:
+            self.findings.append(
+                Finding(
+                    "ICD001",
+                    "the folder has no ICD: no file *.yaml",
+                    Place(str(path)),
+                    "name another folder, or a file",
+                )
+            )
+            self.unreadable = True
+        return files
+
     def node(self, path: Path, stack: tuple[Path, ...]) -> Node | None:
-        key = path.resolve()
+        key = _resolved(path)
         if key in self.by_path:
+            self.inputs[path] = self.inputs[self.first[key]]  # a link may lead elsewhere tomorrow
             return self.by_path[key]
-        self.by_path[key] = None
+        self.by_path[key], self.first[key] = None, path
         tree = self.read(path, "icd")
         if tree is None:
             return None
         included = self.include(tree, path, (*stack, key))
-        overlay = self.overlay(tree, path)
+        beside = self.overlay_path(tree, path)
+        overlay = self.overlay(beside)
         applied = errata.apply(tree, overlay, self.broken)
         if any(entry.changes for entry in applied.entries):
             self.check_structure(tree, "icd")  # what the overlay holds must fit the format too
         self.findings += applied.findings
         self.applied.append(applied)
-        digest = hashlib.sha256(self.inputs[path])
-        digest.update((self.inputs.get(self.overlay_path(tree, path)) if overlay else None) or b"")
+        digest = hashlib.sha256(self.contents[path])
+        digest.update(self.contents[beside] if overlay is not None else b"")
         for one in included:
             digest.update(one.digest.encode())
         names = tuple(dict.fromkeys(n.name for n in included))
@@ -71,14 +93,16 @@ class _Loader:
     def read(self, path: Path, document: str) -> Map | None:
         """The tree of a file, its structure checked; None if it is not YAML at all."""
         name = str(path)
+        self.inputs[path] = memo.UNKNOWN
         try:
-            tree = source.read(path, name)
+            data = self.contents[path] = source.contents(path, name)
+            self.inputs[path] = hashlib.sha256(data).hexdigest()
+            self.texts[name] = data.decode("utf-8", "replace")
+            tree = source.parse(data, name)
         except Findings as error:
             self.findings += error.findings
             self.unreadable = True
-            self.remember(path, name)
             return None
-        self.remember(path, name)
         self.trees.append(tree)
         if document == "icd" and "errata" in tree and "icdgen" not in tree:
             self.findings.append(
@@ -97,27 +121,18 @@ class _Loader:
         self.findings += findings
         self.broken |= broken
 
-    def remember(self, path: Path, name: str) -> None:
-        try:
-            data = path.read_bytes() if path.stat().st_size <= source.MAX_BYTES else b""
-        except OSError:
-            data = None
-        self.inputs[path] = data
-        self.texts[name] = (data or b"").decode("utf-8", "replace")
-
     def overlay_path(self, tree: Map, path: Path) -> Path | None:
         head = tree.get("node")
         if not isinstance(head, Map) or id(head) in self.broken:
             return None
         return path.parent / "errata" / f"{head['name']}.yaml"
 
-    def overlay(self, tree: Map, path: Path) -> Map | None:
-        """The errata overlay beside the ICD, if there is one."""
-        overlay = self.overlay_path(tree, path)
+    def overlay(self, overlay: Path | None) -> Map | None:
+        """The errata overlay at this place, if there is one."""
         if overlay is None:
             return None
-        if not overlay.is_file():
-            self.inputs[overlay] = None
+        if _is_absent(overlay):
+            self.inputs[overlay] = memo.ABSENT
             return None
         return self.read(overlay, "errata")
 
@@ -139,14 +154,14 @@ class _Loader:
         return nodes
 
     def include_problem(self, item: str, path: Path, stack: tuple[Path, ...]) -> tuple[str, str] | None:
-        target = (path.parent / item).resolve()
-        folder = path.parent.resolve()
+        target = _resolved(path.parent / item)
+        folder = _resolved(path.parent)
         if not target.is_relative_to(folder):
             return f"`{item}` lies outside the folder of this file", "move it beside this file or below"
         if target in stack:
             names = " -> ".join(p.name for p in (*stack[stack.index(target) :], target))
             return f"files include each other in a circle: {names}", "take one `include` out"
-        if not target.is_file():
+        if not os.path.isfile(target):
             return f"there is no file `{item}` beside this one", "check the name"
         return None
 
@@ -160,3 +175,18 @@ class _Loader:
                 queue += next((n.includes for n in self.nodes if n.name == name), ())
         return [n for n in self.nodes if n.name in names]
 
+
+def _resolved(path: Path) -> Path:
+    """Absolute and without links; unlike `Path.resolve` also for links that lead in a circle."""
+    return Path(os.path.realpath(path))
+
+
+def _is_absent(path: Path) -> bool:
+    """Whether there is surely nothing; what can't be looked at, or is a link to nothing, is not absent."""
+    try:
+        os.lstat(path)
+    except (FileNotFoundError, NotADirectoryError):
+        return True
+    except OSError:
+        return False
+    return False

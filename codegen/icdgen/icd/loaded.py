@@ -15,7 +15,9 @@ class Loaded:
 
     icd: Icd
     findings: list[Finding]
-    inputs: dict[Path, bytes | None]  # every file read, or looked for and absent (None)
+    inputs: dict[
+        Path, str
+    ]  # every file and folder read, or looked for and absent -> `memo.fingerprint` of what was read
     texts: dict[str, str] = field(default_factory=dict)  # file name as in findings -> its text, for excerpts
 
     @property

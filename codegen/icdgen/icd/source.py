@@ -35,20 +35,24 @@ _TREACHEROUS = re.compile(
 def read(path: Path, name: str | None = None) -> Map:
     """The file's tree. ``name`` is how findings call the file. Raises `Findings`."""
     name = name or str(path)
-    here = Place(name)
+    return parse(contents(path, name), name)
+
+
+def contents(path: Path, name: str) -> bytes:
+    """The file's bytes, at most `MAX_BYTES`, whatever kind of file it is. Raises `Findings`."""
     try:
-        size = path.stat().st_size
-        if size > MAX_BYTES:
-            raise Findings(
-                [Finding("ICD001", f"the file has {size:,} bytes, more than the {MAX_BYTES:,} allowed", here,
-                         "split it and join the parts with `include:`")]
-            )  # fmt: skip
-        data = path.read_bytes()
+        with open(path, "rb") as file:
+            data = file.read(MAX_BYTES + 1)
     except OSError as error:
         raise Findings(
-            [Finding("ICD001", f"cannot read the file: {error.strerror}", here, "check the path")]
+            [Finding("ICD001", f"cannot read the file: {error.strerror}", Place(name), "check the path")]
         ) from None
-    return parse(data, name)
+    if len(data) > MAX_BYTES:
+        raise Findings(
+            [Finding("ICD001", f"the file has more than the {MAX_BYTES:,} bytes allowed", Place(name),
+                     "split it and join the parts with `include:`")]
+        )  # fmt: skip
+    return data
 
 
 def parse(data: bytes, name: str) -> Map:
@@ -161,6 +165,8 @@ class _Builder:
             self.add("ICD001", f"a text of {len(text):,} characters", event, f"at most {MAX_SCALAR:,} are allowed")
             return text[:100]
         if event.style:
+            if "\0" in text:
+                self.add("ICD001", "the text holds a NUL character", event, "remove it")
             return text
         try:
             return self.scalars[text]

@@ -11,6 +11,7 @@ WIDTH = 100  # columns of a line that are shown
 LEAD = 30  # columns kept before the caret where the line is cut
 TAB = "    "
 CUT = "..."
+LONGEST = 1000  # characters of a message; a hostile name may have thousands
 
 _BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")  # what YAML counts as the end of a line
 _ODD = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
@@ -32,6 +33,11 @@ class Lines:
 def printable(text: str) -> str:
     """The text with every character that a terminal could act upon written out: ``\\x1b``, ``\\u202e``."""
     return text if text.isascii() and text.isprintable() else "".join(map(_shown, text))
+
+
+def shown(text: str) -> str:
+    """A message, `printable` and cut to `LONGEST`."""
+    return printable(text if len(text) <= LONGEST else text[: LONGEST - 3] + "...")
 
 
 def _shown(char: str) -> str:

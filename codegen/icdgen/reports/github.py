@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from icdgen.diagnostics import Finding
+from icdgen.reports.excerpt import printable
 
 COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
 
@@ -26,6 +27,7 @@ def _one(finding: Finding) -> str:
     }
     said = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
     text = f"{finding.code}: {finding.message}" + (f"\nhelp: {finding.help}" if finding.help else "")
+    text = "\n".join(map(printable, text.split("\n")))
     return f"::{COMMANDS[finding.severity]} {said}::{_data(text)}"
 
 

@@ -6,9 +6,8 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 
 from icdgen.diagnostics import Finding
-from icdgen.reports.excerpt import Lines, excerpt, printable
+from icdgen.reports.excerpt import Lines, excerpt, printable, shown
 
-LONGEST = 1000  # characters of a message; a hostile name may have thousands
 COLOURS = {
     "error": "\x1b[1;31m",
     "warning": "\x1b[1;33m",
@@ -46,7 +45,7 @@ def summary(findings: Iterable[Finding]) -> str:
 def _one(finding: Finding, lines: Lines, paint) -> str:
     place = paint("place", printable(str(finding.place)))
     kind = paint(finding.severity, f"{finding.severity}[{finding.code}]")
-    text = f"{place}: {kind}: {_words(finding.message)}\n"
+    text = f"{place}: {kind}: {shown(finding.message)}\n"
     found = excerpt(lines, finding.place)
     indent = " " * len(str(finding.place.line))
     if found is not None:
@@ -57,12 +56,8 @@ def _one(finding: Finding, lines: Lines, paint) -> str:
             + f"\n{indent} {bar} {paint(finding.severity, caret, True)}\n"
         )
     if finding.help:
-        text += f"{indent} {paint('gutter', '=')} {paint('place', 'help:')} {_words(finding.help)}\n"
+        text += f"{indent} {paint('gutter', '=')} {paint('place', 'help:')} {shown(finding.help)}\n"
     return text
-
-
-def _words(text: str) -> str:
-    return printable(text if len(text) <= LONGEST else text[: LONGEST - 3] + "...")
 
 
 def _count(number: int, noun: str) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+
 from icdgen import codec
 from icdgen.icd.model import Icd
 from icdgen.values.encode import encode
@@ -24,7 +26,7 @@ def decode(icd: Icd, node_name: str, key: str, data: bytes, kind: str | None = N
     try:
         return frame(icd, node, message, data)
     except codec.LengthError as error:
-        help = ""
+        help = f"`icdgen show {node.name} {shlex.quote(message.name)}` shows what it holds"
         if error.actual == error.expected + 1 and data[0] in message.ids:
             help = "the bytes begin with the id: leave it out"
         raise BadLength(str(error), error.expected, error.actual, help) from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
 from fractions import Fraction
@@ -42,7 +43,7 @@ def encode(
             raise BadValue(
                 "no value for " + ", ".join(f"`{name}`" for name in missing), "give each field as name=value"
             )
-    wrong.report()
+    wrong.report(f"`icdgen show {node.name} {shlex.quote(message.name)}` says what each field takes")
     return frame(icd, node, message, codec.encode(icd.node(message.node), message, values), notes)
 
 
@@ -61,9 +62,9 @@ class _Wrong:
             self.messages.append(about + str(error))
             self.helps.append(error.help)
 
-    def report(self) -> None:
+    def report(self, help: str) -> None:
         if self.messages:
-            raise BadValue("\n".join(self.messages), next(filter(None, self.helps), ""))
+            raise BadValue("\n".join(self.messages), next(filter(None, self.helps), help))
 
 
 def _split(message: Message, assignment: str, vocabulary: tuple[str, ...]) -> tuple[Field, str]:

@@ -13,7 +13,7 @@ from icdgen.values.errors import Ambiguous, NotFound
 
 KINDS = (TELECOMMAND, TELEMETRY, CONFIGURATION)
 MOST_LISTED = 20
-_NUMBER = re.compile(r"[0-9]+|0[xX][0-9A-Fa-f]+")
+_NUMBER = re.compile(r"[0-9]{1,20}|0[xX][0-9A-Fa-f]{1,20}")
 _Named = TypeVar("_Named")
 
 

@@ -18,7 +18,9 @@ _COLUMNS = [
 def to_text(frame: Frame, width: int | None = None) -> str:
     """Message, bytes and a table of its fields. ``width`` is that of the terminal, None for a pipe."""
     message = frame.message
-    lines = [f"{frame.node.name}: {message.name} ({describe(message)}), {message.length} byte{'' if message.length == 1 else 's'}"]
+    lines = [
+        f"{frame.node.name}: {message.name} ({describe(message)}), {message.length} byte{'' if message.length == 1 else 's'}"
+    ]
     if frame.data:
         lines.append(frame.data.hex(" "))
     text = "".join(clean(line) + "\n" for line in lines)

@@ -1,0 +1,116 @@
+"""A run that is skipped must be one that would change nothing: whatever it rests on is looked at, as it was when it was read."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from icdgen import __main__, checked, memo
+from icdgen.icd import load as loading
+from tests.conftest import DEMO
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch, capsys):
+    """Like the command itself, with what it remembers; gives its status and output."""
+    monkeypatch.chdir(tmp_path)
+
+    def go(*arguments: object) -> str:
+        monkeypatch.setattr("sys.argv", ["icdgen", *map(str, arguments)])
+        with pytest.raises(SystemExit) as exit:
+            __main__.main()
+        assert not exit.value.code
+        return capsys.readouterr().out
+
+    return go
+
+
+def test_a_template_behind_a_link(run, demo, tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "c").symlink_to("../elsewhere")
+    template = tmp_path / "elsewhere" / "icdgen.h.j2"
+    for text in ("one\n", "two\n"):
+        template.write_text(text)
+        run("--lang", "c", "--out", "out", "--templates", "own", demo)
+        assert (tmp_path / "out" / "icdgen.h").read_text() == text
+    template.unlink()
+    run("--lang", "c", "--out", "out", "--templates", "own", demo)
+    assert (tmp_path / "out" / "icdgen.h").read_text() != "two\n"
+
+
+def test_an_included_file_by_a_second_path_that_leads_elsewhere(run, tmp_path):
+    head = "icdgen: 1\nnode: {name: %s, title: T, byte_order: little, bit_order: lsb0}\n"
+    (tmp_path / "a.yaml").write_text(head % "aaa")
+    (tmp_path / "b.yaml").write_text(head % "bbb")
+    (tmp_path / "main.yaml").write_text(head % "main" + "include: [a.yaml, link.yaml]\n")
+    link = tmp_path / "link.yaml"
+    for target, outputs in (("a.yaml", {"aaa.h"}), ("b.yaml", {"aaa.h", "bbb.h"})):
+        link.unlink(missing_ok=True)
+        link.symlink_to(target)
+        run("--lang", "c", "--out", "out", "main.yaml")
+        assert {p.name for p in (tmp_path / "out").glob("*.h")} == outputs | {"main.h", "icdgen.h"}
+
+
+def test_an_icd_that_changes_while_it_is_worked_on(run, demo, tmp_path, monkeypatch):
+    """The record tells what was read, not what lay there afterwards."""
+    real = loading.load
+
+    def slow(paths):
+        loaded = real(paths)
+        demo.write_text(DEMO.replace("Roll Angle", "Changed Meanwhile"))
+        return loaded
+
+    monkeypatch.setattr(loading, "load", slow)
+    run("--lang", "c", "--out", "out", demo)
+    monkeypatch.undo()
+    monkeypatch.chdir(tmp_path)
+    assert checked.load_checked([demo]).icd.nodes[0].messages[0].fields[0].name == "Changed Meanwhile"
+
+
+def test_an_erratum_of_a_renamed_node_counts(run, demo, tmp_path):
+    overlay = demo.parent / "errata" / "demo.yaml"
+    overlay.parent.mkdir()
+    entry = (
+        "errata: 1\nnode: demo\nentries:\n  - id: X-1\n    title: %s\n    where: {section: node}\n    printed: {name: demo}\n"
+        "    held: {name: other}\n    why: w\n    evidence: e\n    confidence: certain\n"
+    )
+    overlay.write_text(entry % "one")
+    run("--lang", "c", "--out", "out", demo)
+    first = (tmp_path / "out" / "other.h").read_text()
+    overlay.write_text(entry % "two")
+    run("--lang", "c", "--out", "out", demo)
+    assert (tmp_path / "out" / "other.h").read_text() != first
+
+
+def test_any_flipped_byte_of_the_cache_is_noticed(run, demo, tmp_path):
+    run("--lang", "c", "--out", "out", demo)
+    good = {p: p.read_bytes() for p in (tmp_path / "out").rglob("*") if p.is_file()}
+    cache = [path for top, _, names in os.walk(memo.folder()) for path in (os.path.join(top, name) for name in names)]
+    assert {os.path.basename(os.path.dirname(path)) for path in cache} == {"inputs", "models", "runs", "templates"}
+    for path in cache:
+        with open(path, "r+b") as file:
+            data = bytearray(file.read())
+            data[len(data) * 2 // 3] ^= 0x55
+            file.seek(0)
+            file.write(data)
+    for path in good:
+        path.unlink()
+    run("--lang", "c", "--out", "out", demo)
+    assert {p: p.read_bytes() for p in good} == good
+
+
+def test_what_cannot_be_read_twice_is_not_remembered(tmp_path):
+    os.mkfifo(tmp_path / "fifo")
+    assert memo.fingerprint(str(tmp_path / "fifo")) == memo.UNKNOWN
+    memo.remember("runs", "k", "done", {str(tmp_path / "fifo"): memo.UNKNOWN})
+    assert memo.holds("runs", "k") is None
+
+
+def test_the_cache_does_not_grow_for_ever(monkeypatch):
+    monkeypatch.setattr(memo, "MOST", 3)
+    for number in range(9):
+        memo.remember("runs", str(number), "done", {})
+    assert len(os.listdir(os.path.join(memo.folder(), "runs"))) == 3
+    assert memo.holds("runs", "8") == "done"
