@@ -82,6 +82,10 @@ function(icdgen_add_library target)
   endif()
   list(APPEND command ${icds})
 
+  list(GET ICDGEN_COMMAND 0 program)
+  if(NOT EXISTS "${program}")
+    set(program "")
+  endif()
   if(NOT EXISTS "${stem}.outputs")
     file(TOUCH "${stem}.outputs")
   endif()
@@ -91,7 +95,7 @@ function(icdgen_add_library target)
     OUTPUT "${stem}.stamp"
     BYPRODUCTS ${outputs}
     COMMAND "${CMAKE_COMMAND}" "-DCOMMAND=${command}" "-DSTEM=${stem}" -P "${_ICDGEN_MODULE}"
-    DEPENDS ${icds} "${_ICDGEN_MODULE}"
+    DEPENDS ${icds} ${program} "${_ICDGEN_MODULE}"
     DEPFILE "${stem}.d"
     COMMENT "Generating ${target} (${ARG_LANG})"
     VERBATIM)

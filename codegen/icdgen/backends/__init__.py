@@ -20,8 +20,9 @@ _BUILT_IN = {
     "python": "icdgen.backends.python:PythonBackend",
     "rust": "icdgen.backends.rust:RustBackend",
     "vectors": "icdgen.backends.vectors:VectorsBackend",
-    "c-selftest": "icdgen.backends.c_selftest:CSelftestBackend",
-    "c-testee": "icdgen.backends.c_testee:CTesteeBackend",
+    "c-selftest": "icdgen.backends.c_conformance:CSelftestBackend",
+    "c-testee": "icdgen.backends.c_conformance:CTesteeBackend",
+    "rust-testee": "icdgen.backends.rust_testee:RustTesteeBackend",
 }
 
 

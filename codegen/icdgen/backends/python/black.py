@@ -26,7 +26,11 @@ def bracketed(indent: int, head: str, items: Sequence[str], tail: str) -> str:
 
 
 def definition(indent: int, head: str, parameters: Sequence[str], tail: str) -> str:
-    """The head of a function, laid out like `bracketed`; a single parameter gets a comma, too."""
+    """The head of a function, laid out like `bracketed`; a single parameter gets a comma, too. ``tail`` is ``) -> type:``."""
+    if len(tail) + indent > WIDTH >= len(tail[5:-1]) + indent + 4:
+        pad = " " * indent
+        tail = f") -> (\n{pad}    {tail[5:-1]}\n{pad}):"
+        return exploded(indent, head, parameters, tail)
     if len(parameters) == 1 and len(head) + len(parameters[0]) + len(tail) + indent > WIDTH:
         return exploded(indent, head, parameters, tail)
     return bracketed(indent, head, parameters, tail)
@@ -41,9 +45,10 @@ def display(indent: int, head: str, items: Sequence[str], tail: str) -> str:
 
 
 def assignment(indent: int, target: str, value: str) -> str:
-    """``target = value`` for a value that cannot be split."""
+    """``target = value`` for a name or an attribute."""
     pad = " " * indent
-    if len(target) + len(value) + indent + 3 <= WIDTH or len(value) + indent + 4 > WIDTH:
+    is_hopeless = "." not in value and len(value) + indent + 4 > WIDTH
+    if len(target) + len(value) + indent + 3 <= WIDTH or is_hopeless:
         return f"{pad}{target} = {value}"
     return f"{pad}{target} = (\n{pad}    {value}\n{pad})"
 
@@ -62,6 +67,21 @@ def imported(indent: int, module: str, name: str, alias: str = "") -> str:
         return line
     pad = " " * indent
     return f"from {module} import (\n{pad}    {text},\n{pad})"
+
+
+def stored(indent: int, target: str, value: str, local: str) -> str:
+    """``target = value``, by way of a local variable where that does not fit on a line; without indentation in front."""
+    if len(target) + len(value) + indent + 3 <= WIDTH:
+        return f"{target} = {value}"
+    return f"{local} = {value}\n{assignment(indent, target, local)}"
+
+
+def annotated(indent: int, name: str, kind: str) -> str:
+    """``name: kind``, without indentation in front."""
+    if len(name) + len(kind) + indent + 2 <= WIDTH or len(kind) + indent + 4 > WIDTH:
+        return f"{name}: {kind}"
+    pad = " " * indent
+    return f"{name}: (\n{pad}    {kind}\n{pad})"
 
 
 def by_module(line: tuple[str, str]) -> tuple:

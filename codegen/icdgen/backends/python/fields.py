@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from icdgen.backends.python import names
-from icdgen.backends.python.black import assignment, bracketed, definition, display
+from icdgen.backends.python.black import WIDTH, annotated, assignment, bracketed, definition, display
 from icdgen.backends.python.text import docstring, literal, prose, sentence
 from icdgen.icd.exact import terms
 from icdgen.icd.model import Field
@@ -34,7 +34,7 @@ class Scaled(NamedTuple):
     name: str
     getter: str
     doc: str
-    value: str
+    result: str
     setter: str
     assign: str
 
@@ -61,7 +61,7 @@ def row(field: Field, attribute: str, enum: str, member: str) -> Row:
         physical_parameter = f"{attribute}: {kind} = {default}"
     return Row(
         attribute,
-        f"{attribute}: {kind}",
+        annotated(4, attribute, kind),
         docstring(4, _documentation(field, physical)),
         f"{attribute}: {kind} = {default}",
         physical or attribute,
@@ -74,10 +74,8 @@ def row(field: Field, attribute: str, enum: str, member: str) -> Row:
 
 def _default(field: Field, enum: str, member: str) -> str:
     value = field.const or 0
-    if field.type == "enum":
+    if field.type in ("enum", "bytes"):
         return member
-    if field.type == "bytes":
-        return f"bytes({field.bits // 8})"
     if field.type == "bool":
         return "True" if value else "False"
     return "0.0" if field.type == "float" else str(value)
@@ -116,7 +114,9 @@ def _documentation(field: Field, physical: str) -> list[str]:
 def _limits(field: Field) -> str:
     words = {"min": "at least", "max": "at most", "above": "above", "below": "below"}
     limits = field.limits
-    found = [f"{words[key]} {_number(getattr(limits, key))}" for key in words if limits and getattr(limits, key) is not None]
+    found = [
+        f"{words[key]} {_number(getattr(limits, key))}" for key in words if limits and getattr(limits, key) is not None
+    ]
     return f"Must be {' and '.join(found)}." if found else ""
 
 
@@ -159,14 +159,28 @@ def scaled(field: Field, attribute: str) -> Scaled:
         name,
         definition(4, f"def {name}(", ["self"], ") -> float:"),
         docstring(8, paragraphs),
-        _value(attribute, p, c, q),
+        _result(attribute, p, c, q),
         definition(4, f"def {name}(", ["self", "value: float"], ") -> None:"),
-        bracketed(8, f"self.{attribute} = _codec.raw_value(", arguments, ")"),
+        _stored(attribute, arguments),
     )
 
 
-def _value(attribute: str, p: int, c: int, q: int) -> str:
-    value = f"self.{attribute}"
+def _stored(attribute: str, arguments: list[str]) -> str:
+    call = bracketed(8, f"self.{attribute} = _codec.raw_value(", arguments, ")")
+    if len(call.partition("\n")[0]) <= WIDTH:
+        return call
+    call = bracketed(8, "raw = _codec.raw_value(", arguments, ")")
+    return f"{call}\n{assignment(8, f'self.{attribute}', 'raw')}"
+
+
+def _result(attribute: str, p: int, c: int, q: int) -> str:
+    result = f"return {_value(f'self.{attribute}', p, c, q)}"
+    if len(result) + 8 <= WIDTH:
+        return result
+    return f"{assignment(8, 'raw', f'self.{attribute}').lstrip()}\n        return {_value('raw', p, c, q)}"
+
+
+def _value(value: str, p: int, c: int, q: int) -> str:
     if p != 1:
         value = f"{value} * {p}"
     if c:

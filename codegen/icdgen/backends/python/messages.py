@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from icdgen.backends.python import names
-from icdgen.backends.python.black import bracketed, by_module, definition, display, imported
+from icdgen.backends.python.black import assignment, bracketed, by_module, definition, display, imported
 from icdgen.backends.python.fields import Row, row, scaled
 from icdgen.backends.python.plan import Planner
 from icdgen.backends.python.text import docstring, literal, prose, sentence
@@ -29,18 +29,21 @@ def values(message: Message, node: Node, enums: EnumNames) -> dict[str, object]:
     attributes = [names.attribute(field, node) for field in message.fields]
     plan = Planner(message, node, attributes, enums.of).plan()
     rows, defaults = [], {}
-    for field, attribute in zip(message.fields, attributes):
+    for field, attribute in zip(message.fields, attributes, strict=True):
         enum = enums.of[id(field.enum)] if field.enum else ""
         rows.append(row(field, attribute, enum, _default_member(field, enum, enums, defaults)))
     name = names.class_name(message, node)
-    properties = [scaled(f, a) for f, a in zip(message.fields, attributes) if f.scale]
+    properties = [scaled(f, a) for f, a in zip(message.fields, attributes, strict=True) if f.scale]
     return {
-        "name": name,
+        "head": bracketed(0, f"class {name}(", ["_base.Message"], "):"),
         "module_doc": docstring(0, [_headline(message, node)]),
         "doc": docstring(4, _documentation(message)),
         "imports": _imports(message, node, enums, plan.floats),
         "struct": bracketed(0, "_STRUCT = struct.Struct(", [f'"{plan.format}"'], ")"),
-        "tables": [*plan.tables, *(f"{name} = {value}" for value, name in defaults.items())],
+        "tables": [
+            *plan.tables,
+            *(bracketed(0, f"{name} = {call[0]}", call[1:], ")") for call, name in defaults.items()),
+        ],
         "slots": display(4, "__slots__ = (", [f'"{a}"' for a in attributes], ")").lstrip(),
         "constants": _constants(message, node),
         "infos": _infos(rows),
@@ -57,15 +60,21 @@ def values(message: Message, node: Node, enums: EnumNames) -> dict[str, object]:
     }
 
 
-def _default_member(field: Field, enum: str, enums: EnumNames, defaults: dict[str, str]) -> str:
-    """What an enum field is by default; a value without a name gets a constant of the module, kept in ``defaults``."""
+def _default_member(field: Field, enum: str, enums: EnumNames, defaults: dict[tuple[str, ...], str]) -> str:
+    """What an enum or bytes field is by default; constants of the module are kept in ``defaults``."""
+    if field.type == "bytes":
+        return _constant(defaults, "bytes(", str(field.bits // 8))
     if not enum:
         return ""
     value = field.const or 0
     member = enums.defaults[id(field.enum)].get(value)
     if member:
         return f"{enum}.{member}"
-    return defaults.setdefault(f"{enum}({value})", f"_DEFAULT_{len(defaults)}")
+    return _constant(defaults, "_codec.unnamed(", enum, str(value))
+
+
+def _constant(defaults: dict[tuple[str, ...], str], *call: str) -> str:
+    return defaults.setdefault(call, f"_DEFAULT_{len(defaults)}")
 
 
 def _infos(rows: list[Row]) -> str:
@@ -103,7 +112,7 @@ def _documentation(message: Message) -> list[str]:
 
 
 def _constants(message: Message, node: Node) -> list[str]:
-    found = [f'NODE = "{node.name}"', f"NAME = {literal(message.name)}", f'KIND = "{message.kind}"']
+    found = [f'NODE = "{node.name}"', assignment(4, "NAME", literal(message.name)).lstrip(), f'KIND = "{message.kind}"']
     if message.kind == "configuration":
         found += [f"SET_ID = {message.set_id}", f"GET_ID = {message.get_id}", "IDS = (SET_ID, GET_ID)"]
     else:
@@ -121,8 +130,8 @@ def _constants(message: Message, node: Node) -> list[str]:
 
 
 def _imports(message: Message, node: Node, enums: EnumNames, floats: bool) -> list[str]:
-    found = [f"from .. import _base, _codec{', _floats' if floats else ''}"]
+    found = [f"from ... import _base, _codec{', _floats' if floats else ''}"]
     wanted = {id(f.enum): f.enum for f in message.fields if f.enum}
     homes = sorted((enums.homes[key][0] == node.name, *enums.homes[key], enums.of[key]) for key in wanted)
-    lines = [(f".{module}" if own else f"..{home}.{module}", name) for own, home, module, name in homes]
+    lines = [(f".{module}" if own else f"...{home}.{names.TYPES}.{module}", name) for own, home, module, name in homes]
     return found + [imported(0, source, name) for source, name in sorted(lines, key=by_module)]

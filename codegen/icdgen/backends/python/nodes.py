@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from icdgen.backends.python import names
-from icdgen.backends.python.black import WIDTH, by_module, display, exploded, imported
+from icdgen.backends.python.black import WIDTH, bracketed, by_module, display, exploded, imported
 from icdgen.backends.python.text import docstring, literal, prose, sentence
 from icdgen.icd.model import Enum, Icd, Node
 
@@ -16,7 +16,7 @@ def values(icd: Icd, node: Node) -> dict[str, object]:
     for owner in (*icd.included(node), node):
         for one in (*owner.messages, *owner.enums):
             module = names.module_name(one, owner)
-            home = f".{module}" if owner is node else f"..{owner.name}.{module}"
+            home = f".{names.TYPES}.{module}" if owner is node else f"..{owner.name}.{names.TYPES}.{module}"
             homes.append((home, names.class_name(one, owner)))
         for message in owner.messages:
             classes[owner.name, message.name] = names.class_name(message, owner)
@@ -78,7 +78,7 @@ def enum_values(enum: Enum, node: Node) -> dict[str, object]:
         declaration = member_declaration(names.member(member, node), str(member.value), literal(member.name))
         members.append((declaration, docstring(4, notes) if notes else ""))
     return {
-        "name": names.class_name(enum, node),
+        "head": bracketed(0, f"class {names.class_name(enum, node)}(", ["_enumeration.OpenEnum"], "):"),
         "module_doc": docstring(0, [f"{prose(enum.name)}, an enumeration of {prose(node.title)}."]),
         "doc": docstring(4, paragraphs),
         "members": members,

@@ -10,13 +10,13 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import NamedTuple
 
-from icdgen.backends.python.black import bracketed, exploded
+from icdgen.backends.python.black import bracketed, stored
+from icdgen.backends.python.statements import BODY, INNER, call, moved, table, to_bytes, total, unpacked
 from icdgen.icd.model import Field, Message, Node
 from icdgen.layout import byte_range, is_whole_bytes, pieces
 
 _INTEGERS = {8: "B", 16: "H", 32: "I", 64: "Q"}
 _FLOATS = {32: "f", 64: "d"}
-_BODY, _INNER = 8, 12  # indentation of a method's statements, and of those in its `try`
 
 
 class Plan(NamedTuple):
@@ -49,11 +49,11 @@ class Planner:
         self.items: list[_Item] = []
         self.assign: list[str] = []
         self.prepare: list[str] = []
-        self.tables: dict[str, str] = {}  # definition -> name
+        self.tables: dict[tuple[str, ...], str] = {}  # what makes it and of what -> its name
         self.parts: dict[int, list[tuple[int, Field, str]]] = {}  # byte -> shift, field, attribute
         self.terms: dict[int, list[str]] = {}  # byte -> what crossing fields add to it
         self.floats: list[str] = []  # 32-bit floats that the struct converts
-        self.fields = list(zip(message.fields, attributes))
+        self.fields = list(zip(message.fields, attributes, strict=True))
 
     def plan(self) -> Plan:
         """The finished plan."""
@@ -90,13 +90,13 @@ class Planner:
             seen.update(span)
         return shared
 
-    def _table(self, kind: str, arguments: str, prefix: str) -> str:
-        """The name of a module-level table; equal ones are made once."""
-        definition = f"_codec.{kind}({arguments})"
-        if definition not in self.tables:
+    def _table(self, prefix: str, kind: str, *arguments: str) -> str:
+        """The name of a table of the module; equal ones are made once."""
+        key = (kind, *arguments)
+        if key not in self.tables:
             number = sum(name.startswith(prefix) for name in self.tables.values())
-            self.tables[definition] = f"{prefix}_{number}"
-        return self.tables[definition]
+            self.tables[key] = f"{prefix}_{number}"
+        return self.tables[key]
 
     def _kind(self, field: Field) -> str:
         if field.type == "enum":
@@ -108,7 +108,7 @@ class Planner:
         own, local = f"self.{name}", f"v{byte}"
         if field.type == "bytes":
             self.items.append(_Item(byte, size, f"{size}s", own, local))
-            self.prepare.append(f"{local} = _codec.sized({own}, {size})")
+            self.prepare.append(call(local, "_codec.sized", own, str(size)))
         elif field.type == "float":
             self.items.append(_Item(byte, size, _FLOATS[field.bits], own, own))
             if field.bits == 32:
@@ -118,7 +118,7 @@ class Planner:
             order = f'"{self.node.byte_order}"'
             self.items.append(_Item(byte, size, f"{size}s", local, local))
             self._assign(field, name, f"int.from_bytes({local}, {order}{signed})")
-            self.prepare.append(f"{local} = {own}.to_bytes({size}, {order}{signed})")
+            self.prepare.append(to_bytes(local, own, f"to_bytes({size}, {order}{signed})"))
         else:
             code = _INTEGERS[field.bits]
             if field.type != "enum":
@@ -126,16 +126,19 @@ class Planner:
                 return
             self.items.append(_Item(byte, size, code, local, own))
             if field.bits == 8:
-                table = self._table("bit_table", f"(0, 8, {self._kind(field)})", "_BITS")
-                self.assign.append(f"self.{name} = {table}[{local}]")
+                rows = self._table("_BITS", "bit_table", f"(0, 8, {self._kind(field)})")
+                self._store(name, f"{rows}[{local}]")
             else:
                 self._assign(field, name, local)
+
+    def _store(self, name: str, value: str) -> None:
+        self.assign.append(stored(BODY, f"self.{name}", value, f"value_{len(self.assign)}"))
 
     def _assign(self, field: Field, name: str, value: str) -> None:
         """Assigns an integer's value as its type needs it."""
         if field.type == "enum":
-            value = f"{self._table('Members', self._kind(field), '_MEMBERS')}[{value}]"
-        self.assign.append(f"self.{name} = {value}")
+            value = f"{self._table('_MEMBERS', 'Members', self._kind(field))}[{value}]"
+        self._store(name, value)
 
     def _bit_byte(self, byte: int) -> None:
         """A byte of bits: an item, the fields within it, and what crossing fields add to it."""
@@ -144,16 +147,16 @@ class Planner:
         parts = sorted(self.parts.get(byte, ()), key=lambda part: part[0])
         terms = self.terms.get(byte, [])
         if parts:
-            spec = ", ".join(f"({shift}, {field.bits}, {self._kind(field)})" for shift, field, _ in parts)
-            table = self._table("bit_table", spec, "_BITS")
-            inverse = table.replace("_BITS", "_BYTES")
-            self.tables[f"_codec.Inverse({table})"] = inverse
+            spec = (f"({shift}, {field.bits}, {self._kind(field)})" for shift, field, _ in parts)
+            rows = self._table("_BITS", "bit_table", *spec)
+            inverse = rows.replace("_BITS", "_BYTES")
+            self.tables["Inverse", rows] = inverse
             names = [f"self.{name}" for _, _, name in parts]
             if len(names) == 1:
-                self.assign.append(f"{names[0]} = {table}[{local}]")
+                self._store(parts[0][2], f"{rows}[{local}]")
             else:
-                self.assign.append(_unpacked(_BODY, names, f"{table}[{local}]"))
-            self.prepare.append(bracketed(_INNER, f"{local} = {inverse}[", names, "]").lstrip())
+                self.assign.append(unpacked(BODY, names, f"{rows}[{local}]"))
+            self.prepare.append(bracketed(INNER, f"{local} = {inverse}[", names, "]").lstrip())
         for number, term in enumerate(terms):
             self.prepare.append(f"{local} {'|=' if number or parts else '='} {term}")
 
@@ -161,39 +164,33 @@ class Planner:
         """Encoding of a field that crosses bytes: its bits as an integer, and its pieces for the bytes."""
         local = f"n{field.at}"
         if field.type == "float":
-            self.prepare.append(f"{local} = _floats.float{field.bits}_bits(self.{name})")
+            self.prepare.append(call(local, f"_floats.float{field.bits}_bits", f"self.{name}"))
         else:
             function = "signed_bits" if field.signed else "unsigned_bits"
-            self.prepare.append(f"{local} = _codec.{function}(self.{name}, {field.bits})")
+            self.prepare.append(call(local, f"_codec.{function}", f"self.{name}", str(field.bits)))
         for piece in pieces(field, self.node):
-            term = f"{local} >> {piece.at}" if piece.at else local
-            if piece.at + piece.bits < field.bits:
-                term = f"({term}) & 0x{(1 << piece.bits) - 1:02X}" if piece.at else f"{term} & 0x{(1 << piece.bits) - 1:02X}"
-            if piece.shift:
-                term = f"({term}) << {piece.shift}" if term != local else f"{term} << {piece.shift}"
+            is_top = piece.at + piece.bits == field.bits
+            term = moved(local, piece.at, 0 if is_top else piece.bits, piece.shift)
             self.terms.setdefault(piece.byte, []).append(term)
 
     def _put_together(self, field: Field, name: str) -> None:
         """Decoding of a field that crosses bytes."""
         local = f"n{field.at}"
         for number, piece in enumerate(pieces(field, self.node)):
-            term = f"v{piece.byte} >> {piece.shift}" if piece.shift else f"v{piece.byte}"
-            if piece.shift + piece.bits < 8:
-                term = f"({term}) & 0x{(1 << piece.bits) - 1:02X}" if piece.shift else f"{term} & 0x{(1 << piece.bits) - 1:02X}"
-            if piece.at:
-                term = f"({term}) << {piece.at}" if " " in term else f"{term} << {piece.at}"
+            is_top = piece.shift + piece.bits == 8
+            term = moved(f"v{piece.byte}", piece.shift, 0 if is_top else piece.bits, piece.at)
             self.assign.append(f"{local} {'|=' if number else '='} {term}")
         if field.type == "float":
-            self.assign.append(f"self.{name} = _floats.float{field.bits}({local})")
+            self._store(name, f"_floats.float{field.bits}({local})")
         elif field.signed:
-            self.assign.append(f"self.{name} = _codec.signed({local}, {field.bits})")
+            self._store(name, f"_codec.signed({local}, {field.bits})")
         else:
             self._assign(field, name, local)
 
     def _keep_nans(self) -> None:
         if self.floats:
             values = [f"self.{name}" for name in self.floats]
-            self.assign.append(_total(_BODY, values))
+            self.assign.append(total(BODY, values))
             self.assign.append("if _floats.isnan(total):\n            _floats.keep_nans(self, data)")
 
     def _format(self) -> str:
@@ -209,44 +206,18 @@ class Planner:
         return text
 
     def _definitions(self) -> list[str]:
-        found = []
-        for definition, name in self.tables.items():
-            head, _, arguments = definition.partition("(")
-            items = arguments[:-1].replace("), (", ")\n(").split("\n")
-            found.append(bracketed(0, f"{name} = {head}(", items, ")"))
-        return found
+        return [table(name, *made) for made, name in self.tables.items()]
 
     def _unpack(self) -> str:
         if not self.items:
             return "            _unpack(data)"
-        return " " * _INNER + _unpacked(_INNER, [item.target for item in self.items], "_unpack(data)")
+        return " " * INNER + unpacked(INNER, [item.target for item in self.items], "_unpack(data)")
 
     def _pack(self) -> str:
         values = [item.value for item in self.items]
         if not self.floats:
-            return bracketed(_INNER, "return _pack(", values, ")")
-        lines = [bracketed(_INNER, "frame = _pack(", values, ")")]
-        lines.append(" " * _INNER + _total(_INNER, [f"self.{name}" for name in self.floats]))
+            return bracketed(INNER, "return _pack(", values, ")")
+        lines = [bracketed(INNER, "frame = _pack(", values, ")")]
+        lines.append(" " * INNER + total(INNER, [f"self.{name}" for name in self.floats]))
         lines.append("            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame")
         return "\n".join(lines)
-
-
-def _unpacked(indent: int, targets: Sequence[str], value: str) -> str:
-    """The assignment of a tuple to its targets, without indentation in front."""
-    if len(targets) == 1:
-        return f"({targets[0]},) = {value}"
-    line = f"{', '.join(targets)} = {value}"
-    if len(line) + indent <= 88:
-        return line
-    return exploded(indent, "(", targets, f") = {value}").lstrip()
-
-
-def _total(indent: int, values: Sequence[str]) -> str:
-    """The sum of floats, which is NaN if one of them is."""
-    if len(values) == 1:
-        return f"total = {values[0]}"
-    line = f"total = {' + '.join(values)}"
-    if len(line) + indent <= 88:
-        return line
-    pad = " " * indent
-    return f"total = (\n{pad}    " + f"\n{pad}    + ".join(values) + f"\n{pad})"

@@ -13,13 +13,16 @@ def identifiers(icd: Icd, package: str) -> Iterator[Identifier]:
     """All names that come from the ICDs, and what they clash with of the names that are always there."""
     for node in icd.nodes:
         yield Identifier(f"package {package}", node.name, f"node `{node.name}`", node.source)
-        if node.name == "testee":
-            yield Identifier(f"package {package}", "testee", "the module `testee`", None)
+        if node.name in names.IN_PACKAGE:
+            said = names.IN_PACKAGE[node.name].format(node.name)
+            yield Identifier(f"package {package}", node.name, said, None)
         yield from _node(icd, node, f"{package}.{node.name}")
         for enum in node.enums:
             scope = f"members of {package}.{node.name}.{names.class_name(enum, node)}"
             for member in enum.members:
-                yield Identifier(scope, names.member(member, node), f"member `{member.name}` of `{enum.name}`", member.source)
+                yield Identifier(
+                    scope, names.member(member, node), f"member `{member.name}` of `{enum.name}`", member.source
+                )
         for message in node.messages:
             scope = f"members of {package}.{node.name}.{names.class_name(message, node)}"
             yield from _message(message, node, scope)
@@ -30,11 +33,6 @@ def _node(icd: Icd, node: Node, scope: str) -> Iterator[Identifier]:
         for one, kind in (*((m, "message") for m in owner.messages), *((e, "enumeration") for e in owner.enums)):
             said = f"{kind} `{one.name}`"
             yield Identifier(f"module {scope}", names.class_name(one, owner), said, one.source)
-            if owner is node:
-                module = names.module_name(one, owner)
-                yield Identifier(f"modules of {scope}", module, said, one.source)
-                if module in names.IN_NODE:
-                    yield Identifier(f"modules of {scope}", module, names.IN_NODE[module].format(module), None)
 
 
 def _message(message: Message, node: Node, scope: str) -> Iterator[Identifier]:

@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 
 from icdgen import __version__
 from icdgen.backends import Identifier
-from icdgen.backends.rust import declared, names, nodes, testee
+from icdgen.backends.rust import declared, names, nodes
 from icdgen.backends.rust.enumerations import EnumRow
 from icdgen.backends.rust.messages import MessageRow
 from icdgen.icd.model import Icd, Node
@@ -25,13 +25,15 @@ class RustBackend:
         self.crate = crate
 
     def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
-        """The crate, with a testee for the conformance run among its examples."""
+        """The crate."""
         common = {"version": __version__, "crate": self.crate}
         enums = names.Enums(icd)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
-        yield PurePosixPath("src/lib.rs"), render("lib.rs.j2", nodes=[nodes.Summary(node) for node in icd.nodes], **common)
+        yield PurePosixPath("src/lib.rs"), render(
+            "lib.rs.j2", nodes=[nodes.Summary(node) for node in icd.nodes], **common
+        )
         yield PurePosixPath("src/support.rs"), render("support.rs.j2", **common)
-        rows = {node.name: message_rows(node, enums) for node in icd.nodes}
+        rows = {node.name: message_rows(icd, node, enums) for node in icd.nodes}
         for node in icd.nodes:
             folder = PurePosixPath("src") / node.name
             yield folder / "mod.rs", render("node.rs.j2", node=nodes.NodeRow(icd, node, rows), **common)
@@ -40,14 +42,13 @@ class RustBackend:
                 yield folder / "enums.rs", render("enums.rs.j2", node=node.name, enums=members, **common)
             for row in rows[node.name]:
                 yield folder / f"{row.module}.rs", render("message.rs.j2", m=row, node=node.name, **common)
-        yield from testee.files(icd, rows, enums, render, common)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that the crate declares, by scope."""
         return declared.identifiers(icd)
 
 
-def message_rows(node: Node, enums: names.Enums) -> list[MessageRow]:
+def message_rows(icd: Icd, node: Node, enums: names.Enums) -> list[MessageRow]:
     """The node's own messages."""
-    kind = nodes.id_type(node.messages)
+    kind = nodes.id_type(icd)
     return [MessageRow(message, node, enums, kind) for message in node.messages]

@@ -41,6 +41,11 @@ def ids(message: Message, id_type: str) -> list[Constant]:
     ]
 
 
+def has_some(field: Field) -> bool:
+    """Whether the ICD says anything about single values of the field."""
+    return field.const is not None or bool(field.special) or field.limits is not None
+
+
 def of_field(field: Field, node: Node) -> Iterator[Constant]:
     """The constant of a field with only one valid value, its special values, its limits."""
     if field.const is not None:
@@ -75,16 +80,30 @@ def _raw(field: Field, name: str, value: int, text: str) -> Constant:
     return Constant(name, doc([text], "    "), rhs("    ", f"pub const {name}: {kind} =", literal, ";"))
 
 
+def limit_names(field: Field, node: Node) -> dict[str, str]:
+    """``REFERENCE_SPIN_RATE_DEG_PER_S_BELOW`` by ``below``, and so on; of the limits that the field has."""
+    if field.limits is None:
+        return {}
+    prefix = names.constant_name(field, node)
+    if field.scale is not None:
+        prefix = names.physical_name(field, prefix).upper()
+    return {key: f"{prefix}_{key.upper()}" for key, _ in _LIMITS if getattr(field.limits, key) is not None}
+
+
 def _limits(field: Field, node: Node) -> Iterator[Constant]:
-    prefix = names.physical_name(field, node).upper() if field.scale else names.constant_name(field, node)
+    known = limit_names(field, node)
     unit = f" in {prose(field.unit.symbol)}" if field.unit else ""
     for key, text in _LIMITS:
-        bound = getattr(field.limits, key)
-        if bound is None:
+        if key not in known:
             continue
+        name, bound = known[key], getattr(field.limits, key)
         kind, literal = "f64", double(bound.numerator / bound.denominator)
-        if field.scale is None and field.type != "float" and bound.denominator == 1 and field.raw_min <= bound <= field.raw_max:
+        if (
+            field.scale is None
+            and field.type != "float"
+            and bound.denominator == 1
+            and field.raw_min <= bound <= field.raw_max
+        ):
             kind, literal = names.integer_type(field), integer(int(bound))
-        name = f"{prefix}_{key.upper()}"
         declaration = rhs("    ", f"pub const {name}: {kind} =", literal, ";")
         yield Constant(name, doc([f"{text}: {prose(field.name)}{unit}."], "    "), declaration)

@@ -10,7 +10,7 @@ from icdgen.icd.model import Enum, Icd, Message, Node
 
 _METHODS = ("from_bytes", "from_array", "to_bytes", "try_to_bytes", "default")
 _CONSTANTS = ("NAME", "LENGTH", "ID", "SET_ID", "GET_ID")
-_ENUM_USES = ("Option", "From")
+_ENUM_USES = ("Option", "From", "Enumeration")
 _OURS = "a name of the generated code"
 
 
@@ -45,7 +45,9 @@ def _node(icd: Icd, node: Node, by_name: dict[str, Node]) -> Iterator[Identifier
         for message in icd.messages_of(node):
             if getattr(message, pick) is not None:
                 name = names.type_name(message, by_name[message.node])
-                yield Identifier(f"variants of {node.name}::{sum_type}", name, f"message `{message.name}`", message.source)
+                yield Identifier(
+                    f"variants of {node.name}::{sum_type}", name, f"message `{message.name}`", message.source
+                )
 
 
 def _enum(enum: Enum, node: Node) -> Iterator[Identifier]:
@@ -58,17 +60,18 @@ def _enum(enum: Enum, node: Node) -> Iterator[Identifier]:
 
 def _message(message: Message, node: Node) -> Iterator[Identifier]:
     where = f"{node.name}::{message.name}"
-    methods, associated = f"methods of {where}", f"constants of {where}"
+    fields, methods, associated = f"fields of {where}", f"methods of {where}", f"constants of {where}"
     for name in _METHODS:
         yield Identifier(methods, name, _OURS, None)
     for name in _CONSTANTS:
         yield Identifier(associated, name, _OURS, None)
     for field in message.fields:
         owner = f"field `{field.name}` of `{message.name}`"
-        yield Identifier(f"fields of {where}", names.field_name(field, node), owner, field.source)
+        name = names.field_name(field, node)
+        yield Identifier(fields, name, owner, field.source)
         if field.scale is not None:
-            getter = names.physical_name(field, node)
+            getter = names.physical_name(field, name)
             yield Identifier(methods, getter, owner, field.source)
             yield Identifier(methods, f"set_{getter}", owner, field.source)
-        for constant in constants.of_field(field, node):
+        for constant in constants.of_field(field, node) if constants.has_some(field) else ():
             yield Identifier(associated, constant.name, owner, field.source)

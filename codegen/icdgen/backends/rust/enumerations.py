@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from icdgen.backends.rust import comments, names
 from icdgen.backends.rust.names import Enums
-from icdgen.backends.rust.text import arm, doc, integer, string
+from icdgen.backends.rust.text import arm, doc, implementation, integer, signature, string
 from icdgen.icd.model import Enum, Node
 
 
@@ -40,10 +40,13 @@ class EnumRow:
                     doc(comments.member(member), "    "),
                     member.value == 0,
                     arm("            ", integer(member.value), f"Self::{name}"),
-                    arm("            ", f"{self.type}::{name}", integer(member.value)),
+                    arm("            ", f"Self::{name}", integer(member.value)),
                     arm("            ", f"Self::{name}", string(member.name)),
                 )
             )
         self.complete = len(enum.members) == 1 << bits
         self.has_zero = any(member.default for member in self.members)
-        self.last_to_raw = arm("            ", f"{self.type}::{self.other}(raw)", "raw")
+        self.enumeration_head = implementation("Enumeration", self.type)
+        self.from_raw_head = implementation(f"From<{self.raw}>", self.type)
+        self.to_raw_head = implementation(f"From<{self.type}>", self.raw)
+        self.to_raw_signature = signature("fn from", (f"value: {self.type}",), "Self")

@@ -9,14 +9,14 @@ from icdgen.backends.rust.text import WIDTH, mask
 from icdgen.icd.model import Field, Node
 from icdgen.layout import Piece, byte_range, is_whole_bytes, pieces
 
-LONG_NAME = 38  # longer names are bound to a short one first, so that no line has to be broken
+LONG_NAME = 36  # longer names are bound to a short one first, so that no line has to be broken
 FLAGS_FROM = 4  # so many flags of one byte are taken from the table of the support module
 
 
 def raw_type(field: Field, node: Node, enums: Enums) -> str:
     """Type of the raw value."""
     if field.type == "enum":
-        return enums.path(field.enum, node)
+        return f"Coded<{enums.path(field.enum, node)}>"
     if field.type == "bytes":
         return f"[u8; {field.bits // 8}]"
     if field.type == "float":
@@ -34,46 +34,45 @@ def is_narrow(field: Field, enums: Enums) -> bool:
 def reading(field: Field, node: Node, enums: Enums, tables: set[int]) -> str:
     """Expression of the raw value, from ``bytes``; ``tables`` are the bytes whose flags stand in ``flags_N``."""
     if field.type == "bytes":
-        return f"take(bytes, {field.at // 8})"
+        return f"array(bytes, {field.at // 8})"
     row = pieces(field, node)
     if field.type == "bool":
         byte, shift = row[0].byte, row[0].shift
         return f"flags_{byte}[{shift}]" if byte in tables else f"bytes[{byte}] & {mask(1 << shift)} != 0"
     size = storage(field.bits)
-    path = enums.path(field.enum, node) if field.type == "enum" else ""
-    wider = enums.storage(field.enum) if path else size
+    wider = enums.storage(field.enum) if field.type == "enum" else size
     if is_whole_bytes(field) and field.bits == size:
-        return _whole(field, node, size, path, wider)
+        return _whole(field, node, size, wider)
     if len(row) == 1:
-        return _finished(field, _one_byte(row[0]), size, path, wider)
+        return _finished(field, _one_byte(row[0]), size, wider)
     lines = [f"let mut value = {_first(row[0], size)};"]
     lines += [f"value |= {_placed(piece, size)};" for piece in row[1:]]
-    lines.append(_finished(field, "value", size, path, wider))
+    lines.append(_finished(field, "value", size, wider))
     body = "".join(f"\n                {line}" for line in lines)
     return f"{{{body}\n            }}"
 
 
-def _whole(field: Field, node: Node, size: int, path: str, wider: int) -> str:
+def _whole(field: Field, node: Node, size: int, wider: int) -> str:
     first = field.at // 8
     if size == 8:
         byte = f"bytes[{first}]"
-        if path:
-            return _enum(path, byte, size, wider)
+        if field.type == "enum":
+            return _enum(byte, size, wider)
         return byte if field.type == "uint" else f"i8::from_le_bytes([{byte}])"
     kind = {"float": "f", "int": "i"}.get(field.type, "u")
     order = "le" if node.byte_order == "little" else "be"
-    value = f"{kind}{size}::from_{order}_bytes(take(bytes, {first}))"
-    return _enum(path, value, size, wider) if path else value
+    value = f"{kind}{size}::from_{order}_bytes(take!(bytes[{first}; {size // 8}]))"
+    return _enum(value, size, wider) if field.type == "enum" else value
 
 
-def _enum(path: str, value: str, size: int, wider: int) -> str:
-    return f"{path}::from({value})" if size == wider else f"{path}::from(u{wider}::from({value}))"
+def _enum(value: str, size: int, wider: int) -> str:
+    return f"Coded::from_raw({value})" if size == wider else f"Coded::from_raw(u{wider}::from({value}))"
 
 
-def _finished(field: Field, value: str, size: int, path: str, wider: int) -> str:
+def _finished(field: Field, value: str, size: int, wider: int) -> str:
     """The unsigned value of ``size`` bits as the field's type."""
-    if path:
-        return _enum(path, value, size, wider)
+    if field.type == "enum":
+        return _enum(value, size, wider)
     if field.type == "float":
         return f"f{size}::from_bits({value})"
     if field.type == "uint":
@@ -111,9 +110,7 @@ def _widened(piece: Piece, size: int) -> str:
 
 def _placed(piece: Piece, size: int) -> str:
     value = _widened(piece, size)
-    if size == 8:
-        value = _parenthesised(value)
-    return f"{value} << {piece.at}" if piece.at else value
+    return f"{_parenthesised(value) if size == 8 else value} << {piece.at}" if piece.at else value
 
 
 @lru_cache(maxsize=4096)
@@ -132,7 +129,7 @@ def writing(field: Field, node: Node, enums: Enums, name: str, constant: str) ->
     source, before = _bound(name)
     lines = list(before)
     if field.type == "bytes":
-        lines.append(_copied(field.at // 8, field.bits // 8, source))
+        lines.append(f"put_array(&mut bytes, {field.at // 8}, &{source});")
         return lines
     row = pieces(field, node)
     if field.type == "bool":
@@ -144,13 +141,13 @@ def writing(field: Field, node: Node, enums: Enums, name: str, constant: str) ->
     if is_whole_bytes(field) and not narrow:
         return lines + _put_whole(field, node, source, size)
     if field.type == "enum":
-        source = f"u{size}::from({source})"
+        source = f"{source}.raw()"
     elif field.type == "float":
         source = f"{source}.to_bits()"
     if narrow:
         statement = f"let value = {constant}.fit({source})?;"
-        if len(statement) + 8 > WIDTH:
-            lines.append(f"let value = {source};") if source != "value" else None
+        if len(statement) > WIDTH - 16:
+            lines += () if source == "value" else (f"let value = {source};",)
             statement = f"let value = {constant}.fit(value)?;"
         lines.append(statement)
         source = "value"
@@ -164,16 +161,16 @@ def writing(field: Field, node: Node, enums: Enums, name: str, constant: str) ->
 
 
 def _copied(first: int, count: int, source: str) -> str:
-    return f"bytes[{first}..{first + count}].copy_from_slice(&{source});"
+    return f"put!({source} => bytes[{first}; {count}]);"
 
 
 def _put_whole(field: Field, node: Node, source: str, size: int) -> list[str]:
     first = field.at // 8
     if size == 8 and field.type != "int":
-        return [f"bytes[{first}] = {f'u8::from({source})' if field.type == 'enum' else source};"]
+        return [f"bytes[{first}] = {source}{'.raw()' if field.type == 'enum' else ''};"]
     order = "le" if node.byte_order == "little" else "be"
     if field.type == "enum":
-        return [f"let value = u{size}::from({source});", _copied(first, size // 8, f"value.to_{order}_bytes()")]
+        return [f"let value = {source}.raw();", _copied(first, size // 8, f"value.to_{order}_bytes()")]
     return [_copied(first, size // 8, f"{source}.to_{order}_bytes()")]
 
 

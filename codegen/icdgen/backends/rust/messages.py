@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from typing import NamedTuple
 
 from icdgen.backends.rust import comments, constants, fields, names, scales
 from icdgen.backends.rust.names import Enums
-from icdgen.backends.rust.text import LITERAL_WIDTH, WIDTH, doc, integer, prose, rhs, string
+from icdgen.backends.rust.text import LITERAL_WIDTH, WIDTH, doc, integer, prose, rhs, signature, string
 from icdgen.icd.model import Field, Message, Node
-
-
-_CALL = re.compile(r"([A-Za-z_0-9:]+)\((.+)\)\Z")  # a call of one argument around everything
 
 
 class Scaled(NamedTuple):
@@ -72,18 +68,31 @@ class MessageRow:
         self.fields = [_row(field, node, enums, tables) for field in message.fields]
         narrow = [fields.is_narrow(field, enums) for field in message.fields]
         self.fallible = any(narrow)
-        self.scaled = [_scaled(row, node) for row in self.fields if row.model.scale is not None]
-        self.checked = [_checked(row, enums) for row, thin in zip(self.fields, narrow, strict=True) if thin or row.model.scale]
-        self.constants = [one for field in message.fields for one in constants.of_field(field, node)]
+        self.scaled = [_scaled(row) for row in self.fields if row.model.scale is not None]
+        self.checked = [
+            _checked(row, enums) for row, thin in zip(self.fields, narrow, strict=True) if thin or row.model.scale
+        ]
+        self.constants = [
+            one for field in message.fields if constants.has_some(field) for one in constants.of_field(field, node)
+        ]
         self.literal = _literal([(row.name, row.reading) for row in self.fields])
-        plain = all(row.model.const in (None, 0) and (row.model.type != "bytes" or row.model.bits <= 256) for row in self.fields)
+        plain = all(
+            row.model.const in (None, 0) and (row.model.type != "bytes" or row.model.bits <= 256) for row in self.fields
+        )
         self.default = None if plain else _literal([(row.name, row.default) for row in self.fields])
         floats = any(field.type == "float" for field in message.fields)
-        derived = ["Clone", "Copy", "Debug"] + (["Default"] if plain else []) + ["PartialEq"] + ([] if floats else ["Eq", "Hash"])
+        derived = (
+            ["Clone", "Copy", "Debug"]
+            + (["Default"] if plain else [])
+            + ["PartialEq"]
+            + ([] if floats else ["Eq", "Hash"])
+        )
         self.derives = ", ".join(derived)
         self.floats = floats
         self.imports = _imports(self)
-        self.uses_enums = any(f"{names.ENUMS_MODULE}::" in row.type and "crate::" not in row.type for row in self.fields)
+        self.uses_enums = any(
+            f"{names.ENUMS_MODULE}::" in row.type and "crate::" not in row.type for row in self.fields
+        )
 
 
 def _row(field: Field, node: Node, enums: Enums, tables: set[int]) -> FieldRow:
@@ -109,7 +118,7 @@ def _default(field: Field, kind: str) -> str:
         return f"[0; {field.bits // 8}]"
     value = field.const or 0
     if field.type == "enum":
-        return f"{kind}::from({integer(value)})" if value else f"{kind}::default()"
+        return f"Coded::from_raw({integer(value)})"
     if field.type == "float":
         return "0.0"
     return ("true" if value else "false") if field.type == "bool" else integer(value)
@@ -122,23 +131,25 @@ def _literal(rows: list[tuple[str, str]]) -> str:
     inline = ", ".join(f"{name}: {value}" for name, value in rows)
     if len(inline) <= LITERAL_WIDTH and "\n" not in inline:
         return f"        Self {{ {inline} }}"
-    lines = "\n".join(_entry(name, value) for name, value in rows)
-    return f"        Self {{\n{lines}\n        }}"
+    statements, rows = _hoisted(rows)
+    lines = [rhs("            ", f"{name}:", value, ",") for name, value in rows]
+    return "\n".join((*statements, "        Self {", *lines, "        }"))
 
 
-def _entry(name: str, value: str) -> str:
-    line = f"            {name}: {value},"
-    if "\n" in value or len(line) <= WIDTH:
-        return line
-    called = _CALL.match(value)
-    if called is None:
-        return f"            {name}:\n                {value},"
-    return f"            {name}: {{\n                let value = {called[2]};\n                {called[1]}(value)\n            }},"
+def _hoisted(rows: list[tuple[str, str]]) -> tuple[list[str], list[tuple[str, str]]]:
+    """Statements that bind what is too long for its line of the literal, and the rows of the literal."""
+    statements, kept = [], []
+    for index, (name, value) in enumerate(rows):
+        if "\n" not in value and len(name) + len(value) + 15 > WIDTH:
+            statements.append(f"        let value_{index} = {value};")
+            value = f"value_{index}"
+        kept.append((name, value))
+    return statements, kept
 
 
-def _scaled(row: FieldRow, node: Node) -> Scaled:
+def _scaled(row: FieldRow) -> Scaled:
     field, name = row.model, row.name
-    getter = names.physical_name(field, node)
+    getter = names.physical_name(field, name)
     unit = f" in {prose(field.unit.symbol)}" if field.unit else ", as a physical value"
     span = scales.physical_range(field.scale, field.raw_min, field.raw_max)
     setter = f"set_{getter}"
@@ -160,15 +171,6 @@ def _scaled(row: FieldRow, node: Node) -> Scaled:
     )
 
 
-def signature(start: str, parameters: tuple[str, ...], returns: str, indent: str = "    ") -> str:
-    """A function's head, up to its opening brace."""
-    line = f"{indent}{start}({', '.join(parameters)}) -> {returns} {{"
-    if len(line) <= WIDTH:
-        return line
-    inner = "".join(f"{indent}    {parameter},\n" for parameter in parameters)
-    return f"{indent}{start}(\n{inner}{indent}) -> {returns} {{"
-
-
 def _checked(row: FieldRow, enums: Enums) -> Checked:
     field = row.model
     line = scales.linear(field.scale)
@@ -179,10 +181,17 @@ def _checked(row: FieldRow, enums: Enums) -> Checked:
 
 def _imports(row: MessageRow) -> str:
     wanted = []
+    if any("array(" in one.reading for one in row.fields):
+        wanted.append("array")
     if row.tables:
         wanted.append("flags")
-    if any("take(" in one.reading for one in row.fields):
+    for name, call in (("put", "put!("), ("put_array", "put_array(")):
+        if any(call in line for one in row.fields for line in one.writing):
+            wanted.append(name)
+    if any("take!(" in one.reading for one in row.fields):
         wanted.append("take")
+    if any(one.model.type == "enum" for one in row.fields):
+        wanted.append("Coded")
     wanted.append("Error")
     if row.checked:
         wanted.append("Scale")

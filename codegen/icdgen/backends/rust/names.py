@@ -6,16 +6,14 @@ from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
 from icdgen.naming import camel, snake, upper, words
 
 # Strict, reserved and weak keywords of the editions 2015 to 2024 that no item, field or variant may be called without `r#`.
-RESERVED = frozenset(
-    """
+RESERVED = frozenset("""
     as async await break const continue crate dyn else enum extern false fn for gen if impl in let loop match mod move
     mut pub ref return self Self static struct super trait true try type unsafe use where while
     abstract become box do final macro override priv typeof unsized virtual yield _
-    """.split()
-)
+    """.split())
 
 # Types and traits that the generated modules call by their bare name, in the scope where a message's type stands.
-USED_TYPES = ("Result", "Error", "Default", "From", "TryFrom", "Scale", "Telemetry", "Telecommand")
+USED_TYPES = ("Result", "Error", "Default", "Coded", "Scale", "Telemetry", "Telecommand")
 # Modules that stand beside those of the nodes.
 USED_MODULES = ("support",)
 ENUMS_MODULE = "enums"
@@ -48,9 +46,9 @@ def constant_name(field: Field, node: Node) -> str:
     return upper(parts(field, node))
 
 
-def physical_name(field: Field, node: Node) -> str:
-    """Name of the physical getter: ``estimated_roll_angle_deg``."""
-    return f"{field_name(field, node)}_{field.unit.identifier if field.unit else 'physical'}"
+def physical_name(field: Field, name: str) -> str:
+    """Name of the physical getter of the field that is called ``name``: ``estimated_roll_angle_deg``."""
+    return f"{name}_{field.unit.identifier if field.unit else 'physical'}"
 
 
 def variant_name(member: Member, node: Node) -> str:
@@ -70,6 +68,7 @@ class Enums:
     def __init__(self, icd: Icd) -> None:
         self._nodes = {node.name: node for node in icd.nodes}
         self._bits: dict[tuple[str, str], int] = {}
+        self._paths: dict[tuple[str, str, str], str] = {}
         for node in icd.nodes:
             for enum in node.enums:
                 self._widen(enum, max((member.value.bit_length() for member in enum.members), default=1))
@@ -88,8 +87,11 @@ class Enums:
 
     def path(self, enum: Enum, node: Node) -> str:
         """The type as the messages of ``node`` write it."""
-        name = type_name(enum, self._nodes[enum.node])
-        return f"{ENUMS_MODULE}::{name}" if enum.node == node.name else f"crate::{enum.node}::{ENUMS_MODULE}::{name}"
+        key = (enum.node, enum.name, node.name)
+        if key not in self._paths:
+            name = f"{ENUMS_MODULE}::{type_name(enum, self._nodes[enum.node])}"
+            self._paths[key] = name if enum.node == node.name else f"crate::{enum.node}::{name}"
+        return self._paths[key]
 
 
 def storage(bits: int) -> int:

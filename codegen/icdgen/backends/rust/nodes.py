@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import NamedTuple
 
 from icdgen.backends.rust import names
 from icdgen.backends.rust.messages import MessageRow
-from icdgen.backends.rust.text import CALL_WIDTH, WIDTH, arm, doc, integer, prose, sentence
-from icdgen.icd.model import Icd, Message, Node
+from icdgen.backends.rust.text import CALL_WIDTH, WIDTH, arm, doc, integer, prose, rhs, sentence
+from icdgen.icd.model import Icd, Node
 
 ARM = "            "
 
 
-def id_type(messages: Iterable[Message]) -> str:
-    """The integer for the ids."""
-    return "u8" if all(id < 256 for message in messages for id in message.ids) else "u16"
+def id_type(icd: Icd) -> str:
+    """The integer for the ids of all nodes."""
+    return "u8" if all(id < 256 for node in icd.nodes for message in node.messages for id in message.ids) else "u16"
 
 
 class Summary:
@@ -24,7 +23,8 @@ class Summary:
     def __init__(self, node: Node) -> None:
         self.name = node.name
         about = sentence(prose(node.summary)) if node.summary else ""
-        self.doc = doc([f"- [`{self.name}`]: {prose(node.title)}. {about}".rstrip()], mark="//!")
+        item = f"[`{self.name}`], {sentence(prose(node.title))} {about}".rstrip()
+        self.doc = doc([item], mark="//!  ").replace("//!  ", "//! -", 1)
 
 
 class Variant(NamedTuple):
@@ -41,11 +41,11 @@ class Variant(NamedTuple):
 class SumType:
     """``Telemetry`` or ``Telecommand``."""
 
-    def __init__(self, name: str, id_type: str, variants: list[Variant]) -> None:
+    def __init__(self, name: str, id_type: str, variants: list[Variant], floats: bool) -> None:
         self.name, self.id_type, self.variants = name, id_type, variants
+        self.derives = "Clone, Copy, Debug, PartialEq" + ("" if floats else ", Eq, Hash")
         self.direction = name.lower()
-        self.article_id = f"{self.direction} id"
-        self.id_for_error = "id" if id_type == "u16" else "u16::from(id)"
+        self.id_for_error = "id" if id_type == "u16" else "id: u16::from(id)"
 
 
 class NodeRow:
@@ -71,7 +71,7 @@ class NodeRow:
         self.interface_version = None if version is None else (unsigned(version), integer(version))
         self.messages = rows[node.name]
         spoken = [row for one in (*icd.included(node), node) for row in rows[one.name]]
-        kind = id_type(row.message for row in spoken)
+        kind = id_type(icd)
         sums = (("Telecommand", "telecommand_id"), ("Telemetry", "telemetry_id"))
         self.sums = [self._sum(name, pick, spoken, kind) for name, pick in sums]
         self.sums = [one for one in self.sums if one.variants]
@@ -80,7 +80,7 @@ class NodeRow:
         chosen = [row for row in spoken if getattr(row.message, pick) is not None]
         pair = "SET_ID" if pick == "telecommand_id" else "GET_ID"
         variants = [self._variant(row, "ID" if row.message.id is not None else pair) for row in chosen]
-        return SumType(name, kind, variants)
+        return SumType(name, kind, variants, any(row.floats for row in chosen))
 
     def _variant(self, row: MessageRow, id: str) -> Variant:
         path = row.type if row.node.name == self.name else f"crate::{row.node.name}::{row.type}"
@@ -89,14 +89,20 @@ class NodeRow:
         value = f"{path}::from_bytes(bytes)?"
         decode = f"{ARM}{number} => Self::{row.type}({value}),"
         if len(decode) > WIDTH or len(value) > CALL_WIDTH:
-            decode = f"{ARM}{number} => {{\n{ARM}    let message = {value};\n{ARM}    Self::{row.type}(message)\n{ARM}}}"
+            bound = rhs(f"{ARM}    ", "let message =", value, ";")
+            decode = f"{ARM}{number} => {{\n{bound}\n{ARM}    Self::{row.type}(message)\n{ARM}}}"
         to_bytes = "message.try_to_bytes()?" if row.fallible else "message.to_bytes()"
-        write = f"{ARM}{pattern} => put(buffer, &{to_bytes}),"
+        write = f"{ARM}{pattern} => write_to(buffer, &{to_bytes}),"
         if len(write) > WIDTH:
-            write = f"{ARM}{pattern} => {{\n{ARM}    let bytes = {to_bytes};\n{ARM}    put(buffer, &bytes)\n{ARM}}}"
+            write = (
+                f"{ARM}{pattern} => {{\n{ARM}    let bytes = {to_bytes};\n{ARM}    write_to(buffer, &bytes)\n{ARM}}}"
+            )
         bare = f"Self::{row.type}(_)"
+        declaration = f"    {row.type}({path}),"
+        if len(declaration) > WIDTH:
+            declaration = f"    {row.type}(\n        {path},\n    ),"
         return Variant(
-            f"{about}\n    {row.type}({path}),",
+            f"{about}\n{declaration}",
             decode,
             arm(ARM, bare, number),
             arm(ARM, bare, f"{path}::LENGTH"),

@@ -25,11 +25,20 @@ class Linear(NamedTuple):
 IDENTITY = Linear(1, 0, 1)
 
 
-@lru_cache(maxsize=1024)
 def linear(scale: Scale | None) -> Linear:
     """The scale over its common denominator."""
     if scale is None:
         return IDENTITY
+    known = _LINEAR.get(id(scale))  # fields of one formula share their scale, and to hash its fractions takes long
+    if known is None or known[0] is not scale:
+        known = _LINEAR[id(scale)] = (scale, _over_common_denominator(scale))
+    return known[1]
+
+
+_LINEAR: dict[int, tuple[Scale, Linear]] = {}
+
+
+def _over_common_denominator(scale: Scale) -> Linear:
     divisor = lcm(scale.factor.denominator, scale.offset.denominator)
     factor = scale.factor.numerator * (divisor // scale.factor.denominator)
     return Linear(factor, scale.offset.numerator * (divisor // scale.offset.denominator), divisor)
@@ -58,9 +67,12 @@ def in_doubles(line: Linear, raw: str) -> str:
     return f"{value if value == raw else f'({value})'} / {whole_double(line.divisor)}"
 
 
-@lru_cache(maxsize=4096)
 def physical_range(scale: Scale, low: int, high: int) -> str:
     """Smallest and largest physical value, for people."""
-    ends = (scale.physical(low), scale.physical(high))
-    first, last = sorted(end.numerator / end.denominator for end in ends)
+    return _range(linear(scale), low, high)
+
+
+@lru_cache(maxsize=4096)
+def _range(line: Linear, low: int, high: int) -> str:
+    first, last = sorted((raw * line.factor + line.offset) / line.divisor for raw in (low, high))
     return f"{decimal(first)} to {decimal(last)}"

@@ -28,7 +28,8 @@ def plain(text: str) -> str:
 @lru_cache(maxsize=8192)
 def prose(text: str) -> str:
     """``plain`` text that rustdoc shows as it is: no markup, links or HTML."""
-    return _MARKDOWN.sub(r"\\\g<0>", plain(text))
+    text = plain(text)
+    return text if text.replace(" ", "").isalnum() else _MARKDOWN.sub(r"\\\g<0>", text)
 
 
 def code(text: str) -> str:
@@ -133,10 +134,25 @@ def decimal(value: float) -> str:
 def rhs(indent: str, left: str, right: str, end: str) -> str:
     """``left right end`` on one line where it fits, else the right side on a line of its own."""
     line = f"{indent}{left} {right}{end}"
-    return line if len(line) <= WIDTH else f"{indent}{left}\n{indent}    {right}{end}"
+    return line if len(line) <= WIDTH or "\n" in right else f"{indent}{left}\n{indent}    {right}{end}"
 
 
 def arm(indent: str, pattern: str, body: str) -> str:
     """An arm of a match."""
     line = f"{indent}{pattern} => {body},"
     return line if len(line) <= WIDTH else f"{indent}{pattern} => {{\n{indent}    {body}\n{indent}}}"
+
+
+def signature(start: str, parameters: tuple[str, ...], returns: str, indent: str = "    ") -> str:
+    """A function's head, up to its opening brace."""
+    line = f"{indent}{start}({', '.join(parameters)}) -> {returns} {{"
+    if len(line) <= WIDTH:
+        return line
+    inner = "".join(f"{indent}    {parameter},\n" for parameter in parameters)
+    return f"{indent}{start}(\n{inner}{indent}) -> {returns} {{"
+
+
+def implementation(trait: str, type_: str) -> str:
+    """``impl trait for type {``"""
+    line = f"impl {trait} for {type_} {{"
+    return line if len(line) <= WIDTH else f"impl {trait}\n    for {type_}\n{{"

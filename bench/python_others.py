@@ -1,0 +1,76 @@
+"""Frames as users of other libraries would have them decoded, made from what a generated class says of its fields."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import IntEnum
+from typing import Any
+
+
+def by_construct(cls: Any) -> Callable[[bytes], Any]:
+    """The frame as a user of construct would write it. Bits come most significant first: a byte of them is swapped."""
+    import construct
+
+    integers = {8: construct.Int8ul, 16: construct.Int16ul, 32: construct.Int32ul, 64: construct.Int64ul}
+    signed = {8: construct.Int8sl, 16: construct.Int16sl, 32: construct.Int32sl, 64: construct.Int64sl}
+    floats = {32: construct.Float32l, 64: construct.Float64l}
+
+    def kind(info: Any) -> Any:
+        if info.type == "bytes":
+            return construct.Bytes(info.bits // 8)
+        number = {"int": signed, "float": floats}.get(info.type, integers)[info.bits]
+        return construct.Enum(number, info.enum) if info.enum else number
+
+    parts, bits, reached = [], [], 0
+
+    def close() -> None:
+        if bits:
+            parts.append(construct.BitsSwapped(construct.BitStruct(*bits, construct.Padding(-reached % 8))))
+            bits.clear()
+
+    for info in cls.FIELDS:
+        if info.bits % 8 and info.at % 8 + info.bits <= 8:
+            if bits and info.at != reached:
+                bits.append(construct.Padding(info.at - reached))
+            inner = construct.Flag if info.type == "bool" else construct.BitsInteger(info.bits)
+            bits.append(info.attribute / (construct.Enum(inner, info.enum) if info.enum else inner))
+        else:
+            close()
+            parts.append(info.attribute / kind(info))
+        reached = info.at + info.bits
+    close()
+    return construct.Struct(*parts).parse
+
+
+def by_kaitaistruct(cls: Any) -> Callable[[bytes], Any]:
+    """The class that the Kaitai Struct compiler makes of the frame."""
+    from kaitaistruct import KaitaiStream, KaitaiStruct
+
+    enums: dict[str, Any] = {}
+    lines = []
+    for info in cls.FIELDS:
+        if info.type == "bytes":
+            read = f"self._io.read_bytes({info.bits // 8})"
+        elif info.bits % 8:
+            read = f"self._io.read_bits_int_le({info.bits})"
+        else:
+            suffix = "le" if info.bits > 8 else ""
+            read = f"self._io.read_{ {'int': 's', 'float': 'f'}.get(info.type, 'u') }{info.bits // 8}{suffix}()"
+        if info.type == "bool":
+            read += " != 0"
+        if info.enum:
+            enums[info.enum.__name__] = IntEnum(info.enum.__name__, {member.name: member.value for member in info.enum})
+            read = f"KaitaiStream.resolve_enum(Frame.{info.enum.__name__}, {read})"
+        lines.append(f"        self.{info.attribute} = {read}\n")
+    source = (
+        "class Frame(KaitaiStruct):\n"
+        "    def __init__(self, _io, _parent=None, _root=None):\n"
+        "        super(Frame, self).__init__(_io)\n"
+        "        self._parent = _parent\n        self._root = _root or self\n        self._read()\n"
+        f"    def _read(self):\n{''.join(lines)}"
+    )
+    names: dict[str, Any] = {"KaitaiStruct": KaitaiStruct, "KaitaiStream": KaitaiStream}
+    exec(source, names)
+    for name, enum in enums.items():
+        setattr(names["Frame"], name, enum)
+    return names["Frame"].from_bytes

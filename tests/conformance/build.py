@@ -1,0 +1,93 @@
+"""Generates and builds testees; what was built from the same sources by the same tools is taken from the cache."""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import inspect
+import json
+import os
+import shutil
+import subprocess
+from functools import cache
+from pathlib import Path
+
+from icdgen import backends
+from icdgen.icd.model import Icd
+from icdgen.render import Renderer
+from tests.conformance import ROOT
+from tests.conformance.languages import Language
+
+BOARD = ROOT / "tests" / "conformance" / "board"  # what the self-tests are linked with
+
+
+class BuildError(RuntimeError):
+    """The generated code does not build; the message holds the compiler's words."""
+
+
+def cache_folder() -> Path:
+    """Where builds are kept: ``ICDGEN_BUILD``, else ``.icdgen-build`` in the checkout."""
+    return Path(os.environ.get("ICDGEN_BUILD") or ROOT / ".icdgen-build")
+
+
+def build(language: Language, icd: Icd, folder: Path | None = None) -> list[str]:
+    """The command line that starts the language's testee for these ICDs. Raises `BuildError`."""
+    files = generated(language, icd)
+    folder = (folder or cache_folder()) / f"{language.name}-{_key(language, files)}"
+    folder.mkdir(parents=True, exist_ok=True)
+    done = folder / "command.json"
+    with open(folder / "lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not done.exists():
+            source, out = folder / "source", folder / "out"
+            for old in (source, out):
+                shutil.rmtree(old, ignore_errors=True)
+                old.mkdir()
+            for name, data in files.items():
+                (source / name).parent.mkdir(parents=True, exist_ok=True)
+                (source / name).write_bytes(data)
+            done.write_text(json.dumps(language.build(source, out)))
+        return json.loads(done.read_text())
+
+
+def generated(language: Language, icd: Icd) -> dict[str, bytes]:
+    """What the language's backends make of the ICDs: path, beginning with the backend's name -> content."""
+    files = {}
+    for name in language.backends:
+        backend = backends.get(name)
+        for path, text in backend.files(icd, renderer(backend.name)):
+            files[f"{name}/{path}"] = text.encode("utf-8")
+    return files
+
+
+@cache
+def renderer(name: str) -> Renderer:
+    return Renderer(name)
+
+
+def execute(*command: str | Path, cwd: Path | None = None, env: dict[str, str] | None = None) -> str:
+    """Runs a build step; its output. Raises `BuildError`."""
+    words = [str(word) for word in command]
+    environment = {**os.environ, **env} if env else None
+    done = subprocess.run(words, cwd=cwd, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode:
+        raise BuildError(f"{' '.join(words)}\n{done.stdout[-8000:]}")
+    return done.stdout
+
+
+def _key(language: Language, files: dict[str, bytes]) -> str:
+    digest = hashlib.sha256()
+    recipe = Path(inspect.getfile(getattr(language.build, "func", language.build)))
+    for file in (recipe, *sorted(BOARD.glob("*"))):
+        digest.update(file.read_bytes() + b"\0")
+    for part in (language.name, *(_version(tool) for tool in language.tools)):
+        digest.update(part.encode() + b"\0")
+    for name, data in files.items():
+        digest.update(f"{name}\0{len(data)}\0".encode() + data)
+    return digest.hexdigest()[:16]
+
+
+@cache
+def _version(tool: str) -> str:
+    path = shutil.which(tool) or tool
+    return path + subprocess.run([path, "--version"], capture_output=True, text=True).stdout

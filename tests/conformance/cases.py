@@ -1,0 +1,183 @@
+"""Vectors -> requests and the answers that they demand."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import NamedTuple
+
+from tests.conformance.compare import Maybe
+
+DIRECTIONS = ("telecommand", "telemetry", "configuration")
+
+
+class Case(NamedTuple):
+    """One request, and what the answer must be."""
+
+    about: str  # the vector, in words
+    request: dict
+    answer: dict
+
+
+def member_names(files: dict[str, dict]) -> dict[str, dict[int, str]]:
+    """Name of each member of each enumeration, by the name of the enumeration; nodes that include others know theirs."""
+    return {e["name"]: dict(map(tuple, e["members"])) for data in files.values() for e in data["enums"]}
+
+
+class MessageCases:
+    """The cases of one message, as spoken by ``node`` (the one that declares it or one that includes that)."""
+
+    def __init__(self, node: str, message: dict, enums: dict[str, dict[int, str]], never_set: list[str]) -> None:
+        self.node, self.message, self.enums, self.never_set = node, message, enums, never_set
+        self.fields: list[dict] = message["fields"]
+        self.scaled = [field for field in self.fields if "factor" in field]
+        self.id = message.get("id", message.get("set_id"))
+        self.fresh = {field["name"]: shown(field, field["default"]) for field in self.fields}
+
+    def all(self) -> Iterator[Case]:
+        """Everything that the vectors of the message demand."""
+        for vector in self.message["vectors"]:
+            yield from self.frame(vector)
+        yield from self.routes()
+        yield from self.refused_lengths()
+        yield self.constants()
+        for field in self.fields:
+            yield from self.unfit(field)
+        for field in self.scaled:
+            yield from self.settings(field)
+
+    def request(self, op: str, **more: object) -> dict:
+        return {"op": op, "node": self.node, "kind": self.message["kind"], "id": self.id, **more}
+
+    def frame(self, vector: dict) -> Iterator[Case]:
+        """Decoding, and encoding from raw and from physical values."""
+        raw = {f["name"]: shown(f, value) for f, value in zip(self.fields, vector["raw"], strict=True)}
+        physical = {f["name"]: bits for f, bits in zip(self.scaled, vector.get("doubles", ()), strict=True)}
+        encoded = vector.get("encoded", vector["bytes"])
+        answer = {"ok": True, "raw": raw, "physical": physical, "bytes": encoded}
+        why = vector["why"]
+        yield Case(why, self.request("decode", bytes=vector["bytes"]), answer)
+        yield Case(why, self.request("encode", raw=raw), answer)
+        names = self.names(raw)
+        if names:
+            yield Case(why, self.request("decode", bytes=vector["bytes"], names=True), {**answer, "names": names})
+        if physical:
+            rest = {name: value for name, value in raw.items() if name not in physical}
+            yield Case(
+                why, self.request("encode", raw=rest, physical=physical), self.from_physical(raw, physical, answer)
+            )
+
+    def names(self, raw: dict) -> dict[str, str | None]:
+        """Name of each enum field's member."""
+        return {f["name"]: self.enums.get(f["enum"], {}).get(raw[f["name"]]) for f in self.fields if "enum" in f}
+
+    def from_physical(self, raw: dict, physical: dict, answer: dict) -> dict:
+        """The answer, unless some raw value is too wide to come back from a double."""
+        for field in self.scaled:
+            back = nearest(field, physical[field["name"]])
+            if back is None:
+                return {"ok": False, "error": "range", "field": field["name"]}
+            if back != raw[field["name"]]:
+                answer = {"ok": True, "raw": {**answer["raw"], field["name"]: back}, "physical": ..., "bytes": ...}
+        return answer
+
+    def routes(self) -> Iterator[Case]:
+        """The same frame under every kind and id that lead to the message."""
+        first = next(self.frame(self.message["vectors"][0]))
+        message = self.message
+        routes = {
+            "telecommand": [("telecommand", message.get("id"))],
+            "telemetry": [("telemetry", message.get("id"))],
+            "configuration": [
+                ("telecommand", message.get("set_id")),
+                ("telemetry", message.get("get_id")),
+                ("configuration", message.get("set_id")),
+                ("configuration", message.get("get_id")),
+            ],
+        }
+        for kind, id in routes[message["kind"]]:
+            yield Case(f"under {kind} {id}", {**first.request, "kind": kind, "id": id}, first.answer)
+
+    def refused_lengths(self) -> Iterator[Case]:
+        """Frames that are too short or too long."""
+        for actual in self.message["refused_lengths"]:
+            answer = {"ok": False, "error": "length", "expected": self.message["length"], "actual": actual}
+            yield Case(f"{actual} bytes", self.request("decode", bytes="00" * actual), answer)
+
+    def constants(self) -> Case:
+        """Ids, length, fresh values, special values."""
+        ids = [self.message[key] for key in ("id", "set_id", "get_id") if key in self.message]
+        special = {field["name"]: field["special"] for field in self.fields if "special" in field}
+        limits = {
+            f["name"]: {k: nearest_double(v) for k, v in f["limits"].items()} for f in self.fields if "limits" in f
+        }
+        answer = {
+            "ok": True, "name": self.message["name"], "ids": ids, "length": self.message["length"], "default": self.fresh,
+            "special": Maybe(special), "limits": Maybe(limits),
+        }  # fmt: skip
+        return Case("constants", self.request("constants"), answer)
+
+    def unfit(self, field: dict) -> Iterator[Case]:
+        """Raw values that encoding refuses."""
+        name = field["name"]
+        for value in field.get("unfit", ()):
+            request = self.request("encode", raw={**self.fresh, name: value})
+            yield Case(f"{name} = {value}", request, {"ok": False, "error": "range", "field": name})
+
+    def settings(self, field: dict) -> Iterator[Case]:
+        """Physical values set, exact ties and unfit ones among them."""
+        name = field["name"]
+        rest = {key: value for key, value in self.fresh.items() if key != name}
+        refusal = {"ok": False, "error": "range", "field": name}
+        for bits, raw in [*field["set"], *((bits, None) for bits in self.never_set)]:
+            request = self.request("encode", raw=rest, physical={name: bits})
+            full = {key: raw if key == name else self.fresh[key] for key in self.fresh}  # in the order of the fields
+            answer = refusal if raw is None else {"ok": True, "raw": full, "physical": ..., "bytes": ...}
+            yield Case(f"{name} set to {bits}", request, answer)
+
+
+def node_cases(data: dict) -> Iterator[Case]:
+    """What the vectors of a node demand beyond its messages: ids and enumerations."""
+    node = data["node"]
+    answer = {"ok": True, "node_type": data.get("node_type"), "interface_version": data.get("interface_version")}
+    yield Case("node", {"op": "node", "node": node}, answer)
+    for direction in DIRECTIONS:
+        known = data["ids"][direction]
+        for id in (*range(256), 256, 65535, 65536, -1):
+            if str(id) in known:
+                request = {"op": "constants", "node": node, "kind": direction, "id": id}
+                yield Case(f"{direction} {id}", request, {"ok": True, "name": known[str(id)], ...: ...})
+            else:
+                request = {"op": "decode", "node": node, "kind": direction, "id": id, "bytes": ""}
+                yield Case(f"{direction} {id}", request, {"ok": False, "error": "unknown-id"})
+    yield from enum_cases(data)
+
+
+def enum_cases(data: dict) -> Iterator[Case]:
+    """The names of the members of the enumerations that a node declares."""
+    node = data["node"]
+    for enum in data["enums"]:
+        for value, name in [*enum["members"], (enum["unknown"], None)]:
+            request = {"op": "enum", "node": node, "enum": enum["name"], "value": value}
+            yield Case(f"{enum['name']} {value}", request, {"ok": True, "name": name})
+
+
+def shown(field: dict, value: object) -> object:
+    """A raw value of the vectors as it stands in the testee protocol."""
+    return bool(value) if field["type"] == "bool" else value
+
+
+def nearest_double(exact: str) -> str:
+    """The bits of the double that is nearest to an exact decimal or fraction."""
+    value = Fraction(exact)
+    return struct.pack(">d", value.numerator / value.denominator).hex()
+
+
+def nearest(field: dict, bits: str) -> int | None:
+    """The raw value nearest to a physical one, ties to even; None if it does not fit."""
+    value = Fraction(struct.unpack(">d", bytes.fromhex(bits))[0])
+    raw = round((value - Fraction(field["offset"])) / Fraction(field["factor"]))
+    width, signed = field["bits"], field["type"] == "int"
+    low, high = (-(1 << width - 1), (1 << width - 1) - 1) if signed else (0, (1 << width) - 1)
+    return raw if low <= raw <= high else None

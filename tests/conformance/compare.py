@@ -1,0 +1,60 @@
+"""Whether an answer is the one demanded."""
+
+from __future__ import annotations
+
+import json
+from typing import NamedTuple
+
+
+class Maybe(NamedTuple):
+    """A value that an answer may leave out, but not have wrong."""
+
+    value: object
+
+
+def difference(expected: dict, line: bytes | None) -> str | None:
+    """What is wrong with an answer; None if nothing is. ``...`` in ``expected`` stands for anything."""
+    if line is None:
+        return "no answer: the testee died or fell silent"
+    try:
+        answer = json.loads(line)
+    except ValueError:
+        return f"not JSON: {line[:200]!r}"
+    if not isinstance(answer, dict):
+        return f"not an object: {line[:200]!r}"
+    if expected.get("ok") is False:
+        answer.pop("detail", None)
+    return _difference(expected, answer, "")
+
+
+def _difference(expected: object, actual: object, path: str) -> str | None:
+    if expected is ...:
+        return None
+    if type(expected) is not type(actual):
+        return f"{path or 'answer'}: {_short(actual)}, expected {_short(expected)}"
+    if not isinstance(expected, dict):
+        return None if expected == actual else f"{path}: {_short(actual)}, expected {_short(expected)}"
+    if expected == actual and all(type(value) is type(actual[key]) for key, value in expected.items()):
+        if not any(isinstance(value, dict) for value in expected.values()):
+            return None
+    for key, value in expected.items():
+        if key is ...:
+            continue
+        if isinstance(value, Maybe):
+            if key not in actual:
+                continue
+            value = value.value
+        if key not in actual:
+            return f"{path or 'answer'}: {key!r} is missing from {_short(actual)}"
+        found = _difference(value, actual[key], f"{path}.{key}" if path else str(key))
+        if found:
+            return found
+    extra = [key for key in actual if key not in expected]
+    if extra and ... not in expected:
+        return f"{path or 'answer'}: {extra[0]!r} is not expected: {_short(actual)}"
+    return None
+
+
+def _short(value: object) -> str:
+    text = json.dumps(value, default=repr)
+    return text if len(text) <= 200 else text[:200] + "..."

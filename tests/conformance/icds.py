@@ -1,0 +1,35 @@
+"""The ICDs under test and their vectors."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from icdgen import vectors
+from icdgen.icd.load import load
+from icdgen.icd.model import Icd
+from tests.conformance import ROOT
+
+SHIPPED = ROOT / "icd"
+COMMITTED = ROOT / "generated" / "vectors"
+
+
+def icd_of(paths: list[Path] | None = None) -> Icd:
+    """The checked ICDs of ``paths``, by default those of the repository. Raises `ValueError` with what is wrong."""
+    loaded = load(paths or [SHIPPED])
+    if not loaded.ok:
+        raise ValueError(
+            "\n".join(f"{f.place}: {f.code} {f.message}" for f in loaded.findings if f.severity == "error")
+        )
+    return loaded.icd
+
+
+def vectors_of(icd: Icd) -> dict[str, dict]:
+    """The content of each node's vector file, made now."""
+    return {node.name: json.loads(vectors.text(vectors.make(icd, node))) for node in icd.nodes}
+
+
+def read_vectors(folder: Path) -> dict[str, dict]:
+    """The content of each vector file of a folder, by node."""
+    found = (json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("*.json")))
+    return {data["node"]: data for data in found if "icdgen_vectors" in data}

@@ -1,0 +1,77 @@
+"""Small ICDs of what the shipped ones do not have: other bit orders, odd widths, scaled 64-bit fields, odd names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+SHARED = """\
+icdgen: 1
+node: {name: shared, title: Shared, byte_order: big, bit_order: msb0, node_type: 3, interface_version: 250}
+enums:
+  - name: 'Odd "enum" \\ */ {{ x }}'
+    identifier: odd enum
+    members:
+      - {value: 0, name: 'zero ??/'}
+      - {value: 18446744073709551615, name: "last \\u00e9\\U0001F6F0"}
+messages:
+  - name: 'class "quoted" \\ */ {% raw %}'
+    identifier: class quoted
+    set_id: 200
+    get_id: 7
+    kind: configuration
+    length: 32
+    fields:
+      - {at: 3, bits: 64, name: Wide Enum, type: enum, enum: 'Odd "enum" \\ */ {{ x }}'}
+      - {at: 67, bits: 13, name: Crossing, type: int, formula: "raw*0.1 - 273.15", unit: C}
+      - {at: 81, bits: 1, name: Flag, type: bool}
+      - {at: 82, bits: 64, name: Wide, type: uint, formula: raw*0.1}
+      - {at: 146, bits: 33, name: Between, type: int, formula: (raw - 32)*5/9}
+      - {at: 179, bits: 32, name: Unaligned Float, type: float}
+      - {at: 216, bits: 16, name: Octets, type: bytes}
+      - {at: 232, bits: 8, name: Magic, type: uint, const: 0x5A}
+      - {at: 240, bits: 9, name: Ninth, type: int, special: [{value: -256, meaning: none at all}], min: -100, max: 100.5}
+      - {at: 249, bits: 1, name: One Bit, type: int}
+      - {at: 250, bits: 1, name: One Unsigned Bit, type: uint, formula: -raw*3}
+  - {name: Nothing, id: 0, kind: telecommand, length: 0}
+"""
+
+MIXED = """\
+icdgen: 1
+node: {name: mixed, title: Mixed order, byte_order: little, bit_order: msb0}
+include: [shared.yaml]
+messages:
+  - name: Mixed
+    id: 7
+    kind: telecommand
+    length: 18
+    fields:
+      - {at: 5, bits: 11, name: Eleven, type: uint, formula: raw/4}
+      - {at: 16, bits: 64, name: Eight Bytes, type: float}
+      - {at: 81, bits: 63, name: Sixty Three, type: int}
+"""
+
+OTHER = """\
+icdgen: 1
+node: {name: other, title: The other mixed order, byte_order: big, bit_order: lsb0}
+messages:
+  - name: Other
+    id: 255
+    kind: telemetry
+    length: 9
+    fields:
+      - {at: 2, bits: 23, name: A, type: int, formula: raw*0.0000001}
+      - {at: 25, bits: 40, name: B, type: uint}
+      - {at: 65, bits: 7, name: C, type: int}
+"""
+
+EMPTY = """\
+icdgen: 1
+node: {name: empty, title: No messages, byte_order: little, bit_order: lsb0}
+"""
+
+
+def write(folder: Path) -> Path:
+    """The folder, with the ICDs in it."""
+    for name, text in (("shared", SHARED), ("mixed", MIXED), ("other", OTHER), ("empty", EMPTY)):
+        (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
+    return folder

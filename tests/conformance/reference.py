@@ -1,0 +1,226 @@
+"""A testee over the reference codec: the protocol of ``README.md`` in its plainest form.
+
+``python -m tests.conformance.reference [ICD ...]``
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import struct
+import sys
+from pathlib import Path
+
+from icdgen import codec
+from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.vectors.settings import bits_of
+from tests.conformance.icds import icd_of
+
+MOST_VALUES = 65536
+
+
+class Refusal(Exception):
+    """An answer of ``"ok": false``."""
+
+    def __init__(self, error: str, **more: object) -> None:
+        self.answer = {"ok": False, "error": error, **more}
+
+
+class Reference:
+    """Answers requests for a set of ICDs."""
+
+    def __init__(self, icd: Icd) -> None:
+        self.icd = icd
+        self.ops = {
+            "decode": self.decode, "encode": self.encode, "constants": self.constants, "enum": self.enum, "node": self.about_node,
+            "sweep": self.sweep,
+        }  # fmt: skip
+
+    def answer(self, line: bytes) -> dict:
+        try:
+            request = json.loads(line.decode("utf-8"))
+            if not isinstance(request, dict):
+                raise Refusal("request")
+            op = self.ops.get(key(request, "op", str))
+            if op is None:
+                raise Refusal("request", detail="there is no such op")
+            return {"ok": True, **op(request)}
+        except Refusal as refusal:
+            return refusal.answer
+        except (ValueError, OverflowError, RecursionError) as error:
+            return {"ok": False, "error": "request", "detail": str(error)}
+
+    def message(self, request: dict) -> tuple[Node, Message]:
+        """The message that is meant and the node that declares it."""
+        name, kind, id = key(request, "node", str), key(request, "kind", str), key(request, "id", int)
+        picks = {
+            "telecommand": ["telecommand_id"],
+            "telemetry": ["telemetry_id"],
+            "configuration": ["set_id", "get_id"],
+        }
+        if kind not in picks:
+            raise Refusal("request", detail="there is no such kind")
+        node = self.node(name)
+        for pick in picks[kind]:
+            for message in self.icd.messages_of(node):
+                if getattr(message, pick) == id:
+                    return self.icd.node(message.node), message
+        raise Refusal("unknown-id")
+
+    def node(self, name: str) -> Node:
+        try:
+            return self.icd.node(name)
+        except KeyError:
+            raise Refusal("unknown-node") from None
+
+    def decode(self, request: dict) -> dict:
+        frame = hex_bytes(key(request, "bytes", str))
+        names = request.get("names", False)
+        if not isinstance(names, bool):
+            raise Refusal("request")
+        node, message = self.message(request)
+        try:
+            return described(node, message, codec.decode(node, message, frame), names)
+        except codec.LengthError as error:
+            raise Refusal("length", expected=error.expected, actual=error.actual) from None
+
+    def encode(self, request: dict) -> dict:
+        given, physical = request.get("raw", {}), request.get("physical", {})
+        if not isinstance(given, dict) or not isinstance(physical, dict):
+            raise Refusal("request")
+        node, message = self.message(request)
+        fields = {field.name: field for field in message.fields}
+        for name in given:
+            if name not in fields:
+                raise Refusal("unknown-field", field=name)
+        for name in physical:
+            if name not in fields or not fields[name].scale:
+                raise Refusal("unknown-field", field=name)
+        raw = {}
+        for field in message.fields:
+            if field.name in physical:
+                value = struct.unpack(">d", hex_bytes(physical[field.name], 8))[0]
+                raw[field.name] = fitting(field, codec.raw_from_physical, value)
+            elif field.name in given:
+                raw[field.name] = raw_value(field, given[field.name])
+            else:
+                raise Refusal("missing-field", field=field.name)
+        return described(node, message, raw)
+
+    def constants(self, request: dict) -> dict:
+        _, message = self.message(request)
+        default = {f.name: bytes(f.bits // 8) if f.type == "bytes" else f.const or 0 for f in message.fields}
+        return {
+            "name": message.name,
+            "ids": list(message.ids),
+            "length": message.length,
+            "default": {f.name: shown(f, default[f.name]) for f in message.fields},
+            "special": {f.name: [special.value for special in f.special] for f in message.fields if f.special},
+            "limits": {f.name: limits(f) for f in message.fields if f.limits},
+        }
+
+    def enum(self, request: dict) -> dict:
+        name, wanted, value = key(request, "node", str), key(request, "enum", str), key(request, "value", int)
+        for enum in self.node(name).enums:
+            if enum.name == wanted:
+                return {"name": {member.value: member.name for member in enum.members}.get(value)}
+        raise Refusal("unknown-enum")
+
+    def about_node(self, request: dict) -> dict:
+        node = self.node(key(request, "node", str))
+        return {"node_type": node.node_type, "interface_version": node.interface_version}
+
+    def sweep(self, request: dict) -> dict:
+        name = key(request, "field", str)
+        if "values" in request:
+            values = key(request, "values", list)
+        else:
+            values = range(key(request, "from", int), key(request, "to", int) + 1)
+        if len(values) > MOST_VALUES or any(type(value) is not int for value in values):
+            raise Refusal("request")
+        _, message = self.message(request)
+        field = next((field for field in message.fields if field.name == name and field.scale), None)
+        if field is None:
+            raise Refusal("unknown-field", field=name)
+        found, failures = [], 0
+        for raw in values:
+            fitting(field, codec.check_raw, raw)
+            physical = codec.physical_double(field, raw)
+            found.append(bits_of(physical))
+            failures += codec.raw_from_physical(field, physical) != raw
+        return {"physical": "".join(found), "failures": failures}
+
+
+def key(request: dict, name: str, type_: type):
+    """The value of a key that must be there and of that type."""
+    value = request.get(name)
+    if type(value) is not type_:
+        raise Refusal("request", detail=f"`{name}` is missing or is not of the right type")
+    return value
+
+
+def hex_bytes(text: object, size: int | None = None) -> bytes:
+    if not isinstance(text, str) or not re.fullmatch("([0-9A-Fa-f]{2})*", text) or size not in (None, len(text) // 2):
+        raise Refusal("request", detail="not the hex digits that are expected")
+    return bytes.fromhex(text)
+
+
+def raw_value(field: Field, given: object) -> int | bytes:
+    """A raw value as it came in a request."""
+    if field.type == "float":
+        return int.from_bytes(hex_bytes(given, field.bits // 8), "big")
+    if field.type == "bytes":
+        value: int | bytes = hex_bytes(given)
+    elif type(given) is int or (field.type == "bool" and type(given) is bool):
+        value = given  # type: ignore[assignment]
+    else:
+        raise Refusal("request", detail=f"a value of {field.name!r} has the wrong type")
+    fitting(field, codec.check_raw, value)
+    return value
+
+
+def fitting(field: Field, call, value):
+    """What ``call`` makes of the value; a refusal where it does not fit."""
+    try:
+        return call(field, value)
+    except codec.CodecError as error:
+        raise Refusal("range", field=field.name, detail=str(error)) from None
+
+
+def limits(field: Field) -> dict[str, str]:
+    """The limits of a field, as doubles."""
+    found = {key: getattr(field.limits, key) for key in ("min", "max", "above", "below")}
+    return {key: bits_of(value.numerator / value.denominator) for key, value in found.items() if value is not None}
+
+
+def shown(field: Field, value: int | bytes) -> object:
+    """A raw value as it stands in an answer."""
+    if isinstance(value, bytes):
+        return value.hex()
+    if field.type == "float":
+        return f"{value:0{field.bits // 4}x}"
+    return bool(value) if field.type == "bool" else value
+
+
+def described(node: Node, message: Message, raw: dict, names: bool = False) -> dict:
+    """The answer to decode and encode."""
+    answer: dict = {
+        "raw": {field.name: shown(field, raw[field.name]) for field in message.fields},
+        "physical": {f.name: bits_of(codec.physical_double(f, raw[f.name])) for f in message.fields if f.scale},
+        "bytes": codec.encode(node, message, raw).hex(),
+    }
+    if names:
+        members = {f.name: {m.value: m.name for m in f.enum.members} for f in message.fields if f.enum}
+        answer["names"] = {name: known.get(raw[name]) for name, known in members.items()}
+    return answer
+
+
+def main() -> None:
+    reference = Reference(icd_of([Path(argument) for argument in sys.argv[1:]]))
+    for line in sys.stdin.buffer:
+        sys.stdout.write(json.dumps(reference.answer(line.rstrip(b"\r\n"))) + "\n")
+        sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main()

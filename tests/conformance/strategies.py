@@ -1,0 +1,174 @@
+"""Hypothesis strategies for valid ICDs that are as strange as the rules allow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from hypothesis import strategies as st
+
+# Words that mean something to a language, to generated code, or to a template; alone each would be a bad identifier.
+_WORDS = (
+    "class", "def", "None", "True", "self", "import", "lambda", "async", "match", "type", "fn", "crate", "impl", "mod", "Self",
+    "int", "char", "register", "volatile", "struct", "union", "void", "static", "restrict", "template", "operator", "new", "dyn",
+    "errno", "assert", "NULL", "main", "linux", "raw", "bytes", "length", "id", "encode", "decode", "from bytes", "to bytes",
+    "value", "message", "buffer", "status", "field", "error", "result", "default", "unknown", "name", "data", "i", "u8", "str",
+    "delete", "Ok",
+)  # fmt: skip
+_NASTY = (
+    '"', "'", "\\", "\\n", "*/", "/*", "//", '"""', "'''", "{{", "}}", "{%", "%}", "{#", "??/", "??=", "%s", "%n", "$(x)", "`", "#",
+    "\\u0041", "\u00e9", "\u00b0", "\u03a9", "\u4f4d", "\U0001f6f0", "\u202e", "&amp;", "<b>", "]]>", "\\", "0", "1st", "r#",
+    "@param",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Names:
+    """Draws names that are unique in their scope."""
+
+    draw: object
+    seen: set
+
+    def one(self, word: str) -> dict:
+        """``name`` and ``identifier`` of something; the rules may refuse the identifier."""
+        draw = self.draw
+        number = len(self.seen)
+        pieces = draw(st.lists(st.sampled_from(_WORDS + _NASTY), min_size=1, max_size=4))
+        name = draw(st.sampled_from((" ", ""))).join(pieces).strip()
+        while name in self.seen or not name:
+            name += f" {number}"
+        self.seen.add(name)
+        dangerous = draw(st.sampled_from(_WORDS))
+        identifier = dangerous if draw(st.integers(0, 2)) == 0 else f"{dangerous} {word} {number}"
+        return {"name": name, "identifier": identifier}
+
+
+@st.composite
+def icds(draw) -> dict[str, dict]:
+    """One to three ICDs by node name; later ones may include the first."""
+    trees: dict[str, dict] = {}
+    names = Names(draw, set())  # a node that includes another must not repeat its names
+    for number in range(draw(st.integers(1, 3))):
+        name = f"n{number}"
+        tree = draw(_icd(name, names, first_id=number * 60))
+        if number and draw(st.booleans()):
+            tree["include"] = ["n0.yaml"]
+        trees[name] = tree
+    return trees
+
+
+@st.composite
+def _icd(draw, name: str, names: Names, first_id: int) -> dict:
+    enums = [draw(_enum(Names(draw, set()), f"E{name}{number}")) for number in range(draw(st.integers(1, 3)))]
+    messages = []
+    for number in range(draw(st.integers(1, 5))):
+        fields, length = draw(_fields(enums if number else enums + enums))
+        message = {**names.one("message"), "kind": draw(st.sampled_from(("telecommand", "telemetry", "configuration")))}
+        if message["kind"] == "configuration":
+            message |= {"set_id": first_id + number, "get_id": first_id + 20 - number}
+        else:
+            message["id"] = first_id + number if message["kind"] == "telecommand" else first_id + 40 + number
+        message["length"] = length
+        if fields:
+            message["fields"] = fields
+        messages.append(message)
+    messages.append(_uses_all(names.one("message"), enums, first_id + 59))
+    node = {
+        "name": name, "title": draw(st.sampled_from(("Plain", 'Odd "*/ {{ \\'))),
+        "byte_order": draw(st.sampled_from(("little", "big"))), "bit_order": draw(st.sampled_from(("lsb0", "msb0"))),
+    }  # fmt: skip
+    return {"icdgen": 1, "node": node, "enums": enums, "messages": messages}
+
+
+def _uses_all(names: dict, enums: list[dict], id: int) -> dict:
+    """A message with a field of each enumeration, so that none is unused."""
+    fields, at = [], 3
+    for number, enum in enumerate(enums):
+        bits = max(m["value"] for m in enum["members"]).bit_length() or 1
+        fields.append({"at": at, "bits": bits, "name": f"user {number}", "type": "enum", "enum": enum["name"]})
+        at += bits
+    return {**names, "kind": "telemetry", "id": id, "length": (at + 7) // 8, "fields": fields}
+
+
+@st.composite
+def _enum(draw, names: Names, name: str) -> dict:
+    bits = draw(st.sampled_from((1, 2, 3, 4, 7, 8, 9, 16, 31, 32, 33, 63, 64)))
+    values = draw(
+        st.lists(
+            st.integers(0, (1 << bits) - 1) | st.integers(0, min(5, (1 << bits) - 1)),
+            min_size=1,
+            max_size=6,
+            unique=True,
+        )
+    )
+    return {"name": name, "members": [{"value": value, **names.one("member")} for value in values]}
+
+
+@st.composite
+def _fields(draw, enums: list[dict]) -> tuple[list[dict], int]:
+    """Fields one after another with gaps of reserved bits, and the bytes that hold them."""
+    fields: list[dict] = []
+    names = Names(draw, set())
+    at = 0
+    for _ in range(draw(st.integers(0, 8))):
+        at += draw(st.sampled_from((0, 0, 0, 1, 2, 3, 5, 8, 11)))
+        field = draw(_field(enums))
+        if field["type"] == "bytes":
+            at = (at + 7) // 8 * 8
+        fields.append({"at": at, "bits": field.pop("bits"), **names.one("field"), **field})
+        at += fields[-1]["bits"]
+    order = draw(st.permutations(fields)) if draw(st.booleans()) else fields
+    return order, (at + 7) // 8
+
+
+@st.composite
+def _field(draw, enums: list[dict]) -> dict:
+    kind = draw(st.sampled_from(("uint", "int", "uint", "int", "bool", "enum", "float", "bytes")))
+    if kind == "bool":
+        return {"bits": 1, "type": kind}
+    if kind == "float":
+        return {"bits": draw(st.sampled_from((32, 64))), "type": kind}
+    if kind == "bytes":
+        return {"bits": 8 * draw(st.integers(1, 12)), "type": kind}
+    if kind == "enum":
+        enum = draw(st.sampled_from(enums))
+        needed = max(m["value"] for m in enum["members"]).bit_length() or 1
+        return {"bits": draw(st.integers(needed, 64)), "type": kind, "enum": enum["name"]}
+    bits = draw(st.integers(1, 64) | st.sampled_from((1, 7, 8, 9, 15, 16, 17, 24, 31, 32, 33, 53, 54, 63, 64)))
+    field: dict = {"bits": bits, "type": kind}
+    if draw(st.booleans()):
+        field["formula"] = draw(_formula())
+    if draw(st.booleans()):
+        field["unit"] = draw(st.sampled_from(("deg", "m/s^2", "%", "V")))
+    low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if kind == "int" else (0, (1 << bits) - 1)
+    raw = st.integers(low, high)
+    if draw(st.integers(0, 5)) == 0:
+        field["const"] = draw(raw)
+    elif draw(st.integers(0, 5)) == 0:
+        values = draw(st.lists(raw, min_size=1, max_size=2, unique=True))
+        field["special"] = [{"value": value, "meaning": f'*/ odd \\ " {index}'} for index, value in enumerate(values)]
+    return field
+
+
+@st.composite
+def _formula(draw) -> str:
+    """Factors and offsets, plain and extreme; the rules bound what they may come to."""
+    top = draw(st.sampled_from((1, 3, 7, 10, 1000, 65535, 2**31, 2**32 - 5, 2**32)) | st.integers(1, 2**32))
+    bottom = draw(st.sampled_from((1, 2, 3, 7, 10, 100, 1000, 4096, 10**7, 2**32 - 5)) | st.integers(1, 2**32))
+    offset = draw(st.sampled_from((0, 0, 0, 1, 40, 273, 2**20, 2**30)))
+    sign = draw(st.sampled_from(("", "-")))
+    shift = f" {draw(st.sampled_from('+-'))} {offset}" if offset else ""
+    simple = draw(
+        st.sampled_from(
+            (
+                None,
+                None,
+                "raw*0.01",
+                "raw*0.0001",
+                "raw/10000.0",
+                "raw*0.48828125",
+                "raw*0.1 - 273.15",
+                "(raw - 32)*5/9",
+            )
+        )
+    )
+    return simple or f"{sign}raw*{top}/{bottom}{shift}"

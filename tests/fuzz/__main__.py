@@ -1,0 +1,141 @@
+"""``python -m tests.fuzz c|rust|python [--seconds N] [ICD ...]``: builds a harness and runs it; status 0 if nothing is found."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from icdgen.icd.model import Icd
+from icdgen.vectors import make
+from tests.conformance.build import BuildError, cache_folder, execute, generated
+from tests.conformance.icds import icd_of
+from tests.conformance.languages import Language
+
+HERE = Path(__file__).parent
+LONGEST = 1024
+DIRECTION = 1
+
+_MANIFEST = """\
+[package]
+name = "fuzz"
+version = "0.0.0"
+edition = "2021"
+publish = false
+
+[package.metadata]
+cargo-fuzz = true
+
+[dependencies]
+libfuzzer-sys = "0.4"
+icd = {{ package = "{package}", path = "../source/rust" }}
+
+[[bin]]
+name = "dispatch"
+path = "dispatch.rs"
+test = false
+doc = false
+
+[workspace]
+"""
+
+
+def sources(language: Language, icd: Icd, folder: Path) -> Path:
+    """A fresh folder of generated code."""
+    source = folder / "source"
+    shutil.rmtree(source, ignore_errors=True)
+    for name, data in generated(language, icd).items():
+        (source / name).parent.mkdir(parents=True, exist_ok=True)
+        (source / name).write_bytes(data)
+    return source
+
+
+def seeds(icd: Icd) -> Iterator[bytes]:
+    """An input for every frame of the golden vectors. Harnesses count the nodes in the order of the ICDs or of their names."""
+    names = [node.name for node in icd.nodes]
+    for node in icd.nodes:
+        for vectors in make(icd, node).messages:
+            message = vectors.message
+            for flag, id in ((0, message.telecommand_id), (DIRECTION, message.telemetry_id)):
+                for row in vectors.rows if id is not None else ():
+                    for index in {names.index(node.name), sorted(names).index(node.name)}:
+                        yield bytes((index, flag | (4 if id > 255 else 0), id & 0xFF)) + row.frame
+
+
+def c(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
+    """libFuzzer with the address and the undefined-behaviour sanitizer."""
+    source = sources(Language("c", ("c", "c-testee"), (), lambda source, out: []), icd, folder)
+    testee = source / "c-testee"
+    files = [HERE / "c_target.c", testee / "testee_nodes.c", *sorted(testee.glob("nodes/*.c"))]
+    flags = ["-O1", "-g", "-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all"]
+    execute("clang", "-std=c99", *flags, "-I", source / "c", "-I", testee, *files, "-o", folder / "dispatch")
+    return [str(folder / "dispatch")], {}
+
+
+def rust(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
+    """cargo-fuzz: libFuzzer with the address sanitizer, integer overflow checked."""
+    import tomllib
+
+    source = sources(Language("rust", ("rust",), (), lambda source, out: []), icd, folder)
+    fuzz = folder / "fuzz"
+    fuzz.mkdir(exist_ok=True)
+    package = tomllib.loads((source / "rust" / "Cargo.toml").read_text())["package"]["name"]
+    (fuzz / "Cargo.toml").write_text(_MANIFEST.format(package=package))
+    shutil.copy(HERE / "rust_target.rs", fuzz / "dispatch.rs")
+    arms = []
+    for index, node in enumerate(icd.nodes):
+        for flag, pick, name in (("false", "telecommand_id", "Telecommand"), ("true", "telemetry_id", "Telemetry")):
+            if any(getattr(message, pick) is not None for message in icd.messages_of(node)):
+                arms.append(f"    ({index}, {flag}) => exercise!(icd::{node.name}::{name}, id, fit, data),\n")
+    (fuzz / "nodes.rs").write_text(f"match (node % {len(icd.nodes)}, telemetry) {{\n{''.join(arms)}    _ => {{}}\n}}\n")
+    options = ["--fuzz-dir", str(fuzz), "--dev"]
+    execute("cargo", "+nightly", "fuzz", "build", *options, "dispatch", cwd=fuzz)
+    found = sorted(fuzz.glob("target/*/debug/dispatch"))
+    if not found:
+        raise BuildError("cargo fuzz built nothing")
+    return [str(found[0])], {}
+
+
+def python(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
+    """atheris."""
+    source = sources(Language("python", ("python",), (), lambda source, out: []), icd, folder)
+    package = sorted((source / "python").rglob("testee.py"))[0].parent
+    command = [sys.executable, str(HERE / "python_target.py"), package.name]
+    return command, {"PYTHONPATH": str(package.parent)}
+
+
+HARNESSES = {"c": c, "rust": rust, "python": python}
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(prog="python -m tests.fuzz", description=__doc__)
+    parser.add_argument("lang", choices=HARNESSES)
+    parser.add_argument("--seconds", type=int, default=60, help="how long (default: %(default)s)")
+    parser.add_argument("--jobs", type=int, default=1, help="processes (default: %(default)s)")
+    parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
+    options = parser.parse_args(arguments)
+    folder = cache_folder().resolve() / f"fuzz-{options.lang}"
+    corpus = folder / "corpus"
+    corpus.mkdir(parents=True, exist_ok=True)
+    icd = icd_of(options.icds)
+    try:
+        command, more = HARNESSES[options.lang](icd, folder)
+    except BuildError as error:
+        print(error, file=sys.stderr)
+        return 2
+    for number, seed in enumerate(seeds(icd)):
+        (corpus / f"seed-{number:05}").write_bytes(seed)
+    command += [f"-max_total_time={options.seconds}", f"-max_len={LONGEST}", "-timeout=20", "-print_final_stats=1"]
+    if options.jobs > 1:
+        command += [f"-fork={options.jobs}"]
+    command += [f"-artifact_prefix={folder}/", str(corpus)]
+    print(" ".join(command), flush=True)
+    return 1 if subprocess.run(command, cwd=folder, env={**os.environ, **more}).returncode else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,77 @@
+"""``python -m tests.mutation``: changes one number of the ICDs at a time and runs the unchanged vectors on the changed code.
+
+Prints, for each language and kind of change: the mutants; those that the rules refuse (and, where code can be made from them
+all the same, how many of these the vectors kill); those that the vectors kill; those that provably mean the same as the
+unchanged ICD; and the survivors. Ends with status 0 if there are none.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+import time
+from pathlib import Path
+
+from tests.conformance.icds import COMMITTED, icd_of, read_vectors, vectors_of
+from tests.mutation.measure import LANGUAGES, Score, measure
+from tests.mutation.mutants import mutants
+
+HEAD = ("mutants", "refused", "and killed", "not killed", "killed", "same", "survived")
+
+
+def table(scores: dict[str, Score], refused: dict[str, int]) -> str:
+    """One block a language, one line a kind of change."""
+    lines = [f"{'language':10}{'change':12}" + "".join(f"{word:>12}" for word in HEAD)]
+    for name, score in scores.items():
+        kinds = list(dict.fromkeys([*refused, *score.killed, *score.same, *score.survived]))
+        rows = []
+        for kind in kinds:
+            ends = (score.killed[kind], score.same[kind], len(score.survived[kind]))
+            rows.append(
+                (refused.get(kind, 0) + sum(ends), refused.get(kind, 0), score.also[kind], score.not_also[kind], *ends)
+            )
+        rows.append(tuple(map(sum, zip(*rows, strict=True))))
+        for kind, row in zip([*kinds, "all"], rows, strict=True):
+            lines.append(f"{name:10}{kind:12}" + "".join(f"{number:12,}" for number in row))
+    return "\n".join(lines)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(prog="python -m tests.mutation", description=__doc__)
+    parser.add_argument("--lang", default="c,python,rust", help=f"of {', '.join(LANGUAGES)} (default: %(default)s)")
+    parser.add_argument("--sample", type=int, help="so many mutants, chosen by --seed (default: all)")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kind", help="only this kind of change")
+    parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
+    options = parser.parse_args(arguments)
+    names = options.lang.split(",")
+    for name in names:
+        if name not in LANGUAGES:
+            parser.error(f"unknown language {name}")
+        if LANGUAGES[name].missing():
+            parser.error(f"{name} needs {', '.join(LANGUAGES[name].missing())}")
+    icd = icd_of(options.icds)
+    files = read_vectors(COMMITTED) if COMMITTED.is_dir() and not options.icds else vectors_of(icd)
+    chosen = [mutant for mutant in mutants(icd) if options.kind in (None, mutant.kind)]
+    if options.sample is not None:
+        chosen = random.Random(options.seed).sample(chosen, min(options.sample, len(chosen)))
+    start = time.perf_counter()
+    say = lambda text: print(text, file=sys.stderr, flush=True)  # noqa: E731
+    scores, refused = measure(icd, files, chosen, [LANGUAGES[name] for name in names], say)
+    bad = 0
+    for name, score in scores.items():
+        for kind, found in score.survived.items():
+            bad += len(found)
+            for text in found:
+                print(f"{name}: survivor: {kind}: {text}")
+        for text in score.crashed:
+            bad += 1
+            print(f"{name}: the testee died of {text}")
+    print(table(scores, refused))
+    print(f"{len(chosen):,} mutants in {time.perf_counter() - start:.0f} s")
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,22 @@
+"""Whether a changed message provably means the same as the unchanged one."""
+
+from __future__ import annotations
+
+from icdgen import codec
+from icdgen.icd.model import Message, Node
+
+
+def same(node: Node, message: Message, other_node: Node, other: Message) -> bool:
+    """Whether the reference codec reads and writes every bit alike, and everything else that code is made from is equal."""
+    return _facts(node, message) == _facts(other_node, other)
+
+
+def _facts(node: Node, message: Message) -> tuple:
+    fields = [
+        (
+            f.name, f.type, f.bits, tuple(codec._bit_positions(node, f)) if f.type != "bytes" else f.at, f.scale, f.const,
+            f.special, f.limits, tuple((m.value, m.name) for m in f.enum.members) if f.enum else None,
+        )
+        for f in message.fields
+    ]  # fmt: skip
+    return message.name, message.kind, message.ids, message.length, fields

@@ -1,0 +1,154 @@
+"""Runs the unchanged vectors on mutants, in batches, and keeps the score."""
+
+from __future__ import annotations
+
+import tempfile
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+
+from icdgen.icd.model import Icd
+from tests.conformance.build import build
+from tests.conformance.cases import Case, MessageCases, enum_cases, member_names
+from tests.conformance.compare import difference
+from tests.conformance.driver import Testee
+from tests.conformance.languages import Language
+from tests.conformance.languages import c as c_language
+from tests.conformance.languages import python as python_language
+from tests.conformance.languages import rust as rust_language
+from tests.conformance.robust import line
+from tests.mutation.batches import Batch, baseline, key, prepare, split
+from tests.mutation.meaning import same
+from tests.mutation.mutants import Mutant, unchanged
+
+# Not optimised: a mutant is built once and run for a moment.
+LANGUAGES = {
+    "c": Language("c", c_language.BACKENDS, ("gcc",), partial(c_language.build, compiler="gcc", flags=("-O0",))),
+    "python": next(one for one in python_language.LANGUAGES if one.name == "python"),
+    "rust": Language("rust", rust_language.BACKENDS, ("cargo", "rustc"), partial(rust_language.build, profile="dev")),
+}
+
+ANY = "@"  # stands for the mutant's node in requests that are made once
+STEPS = (6, 40, 400, 10**9)  # so many cases are tried on a mutant before its answers are looked at
+
+
+@dataclass
+class Score:
+    """What became of the mutants in one language, by kind of change."""
+
+    killed: Counter = field(default_factory=Counter)
+    also: Counter = field(default_factory=Counter)  # refused by the rules, and killed too
+    not_also: Counter = field(default_factory=Counter)  # refused by the rules, and the vectors would not have noticed
+    same: Counter = field(default_factory=Counter)  # survived, and provably mean the same
+    survived: dict[str, list[str]] = field(default_factory=lambda: defaultdict(list))
+    crashed: list[str] = field(default_factory=list)
+
+
+@dataclass
+class Prepared:
+    """A case as it is sent, but for the node's name."""
+
+    start: bytes
+    end: bytes
+    answer: dict
+
+    def line(self, node: str) -> bytes:
+        return self.start + node.encode() + self.end
+
+
+class Vectors:
+    """The cases of every message and enumeration, made when they are first needed."""
+
+    def __init__(self, files: dict[str, dict]) -> None:
+        self.files, self.enums = files, member_names(files)
+        self.messages = {(node, m["name"]): m for node, data in files.items() for m in data["messages"]}
+        self.made: dict[tuple, list[Prepared]] = {}
+
+    def of(self, mutant: Mutant) -> list[Prepared]:
+        name = key(mutant)
+        if name not in self.made:
+            if len(self.made) > 20:
+                self.made.clear()
+            self.made[name] = [_prepared(case) for case in self._cases(mutant)]
+        return self.made[name]
+
+    def _cases(self, mutant: Mutant) -> Iterable[Case]:
+        data = self.files[mutant.node]
+        if mutant.enum is not None:
+            return (case for case in enum_cases({**data, "node": ANY}) if case.request["enum"] == mutant.enum)
+        message = self.messages[mutant.node, mutant.message]
+        cases = MessageCases(ANY, message, self.enums, data["never_set"])
+        return sorted(cases.all(), key=lambda case: case.request["op"] != "constants")  # a cheap and telling one first
+
+
+def _prepared(case: Case) -> Prepared:
+    text = line(case.request)
+    start, end = text.split(b'"node": "@"', 1)
+    return Prepared(start + b'"node": "', b'"' + end, case.answer)
+
+
+def measure(
+    icd: Icd, files: dict[str, dict], chosen: list[Mutant], languages: list[Language], say: Callable[[str], None]
+) -> tuple[dict[str, Score], dict[str, int]]:
+    """The score of each language, and how many mutants the rules refuse. Raises `BuildError`."""
+    scores = {language.name: Score() for language in languages}
+    refused: Counter = Counter()
+    vectors = Vectors(files)
+    with tempfile.TemporaryDirectory() as folder:
+        accepted = baseline(list(unchanged(icd)), Path(folder))
+    done = 0
+    for part in split(chosen):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            (folder / "icd").mkdir()
+            batch = prepare(part, folder / "icd", accepted)
+            refused.update(batch.mutants[name].kind for name in batch.refused)
+            for language in languages:
+                run(icd, batch, language, vectors, scores[language.name], folder / "build")
+        done += len(part)
+        say(f"{done:,} of {len(chosen):,} mutants")
+    return scores, dict(refused)
+
+
+def run(icd: Icd, batch: Batch, language: Language, vectors: Vectors, score: Score, folder: Path) -> None:
+    """Builds the batch and runs every mutant's vectors until one fails."""
+    alive = [node.name for node in batch.icd.nodes]
+    if not alive:
+        return
+    testee = Testee(build(language, batch.icd, folder))
+    first = 0
+    for last in STEPS:
+        alive = [name for name in alive if _lives(testee, batch, name, vectors, score, first, last)]
+        first = last
+    testee.close()
+    for name in alive:
+        mutant = batch.mutants[name]
+        if name in batch.refused:
+            score.not_also[mutant.kind] += 1
+        elif _means_the_same(icd, batch, name):
+            score.same[mutant.kind] += 1
+        else:
+            score.survived[mutant.kind].append(mutant.about)
+
+
+def _lives(testee: Testee, batch: Batch, name: str, vectors: Vectors, score: Score, first: int, last: int) -> bool:
+    mutant = batch.mutants[name]
+    cases = vectors.of(mutant)[first:last]
+    replies = testee.ask([case.line(name) for case in cases])
+    if name not in batch.refused and any(reply is None for reply in replies):
+        score.crashed.append(f"{mutant.kind}: {mutant.about}: {testee.complaint()}")
+    if all(difference(case.answer, reply) is None for case, reply in zip(cases, replies, strict=True)):
+        return True
+    (score.also if name in batch.refused else score.killed)[mutant.kind] += 1
+    return False
+
+
+def _means_the_same(icd: Icd, batch: Batch, name: str) -> bool:
+    mutant, node = batch.mutants[name], icd.node(batch.mutants[name].node)
+    if mutant.message is None:
+        return False
+    message = next(m for m in node.messages if m.name == mutant.message)
+    other = batch.node(name)
+    return same(node, message, other, other.messages[0])

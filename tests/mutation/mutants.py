@@ -1,0 +1,191 @@
+"""All single changes of an ICD's numbers. Each mutant is the tree of a small ICD that holds one changed message (or enumeration).
+
+So many mutants fit into one build: each is a node of its own, and the vectors of the unchanged message are run on that node.
+"""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from decimal import Decimal
+
+from icdgen.icd.build import plain
+from icdgen.icd.model import Enum, Icd, Message, Node
+
+Change = Callable[[dict], object]
+
+# Types that a field of the same width could be instead.
+_OTHER_TYPES = {
+    "uint": ("int", "float", "bytes", "bool"),
+    "int": ("uint", "float", "bytes"),
+    "enum": ("uint", "int"),
+    "bool": ("uint", "int"),
+    "float": ("uint", "int", "bytes"),
+    "bytes": ("uint", "int"),
+}
+_NUMBER_KEYS = ("formula", "formula_for", "unit", "special", "min", "max", "above", "below", "bitfields", "const")
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One change, in words, and the ICD that has it. ``message`` or ``enum`` names whose vectors must notice."""
+
+    kind: str  # "offset", "width", "type" ...
+    about: str
+    node: str  # node whose vectors are run
+    message: str | None
+    enum: str | None
+    tree: dict  # the small ICD; its node has no name yet
+
+
+def mutants(icd: Icd) -> Iterator[Mutant]:
+    """Every mutant, in the order of the ICDs."""
+    for node in icd.nodes:
+        home = _Home(icd, node)
+        for message in node.messages:
+            yield from _message(home, message)
+        for enum in node.enums:
+            yield from _enum(home, enum)
+
+
+def unchanged(icd: Icd) -> Iterator[Mutant]:
+    """The small ICDs without any change."""
+    for node in icd.nodes:
+        home = _Home(icd, node)
+        for message in node.messages:
+            yield Mutant("none", repr(message.name), node.name, message.name, None, home.tree(message, []))
+        for enum in node.enums:
+            user = next((m for m in node.messages if any(f.enum is enum for f in m.fields)), None)
+            yield Mutant("none", repr(enum.name), node.name, None, enum.name, home.tree(user, [enum.name]))
+
+
+class _Home:
+    """What a small ICD takes over from the node that it is cut out of."""
+
+    def __init__(self, icd: Icd, node: Node) -> None:
+        self.node = node
+        scope = (*icd.included(node), node)
+        self.enums = {enum.name: enum for one in scope for enum in one.enums}
+        self.units = {unit["symbol"]: unit for one in scope for unit in plain(one.source.get("units") or [])}
+
+    def tree(self, message: Message | None, enums: list[str]) -> dict:
+        """A small ICD with one message and some enumerations."""
+        node = self.node
+        tree: dict = {
+            "icdgen": 1,
+            "node": {"title": node.title, "byte_order": node.byte_order, "bit_order": node.bit_order},
+            "vocabulary": list(node.vocabulary),
+        }
+        if message is not None:
+            one = plain(message.source)
+            one.pop("contains", None)
+            one.pop("listed", None)
+            tree["messages"] = [one]
+            used = {field.get("unit") for field in one.get("fields") or ()}
+            tree["units"] = [unit for symbol, unit in self.units.items() if symbol in used]
+            enums = list(dict.fromkeys([*(f["enum"] for f in one.get("fields") or () if "enum" in f), *enums]))
+        tree["enums"] = [plain(self.enums[name].source) for name in enums]
+        return {key: value for key, value in tree.items() if value}
+
+
+def _message(home: _Home, message: Message) -> Iterator[Mutant]:
+    base = home.tree(message, [])
+    name = message.name
+
+    def mutant(kind: str, about: str, change: Change) -> Mutant:
+        tree = copy.deepcopy(base)
+        change(tree)
+        used = {field.get("enum") for field in tree["messages"][0].get("fields") or ()}
+        if "enums" in tree:
+            tree["enums"] = [enum for enum in tree["enums"] if enum["name"] in used]
+        return Mutant(kind, f"{name!r}: {about}", home.node.name, name, None, tree)
+
+    def on_message(kind: str, about: str, **values: object) -> Mutant:
+        return mutant(kind, about, lambda tree: tree["messages"][0].update(values))
+
+    for key in ("id", "set_id", "get_id"):
+        number = getattr(message, key)
+        if number is not None:
+            for step in (-1, 1):
+                yield on_message("id", f"{key} {number} -> {number + step}", **{key: number + step})
+    for step in (-1, 1):
+        yield on_message("length", f"length {message.length} -> {message.length + step}", length=message.length + step)
+    for key, values in (("byte_order", ("little", "big")), ("bit_order", ("lsb0", "msb0"))):
+        other = values[getattr(home.node, key) == values[0]]
+        yield mutant(key.replace("_", " "), f"{key} {other}", lambda t, k=key, o=other: t["node"].update({k: o}))
+    fields = base["messages"][0].get("fields") or []
+    for about, change in _swaps(fields):
+        yield mutant("swap", about, change)
+    for index, field in enumerate(fields):
+        for kind, about, change in _field(field):
+            yield mutant(
+                kind, f"{field['name']!r}: {about}", lambda t, i=index, c=change: c(t["messages"][0]["fields"][i])
+            )
+
+
+def _swaps(fields: list[dict]) -> Iterator[tuple[str, Change]]:
+    """Two neighbours of the same width and type in each other's place."""
+    for index in range(1, len(fields)):
+        one, other = fields[index - 1], fields[index]
+        if (one["bits"], one["type"]) == (other["bits"], other["type"]):
+            about = f"{one['name']!r} and {other['name']!r} in each other's place"
+            places = {index - 1: other["at"], index: one["at"]}
+            yield about, lambda t, p=places: [t["messages"][0]["fields"][i].update(at=at) for i, at in p.items()]
+
+
+def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
+    for step in (-8, -1, 1, 8):
+        yield _number("offset", field, "at", step)
+    for step in (-1, 1) if field["type"] != "bytes" else (-8, 8):
+        yield _number("width", field, "bits", step)
+    for other in _OTHER_TYPES[field["type"]]:
+        yield "type", f"{field['type']} -> {other}", lambda f, o=other: _retype(f, o)
+    if "formula" in field:
+        for text in _formulas(field["formula"]):
+            yield "formula", f"{field['formula']} -> {text}", lambda f, t=text: f.update(formula=t)
+        yield "formula", f"{field['formula']} -> none", lambda f: f.pop("formula")
+    if "const" in field:
+        for step in (-1, 1):
+            yield _number("const", field, "const", step)
+    for index, special in enumerate(field.get("special") or ()):
+        for step in (-1, 1):
+            value = special["value"] + step
+            about = f"special {special['value']} -> {value}"
+            yield "special", about, lambda f, i=index, v=value: f["special"][i].update(value=v)
+
+
+def _number(kind: str, field: dict, key: str, step: int) -> tuple[str, str, Change]:
+    value = field[key] + step
+    return kind, f"{key} {field[key]} -> {value}", lambda f: f.update({key: value})
+
+
+def _retype(field: dict, type_: str) -> None:
+    field["type"] = type_
+    field.pop("enum", None)
+    if type_ not in ("uint", "int"):
+        for key in _NUMBER_KEYS:
+            field.pop(key, None)
+
+
+def _formulas(text: str) -> Iterator[str]:
+    """Each number of the formula one more and one less in its last digit, ten times and a tenth; the sign turned."""
+    for match in re.finditer(r"[0-9]+(?:\.[0-9]+)?", text):
+        number = Decimal(match.group())
+        last = Decimal(1).scaleb(int(number.as_tuple().exponent))
+        for other in (number - last, number + last, number * 10, number / 10):
+            yield f"{text[: match.start()]}{other:f}{text[match.end() :]}"
+    yield text.replace("raw", "-raw", 1) if "=" not in text else text.replace("value", "-value", 1)
+    yield f"{text} + 1"
+
+
+def _enum(home: _Home, enum: Enum) -> Iterator[Mutant]:
+    user = next((m for m in home.node.messages if any(f.enum is enum for f in m.fields)), None)
+    for index, member in enumerate(enum.members):
+        for step in (-1, 1):
+            tree = copy.deepcopy(home.tree(user, [enum.name]))
+            changed = next(e for e in tree["enums"] if e["name"] == enum.name)
+            changed["members"][index]["value"] = member.value + step
+            about = f"{enum.name!r}: {member.name!r} {member.value} -> {member.value + step}"
+            yield Mutant("enum value", about, home.node.name, None, enum.name, tree)

@@ -1,0 +1,52 @@
+"""Enumerations are integers with names, and keep values that have none."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+
+import pytest
+
+
+def test_every_member_has_the_value_and_the_name_of_the_manual(package):
+    for node in package.icd.nodes:
+        module = package.module(node.name)
+        assert list(module.ENUMS) == [enum.name for enum in node.enums]
+        for enum in node.enums:
+            found = getattr(module, module.ENUMS[enum.name])
+            assert [(member.value, member.label) for member in found] == [(m.value, m.name) for m in enum.members]
+            assert all(member.is_known for member in found)
+
+
+@pytest.fixture(scope="module")
+def mode(shipped):
+    return shipped.module("cubeacp").ConModeSelect
+
+
+@pytest.mark.parametrize("value", [77, 255, 256, 65535, (1 << 64) - 1])
+def test_unknown_values_are_kept(mode, value):
+    unknown = mode(value)
+    assert unknown == value
+    assert isinstance(unknown, mode)
+    assert (unknown.name, unknown.label, unknown.is_known) == (f"UNKNOWN_{value}", "", False)
+    assert unknown not in list(mode)
+    assert pickle.loads(pickle.dumps(unknown)) == unknown
+    assert copy.deepcopy(unknown) == unknown
+    assert json.dumps({"mode": unknown}) == f'{{"mode": {value}}}'
+
+
+def test_unknown_bytes_are_made_once(mode):
+    assert mode(200) is mode(200)
+
+
+@pytest.mark.parametrize("value", [-1, 1 << 64, "1", None, 1.5])
+def test_what_is_no_value_of_any_enumeration_is_refused(mode, value):
+    with pytest.raises(ValueError):
+        mode(value)
+
+
+def test_members_print_alike_in_every_python(mode):
+    member = next(iter(mode))
+    assert str(member) == f"{member}" == str(member.value)
+    assert repr(member) == f"<ConModeSelect.{member.name}: {member.value}>"

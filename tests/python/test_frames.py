@@ -1,0 +1,115 @@
+"""Generated decoders and encoders agree with the reference codec, on any ICD."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen import codec
+from tests.python.reference import cases, frames, raw
+
+TYPES = {"bool": bool, "uint": int, "int": int, "float": float, "bytes": bytes}
+
+
+def test_every_frame_decodes_to_the_reference_values_and_back(package):
+    for node, message, cls in cases(package):
+        infos = {info.name: info for info in cls.FIELDS}
+        for frame in frames(message.length):
+            expected = codec.decode(node, message, frame)
+            decoded = cls.from_bytes(frame)
+            found = {name: raw(package, info, getattr(decoded, info.attribute)) for name, info in infos.items()}
+            assert found == expected, (message.name, frame.hex())
+            assert decoded.to_bytes() == codec.encode(node, message, expected), (message.name, frame.hex())
+
+
+def test_values_have_the_annotated_type(package):
+    for case in cases(package):
+        decoded = case.cls.from_bytes(b"\xa5" * case.message.length)
+        for info in case.cls.FIELDS:
+            assert type(getattr(decoded, info.attribute)) is (info.enum or TYPES[info.type]), (
+                case.message.name,
+                info.name,
+            )
+
+
+def test_any_buffer_decodes(package):
+    for case in cases(package):
+        frame = bytes(range(256)) * 3
+        frame = frame[: case.message.length]
+        for buffer in (bytearray(frame), memoryview(frame), memoryview(bytearray(b"x" + frame))[1:]):
+            assert case.cls.from_bytes(buffer).to_bytes() == case.cls.from_bytes(frame).to_bytes()
+
+
+def test_physical_values_agree_at_the_ends_and_in_between(package):
+    for case in cases(package):
+        for field in case.message.fields:
+            if not field.scale:
+                continue
+            info = case.infos[field.name]
+            message = case.cls()
+            low, high = field.raw_min, field.raw_max
+            middle = (low + high) // 2
+            for value in {low, min(low + 1, high), middle, 0, min(1, high), max(high - 1, low), high}:
+                setattr(message, info.attribute, value)
+                physical = getattr(message, info.physical)
+                assert physical == codec.physical_double(field, value)
+                assert type(physical) is float
+                setattr(message, info.physical, physical)
+                assert getattr(message, info.attribute) == value
+
+
+def test_a_frame_of_another_length_is_refused(package):
+    length_error = package.module().LengthError
+    for case in cases(package):
+        length = case.message.length
+        for actual in {0, length - 1, length + 1, 2 * length + 1} - {-1, length}:
+            with pytest.raises(length_error) as caught:
+                case.cls.from_bytes(bytes(actual))
+            assert (caught.value.expected, caught.value.actual) == (length, actual)
+
+
+def test_a_raw_value_that_does_not_fit_is_refused_by_name(package):
+    range_error = package.module().RangeError
+    for case in cases(package):
+        for field in case.message.fields:
+            attribute = case.infos[field.name].attribute
+            for value in unfit(field):
+                message = case.cls()
+                setattr(message, attribute, value)
+                with pytest.raises(range_error) as caught:
+                    message.to_bytes()
+                assert caught.value.field == attribute, (case.message.name, value)
+                assert attribute in str(caught.value)
+
+
+def unfit(field) -> list[object]:
+    """Raw values that the field cannot hold."""
+    if field.type == "float":
+        return [None, "1", b"1", 10**400, *([3.5e38, -1e39] if field.bits == 32 else [])]
+    if field.type == "bytes":
+        return [b"", bytes(field.bits // 8 - 1), bytes(field.bits // 8 + 1), "x" * (field.bits // 8), None, 5]
+    return [field.raw_min - 1, field.raw_max + 1, 1 << 64, -(1 << 63) - 1, 10**30, -1.5, 0.5, "1", None, b"\x01", []]
+
+
+def test_fresh_messages_hold_zeros_and_constants(package):
+    for case in cases(package):
+        message = case.cls()
+        for field in case.message.fields:
+            value = raw(package, case.infos[field.name], getattr(message, case.infos[field.name].attribute))
+            assert value == (bytes(field.bits // 8) if field.type == "bytes" else field.const or 0)
+        assert len(message.to_bytes()) == case.message.length
+
+
+def test_classes_say_what_the_icd_says(package):
+    for node, message, cls in cases(package):
+        assert (node.name, message.name, message.kind, message.length) == (cls.NODE, cls.NAME, cls.KIND, cls.LENGTH)
+        assert (message.table, message.acknowledge, message.ids) == (cls.TABLE, cls.ACKNOWLEDGED, cls.IDS)
+        if message.kind == "configuration":
+            assert (message.set_id, message.get_id) == (cls.SET_ID, cls.GET_ID)
+        else:
+            assert message.id == cls.ID
+        for field, info in zip(message.fields, cls.FIELDS, strict=True):
+            assert (info.name, info.at, info.bits, info.type) == (field.name, field.at, field.bits, field.type)
+            assert info.unit == (field.unit.symbol if field.unit else "")
+            assert info.const == field.const
+            assert info.special == tuple((s.value, s.meaning) for s in field.special)
+            assert bool(info.physical) == bool(field.scale)

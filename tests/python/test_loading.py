@@ -1,0 +1,72 @@
+"""Types are loaded when they are first used."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+
+def run(package, code: str) -> str:
+    """What a fresh interpreter prints."""
+    code = f"import sys; sys.dont_write_bytecode = True\n{code}"
+    done = subprocess.run([sys.executable, "-c", code], cwd=package.folder, capture_output=True, text=True)
+    assert not done.returncode, done.stderr
+    return done.stdout.strip()
+
+
+LOADED = "print(sorted(name.partition('.')[2] for name in sys.modules if name.startswith('icdgen_messages.')))"
+
+
+def test_importing_the_package_loads_no_node(shipped):
+    assert run(shipped, f"import icdgen_messages\n{LOADED}") == "['_errors']"
+
+
+def test_importing_a_node_loads_no_message(shipped):
+    assert run(shipped, f"import icdgen_messages.cubeacp\n{LOADED}") == "['_errors', '_lazy', 'cubeacp']"
+
+
+def test_importing_a_node_needs_nothing_that_is_slow_to_import(shipped):
+    code = (
+        "before = set(sys.modules)\nimport icdgen_messages.cubeacp\n"
+        "print({'typing', 'dataclasses', 'enum', 'inspect', 're'} & (set(sys.modules) - before))"
+    )
+    assert run(shipped, code) == "set()"
+
+
+def test_a_message_loads_itself_and_its_enumerations(shipped):
+    code = f"from icdgen_messages.cubeacp import EstimatedAttitudeAngles\n{LOADED}"
+    assert "cubeacp._types.estimated_attitude_angles" in run(shipped, code)
+    assert "cubeacp._types.current_adcs_state" not in run(shipped, code)
+
+
+def test_dispatch_loads_what_it_needs(shipped):
+    code = f"from icdgen_messages import cubeacp\ncubeacp.decode_telemetry(146, bytes(6))\n{LOADED}"
+    assert "cubeacp._types.estimated_attitude_angles" in run(shipped, code)
+    assert "cubeacp._types.adcs_configuration" not in run(shipped, code)
+
+
+def test_numpy_is_not_needed_until_columns_are(shipped):
+    code = "import icdgen_messages.cubeacp as acp\nacp.EstimatedAttitudeAngles.from_bytes(bytes(6))\nprint('numpy' in sys.modules)"
+    assert run(shipped, code) == "False"
+
+
+def test_every_name_is_listed_and_there(package):
+    for node in package.icd.nodes:
+        module = package.module(node.name)
+        for name in module._HOMES:
+            assert name in dir(module)
+            assert getattr(module, name).__name__ == name
+
+
+def test_a_name_that_is_not_there_is_an_attribute_error(shipped):
+    with pytest.raises(AttributeError, match="Nonsense"):
+        _ = shipped.module("cubeacp").Nonsense
+    with pytest.raises(AttributeError, match="nonsense"):
+        _ = shipped.module().nonsense
+
+
+def test_included_messages_are_the_same_class_in_every_node(shipped):
+    assert shipped.module("cubeacp").Reset is shipped.module("common").Reset
+    assert shipped.module("bootloader").Reset is shipped.module().common.Reset

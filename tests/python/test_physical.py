@@ -1,0 +1,102 @@
+"""Physical values are correctly rounded, and setting one finds the nearest raw value."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import pytest
+
+from icdgen import codec
+from tests.python.reference import cases
+
+
+def distinct(package, widest: int):
+    """One field of each scale, type and width up to ``widest`` bits."""
+    found = {}
+    for case in cases(package):
+        for field in case.message.fields:
+            if field.scale and field.bits <= widest:
+                found.setdefault((field.scale, field.type, field.bits), (case, field))
+    return found.values()
+
+
+def test_every_value_of_every_narrow_scale_is_exact_and_comes_back(shipped):
+    checked = 0
+    for case, field in distinct(shipped, 16):
+        info = case.infos[field.name]
+        read, write = getattr(case.cls, info.physical).fget, getattr(case.cls, info.physical).fset
+        p, c, q = info.scale
+        assert Fraction(p, q) == field.scale.factor
+        assert Fraction(c, q) == field.scale.offset
+        message = case.cls()
+        for raw in range(field.raw_min, field.raw_max + 1):
+            setattr(message, info.attribute, raw)
+            physical = read(message)
+            assert physical == (raw * p + c) / q  # int / int rounds correctly
+            write(message, physical)
+            assert getattr(message, info.attribute) == raw
+            checked += 1
+    assert checked > 500_000
+
+
+@pytest.mark.parametrize("name", ["shipped", "odd", "ordered"])
+def test_any_double_finds_the_raw_value_that_the_reference_finds(name, request):
+    package = request.getfixturevalue(name)
+    range_error = package.module().RangeError
+    for case, field in distinct(package, 64):
+        info = case.infos[field.name]
+        message = case.cls()
+        for value in doubles(field):
+            try:
+                expected = codec.raw_from_physical(field, value)
+            except codec.CodecError:
+                with pytest.raises(range_error) as caught:
+                    setattr(message, info.physical, value)
+                assert caught.value.field == info.attribute
+            else:
+                setattr(message, info.physical, value)
+                assert getattr(message, info.attribute) == expected, (case.message.name, field.name, value)
+
+
+def doubles(field):
+    """Doubles on, between and beyond the physical values of the field."""
+    step = abs(field.scale.factor)
+    for raw in (field.raw_min, field.raw_max, 0, 1, 7, (field.raw_min + field.raw_max) // 3):
+        exact = field.scale.physical(raw)
+        for part in (0, Fraction(1, 2), Fraction(-1, 2), Fraction(49, 100), Fraction(3, 2), -1):
+            near = float(exact + part * step)
+            yield from (near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf))
+    yield from (0.0, -0.0, 5e-324, 1e308, -1e308, math.nan, math.inf, -math.inf)
+
+
+def test_ties_go_to_the_even_raw_value_of_the_exact_quotient(shipped):
+    angles = shipped.module("cubeacp").EstimatedAttitudeAngles()
+    for value, raw in (
+        (0.005, 1),
+        (0.015, 1),
+        (0.125, 12),
+        (0.375, 38),
+        (-0.125, -12),
+        (327.67, 32767),
+        (Fraction(1, 200), 0),
+    ):
+        angles.estimated_roll_angle_deg = value
+        assert angles.estimated_roll_angle == raw
+
+
+def test_what_is_no_number_is_refused(shipped):
+    angles = shipped.module("cubeacp").EstimatedAttitudeAngles()
+    for value in ("1", None, b"", 1j, [], 10**400):
+        with pytest.raises(shipped.module().RangeError):
+            angles.estimated_roll_angle_deg = value
+
+
+def test_messages_are_made_from_physical_values(package):
+    for case in cases(package):
+        if not any(field.scale for field in case.message.fields):
+            continue
+        message = case.cls.from_bytes(bytes(case.message.length))
+        again = case.cls.from_physical(**message.as_dict(physical=True))
+        assert again == message
+        assert case.cls.from_physical() == case.cls()

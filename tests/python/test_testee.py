@@ -1,0 +1,73 @@
+"""The testee answers whatever it is asked."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+
+@pytest.fixture(scope="module")
+def ask(shipped):
+    """Answers a request, through the package that is imported."""
+    testee = shipped.module("testee")
+    return lambda **request: testee.answer(json.dumps(request).encode())
+
+
+ANGLES = {"node": "cubeacp", "kind": "telemetry", "id": 146}
+
+
+def test_frames_are_decoded(ask):
+    answer = ask(op="decode", bytes="2efb0a000000", **ANGLES)
+    assert answer["ok"]
+    assert answer["raw"] == {"Estimated Roll Angle": -1234, "Estimated Pitch Angle": 10, "Estimated Yaw Angle": 0}
+    assert answer["physical"]["Estimated Roll Angle"] == "c028ae147ae147ae"
+    assert answer["bytes"] == "2efb0a000000"
+
+
+def test_common_messages_are_found_by_every_node_that_speaks_them(ask):
+    for node in ("common", "cubeacp", "bootloader"):
+        assert ask(op="decode", node=node, kind="telecommand", id=1, bytes="5a")["ok"]
+    assert ask(op="decode", node="cubemag", kind="telecommand", id=1, bytes="5a")["error"] == "unknown-id"
+
+
+def test_configuration_takes_either_id(ask):
+    for id in (120, 247):
+        assert ask(op="decode", node="common", kind="configuration", id=id, bytes="00" * 16)["ok"]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        b"",
+        b"{",
+        b"[]",
+        b"null",
+        b"\xff\xfe",
+        b"[" * 100_000,
+        b'{"op": ' * 100_000,
+        b"9" * 10_000,
+        b'{"op": "\\ud800"}',
+        b'{"op": []}',
+    ],
+)
+def test_what_is_no_request_is_refused(shipped, line):
+    answer = shipped.module("testee").answer(line)
+    assert (answer["ok"], answer["error"]) == (False, "request")
+    assert json.dumps(answer)
+
+
+def test_it_answers_a_line_a_line_until_the_end(shipped):
+    lines = [b"nonsense", json.dumps({"op": "node", "node": "cubeacp"}).encode(), b""]
+    done = subprocess.run(
+        [sys.executable, "-B", "-m", "icdgen_messages.testee"],
+        cwd=shipped.folder,
+        input=b"\n".join(lines) + b"\n",
+        capture_output=True,
+    )
+    assert done.returncode == 0 and not done.stderr
+    answers = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [answer["ok"] for answer in answers] == [False, True, False]
+    assert answers[1] == {"ok": True, "node_type": 10, "interface_version": 7}

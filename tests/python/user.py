@@ -1,0 +1,47 @@
+"""What a user of the generated package may write. It is checked, and never run."""
+
+from __future__ import annotations
+
+from icdgen_messages import FieldInfo, IcdError, LengthError, Message, OpenEnum, cubeacp
+from icdgen_messages.common import Reset
+from icdgen_messages.cubeacp import (
+    AdcsState,
+    ConModeSelect,
+    CurrentAdcsState,
+    EstimatedAttitudeAngles,
+    decode_telecommand,
+    decode_telemetry,
+)
+
+
+def roll(id: int, data: bytes) -> float:
+    """The roll angle in degrees, if the frame has one."""
+    try:
+        message: Message = decode_telemetry(id, data)
+    except LengthError as error:
+        return float(error.expected - error.actual)
+    except IcdError:
+        return 0.0
+    if isinstance(message, EstimatedAttitudeAngles):
+        return message.estimated_roll_angle_deg
+    return 0.0
+
+
+def commands() -> list[bytes]:
+    """Frames of some telecommands."""
+    angles = EstimatedAttitudeAngles.from_bytes(memoryview(bytes(6)))
+    angles.estimated_roll_angle_deg = 3
+    angles.estimated_pitch_angle = 5
+    again = EstimatedAttitudeAngles.from_physical(estimated_roll_angle_deg=1.5)
+    state = CurrentAdcsState(control_mode=ConModeSelect(3), cubesense1_enabled=True)
+    mode: OpenEnum = state.control_mode
+    number: int = state.control_mode.value + state.control_mode + cubeacp.CurrentAdcsState.ID
+    label: str = mode.label
+    field: FieldInfo = CurrentAdcsState.FIELDS[number]
+    print(label, field.unit, field.scale, state.as_dict(physical=True), AdcsState.LENGTH)
+    return [angles.to_bytes(), again.to_bytes(), Reset().to_bytes(), decode_telecommand(1, b"\x5a").to_bytes()]
+
+
+def columns(data: bytes) -> float:
+    """The mean of a column."""
+    return float(EstimatedAttitudeAngles.decode_many(data, physical=True)["estimated_roll_angle_deg"].mean())

@@ -1,0 +1,48 @@
+"""The crate of the shipped ICDs and that of odd ones, each generated and built once a run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from icdgen.icd.model import Icd
+from tests.rust import harness, odd
+
+
+class Subject(NamedTuple):
+    """ICDs, and the crate's main file."""
+
+    icd: Icd
+    crate: Path
+
+
+@pytest.fixture(scope="session")
+def shipped(tmp_path_factory) -> Subject:
+    return Subject(harness.shipped(), harness.generate(harness.shipped(), tmp_path_factory.mktemp("shipped")))
+
+
+@pytest.fixture(scope="session")
+def strange(tmp_path_factory) -> Subject:
+    """ICDs unlike ours."""
+    icd = harness.read(*odd.write(tmp_path_factory.mktemp("icd")))
+    return Subject(icd, harness.generate(icd, tmp_path_factory.mktemp("strange")))
+
+
+@pytest.fixture(scope="session", params=["shipped", "strange"])
+def subject(request) -> Subject:
+    """One after the other."""
+    return request.getfixturevalue(request.param)
+
+
+@pytest.fixture(scope="session")
+def target(tmp_path_factory) -> Path:
+    """Cargo's folder, the same for all."""
+    return tmp_path_factory.mktemp("target")
+
+
+@pytest.fixture(scope="session")
+def testee(subject, target) -> Path:
+    """The program that answers requests about the crate."""
+    return harness.build_with_cargo(subject.crate, target)

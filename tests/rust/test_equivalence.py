@@ -1,0 +1,56 @@
+"""Every message of the generated crate does what the reference codec does, to the last bit."""
+
+from __future__ import annotations
+
+import json
+
+from tests.conformance.robust import bad_lines
+from tests.rust import harness
+
+
+def test_decoding_and_encoding_again(subject, testee):
+    requests = harness.frame_requests(subject.icd, count=10)
+    assert harness.differences(subject.icd, testee, requests)[:3] == []
+
+
+def test_constants_and_encoding_of_raw_and_physical_values(subject, testee):
+    requests = harness.value_requests(subject.icd, largest=30)
+    assert len(requests) > 5000
+    assert harness.differences(subject.icd, testee, requests)[:3] == []
+
+
+def test_every_physical_value_of_every_scale(subject, testee):
+    """All raw values of each scaled field of up to 16 bits, one field for each scale, width and sign."""
+    fields = {}
+    for node, message, kind, id in harness.routes(subject.icd):
+        for field in message.fields:
+            if field.scale is not None and field.bits <= 16:
+                fields.setdefault((field.scale, field.bits, field.type), (node, kind, id, field))
+    assert fields
+    requests = [
+        {
+            "op": "sweep", "node": node.name, "kind": kind, "id": id, "field": field.name,
+            "from": field.raw_min, "to": field.raw_max,
+        }
+        for node, kind, id, field in fields.values()
+    ]  # fmt: skip
+    answers = harness.ask(testee, [json.dumps(request).encode() for request in requests])
+    for (scale, _, _), (*_, field), answer in zip(fields, fields.values(), answers, strict=True):
+        assert answer["failures"] == 0, field.name
+        assert answer["physical"] == _all_doubles(scale, field), field.name
+
+
+def _all_doubles(scale, field) -> str:
+    import struct
+    from math import lcm
+
+    divisor = lcm(scale.factor.denominator, scale.offset.denominator)
+    factor, offset = int(scale.factor * divisor), int(scale.offset * divisor)
+    values = [(raw * factor + offset) / divisor for raw in range(field.raw_min, field.raw_max + 1)]
+    return struct.pack(f">{len(values)}d", *values).hex()
+
+
+def test_the_testee_survives_bad_lines(testee):
+    lines = list(bad_lines())
+    answers = harness.ask(testee, lines)
+    assert [answer["ok"] for answer in answers] == [False] * len(lines)

@@ -1,0 +1,91 @@
+"""Nothing in the crate can panic: an optimised program of all of it holds no code that does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from icdgen.backends.rust import message_rows, names
+from icdgen.icd.model import Icd
+from tests.rust.tools import Toolchain, run, toolchains
+
+HEAD = """\
+#![no_std]
+#![allow(non_snake_case)]
+extern "C" {
+    fn this_can_panic() -> !;
+}
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    unsafe { this_can_panic() }
+}
+"""
+MESSAGE = """\
+#[no_mangle] pub fn decode_{name}(bytes: &[u8]) -> Result<{type}, icd::Error> {{ {type}::from_bytes(bytes) }}
+#[no_mangle] pub fn encode_{name}(message: &{type}) -> impl Copy {{ message.{encode}() }}
+"""
+SCALED = """\
+#[no_mangle] pub fn get_{name}(message: &{type}) -> f64 {{ message.{getter}() }}
+#[no_mangle] pub fn set_{name}(message: &mut {type}, to: f64) -> Result<(), icd::Error> {{ message.{setter}(to) }}
+"""
+DISPATCHER = """\
+#[no_mangle] pub fn dispatch_{name}(id: {id}, bytes: &[u8]) -> Result<{type}, icd::Error> {{ {type}::from_bytes(id, bytes) }}
+#[no_mangle] pub fn write_{name}(it: &{type}, to: &mut [u8]) -> Result<usize, icd::Error> {{ it.write_to(to) }}
+"""
+ENUM = """\
+#[no_mangle] pub fn enum_{name}(raw: {raw}) -> Option<&'static str> {{ {type}::from(raw).name() }}
+"""
+
+
+def everything(icd: Icd) -> Iterator[str]:
+    """A function for each function of the crate that a user can call."""
+    enums = names.Enums(icd)
+    id_type = "u8" if all(id < 256 for node in icd.nodes for m in node.messages for id in m.ids) else "u16"
+    for node in icd.nodes:
+        for row in message_rows(icd, node, enums):
+            name, type_ = f"{node.name}_{row.module}", f"icd::{node.name}::{row.type}"
+            yield MESSAGE.format(name=name, type=type_, encode="try_to_bytes" if row.fallible else "to_bytes")
+            for one in row.scaled:
+                yield SCALED.format(name=f"{name}_{one.getter}", type=type_, getter=one.getter, setter=one.setter)
+        for way in ("telecommand", "telemetry"):
+            if any(getattr(message, f"{way}_id") is not None for message in icd.messages_of(node)):
+                type_ = f"icd::{node.name}::{way.capitalize()}"
+                yield DISPATCHER.format(name=f"{node.name}_{way}", type=type_, id=id_type)
+        for enum in node.enums:
+            type_ = f"icd::{node.name}::enums::{names.type_name(enum, node)}"
+            name = f"{node.name}_{names.type_name(enum, node)}"
+            yield ENUM.format(name=name, type=type_, raw=f"u{enums.storage(enum)}")
+
+
+def symbols(subject, toolchain: str, level: str, folder: Path, more: str = "") -> set[str]:
+    """What the linker sees of the program."""
+    tools = Toolchain(toolchain)
+    library = tools.library(subject.crate, folder, "-C", "panic=abort")
+    source = folder / "everything.rs"
+    source.write_text(HEAD + "".join(everything(subject.icd)) + more)
+    archive = tools.freestanding(source, library, folder / "libeverything.a", level)
+    lines = run("nm", "-C", archive).splitlines()
+    return {line.split(maxsplit=2)[-1].split(" ", 1)[-1] for line in lines if " " in line}
+
+
+def suspicious(found: set[str]) -> list[str]:
+    return sorted(one for one in found if "panic" in one or "_fail" in one or "unwrap" in one)
+
+
+@pytest.mark.parametrize("level", ["3", "s", "z", "1"])
+@pytest.mark.parametrize("toolchain", list(toolchains()))
+def test_no_way_to_a_panic_is_left(shipped, toolchain, level, tmp_path):
+    found = symbols(shipped, toolchain, level, tmp_path)
+    assert sum(one.startswith("decode_") for one in found) == sum(len(node.messages) for node in shipped.icd.nodes)
+    assert suspicious(found) == []
+
+
+def test_no_way_to_a_panic_is_left_in_odd_messages(strange, tmp_path):
+    assert suspicious(symbols(strange, "default", "3", tmp_path)) == []
+
+
+def test_a_panic_would_be_seen(shipped, tmp_path):
+    more = "#[no_mangle] pub fn decode_badly(bytes: &[u8]) -> u8 { bytes[0] }\n"
+    assert "this_can_panic" in symbols(shipped, "default", "3", tmp_path, more)

@@ -1,0 +1,49 @@
+"""The generated crate passes Rust's own tools, pedantic ones included, with the newest and the oldest toolchain."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.rust.harness import testee_of
+from tests.rust.tools import Toolchain, toolchains
+
+
+@pytest.fixture(params=list(toolchains()))
+def toolchain(request) -> Toolchain:
+    return Toolchain(request.param)
+
+
+def test_rustfmt_leaves_it_as_it_is(subject, toolchain):
+    toolchain.formatted(subject.crate)
+    toolchain.formatted(testee_of(subject.crate))
+
+
+def test_clippy_has_nothing_to_say(subject, toolchain, tmp_path):
+    toolchain.linted(subject.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd")
+    library = f"icd={tmp_path / 'libicd.rmeta'}"
+    toolchain.linted(testee_of(subject.crate), tmp_path, "--crate-name", "testee", "--extern", library)
+
+
+def test_rustdoc_has_nothing_to_say(subject, toolchain, tmp_path):
+    toolchain.documented(subject.crate, tmp_path)
+
+
+def test_it_compiles_without_a_warning_and_with_names_of_any_length(toolchain, tmp_path):
+    from tests.rust import harness, odd
+
+    folder = tmp_path / "icd"
+    folder.mkdir()
+    crate = harness.generate(harness.read(*odd.write_long(folder)), tmp_path)
+    toolchain.library(crate, tmp_path)
+
+
+def test_the_tools_would_complain(toolchain, tmp_path):
+    bad = tmp_path / "bad.rs"
+    bad.write_text("//! <b>\npub fn f(x:u64)->u32{ x as u32 }\n")
+    for check in (
+        lambda: toolchain.formatted(bad),
+        lambda: toolchain.linted(bad, tmp_path, "--crate-type", "lib"),
+        lambda: toolchain.documented(bad, tmp_path),
+    ):
+        with pytest.raises(AssertionError):
+            check()

@@ -1,0 +1,79 @@
+"""The crate in a user's hands: by cargo and by the oldest compiler, with and without its features."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.rust.tools import Toolchain, run, toolchains
+
+USER = Path(__file__).parent / "user.rs"
+NEWEST_FEATURES = (1, 85)  # the current serde and defmt want no older Rust
+
+MANIFEST = """\
+[package]
+name = "user"
+version = "0.1.0"
+edition = "2021"
+
+[workspace]
+"""
+SERDE = """\
+use icd::cubeacp::{AdcsConfiguration, CurrentAdcsState, Telemetry};
+
+fn main() {
+    let frame: Vec<u8> = (0..504_u32).map(|n| (n % 63) as u8).collect();
+    let configuration = AdcsConfiguration::from_bytes(&frame).unwrap();
+    let text = serde_json::to_string(&configuration).unwrap();
+    let again: AdcsConfiguration = serde_json::from_str(&text).unwrap();
+    assert_eq!(again, configuration);
+    let state = CurrentAdcsState::from_bytes(&[0xe2, 0, 0, 0, 0, 0]).unwrap();
+    let value = serde_json::to_value(state).unwrap();
+    assert_eq!(value["control_mode"], 14);
+    assert_eq!(value["cubestar_enabled"], false);
+    let telemetry = Telemetry::CurrentAdcsState(state);
+    let text = serde_json::to_string(&telemetry).unwrap();
+    assert_eq!(serde_json::from_str::<Telemetry>(&text).unwrap(), telemetry);
+    let error: Box<dyn std::error::Error> = Box::new(CurrentAdcsState::from_bytes(&[]).unwrap_err());
+    assert_eq!(error.to_string(), "6 bytes expected, 0 given");
+}
+"""
+
+
+@pytest.mark.parametrize("name", list(toolchains()))
+@pytest.mark.parametrize("checks", [(), ("-C", "overflow-checks=on", "-C", "debug-assertions=on")])
+def test_a_program_that_uses_it(shipped, name, checks, tmp_path):
+    toolchain = Toolchain(name)
+    library = toolchain.library(shipped.crate, tmp_path, *checks)
+    run(toolchain.program(USER, library, tmp_path / "user", *checks))
+
+
+@pytest.mark.parametrize("name", list(toolchains()))
+def test_cargo_add_by_path_needs_no_registry(shipped, name, tmp_path):
+    cargo = (*Toolchain(name).start, "cargo")
+    (tmp_path / "src").mkdir()
+    (tmp_path / "src" / "main.rs").write_text(USER.read_text())
+    (tmp_path / "Cargo.toml").write_text(MANIFEST)
+    own = {"CARGO_HOME": str(tmp_path / "home"), "CARGO_TARGET_DIR": str(tmp_path / "target")}
+    run(*cargo, "add", "--quiet", "--offline", "--path", shipped.crate.parent.parent, cwd=tmp_path, **own)
+    run(*cargo, "run", "--quiet", "--offline", cwd=tmp_path, **own)
+
+
+def test_its_features(shipped, target, tmp_path):
+    """`std`, `serde` and `defmt`; they come from a registry."""
+    version = run("rustc", "--version").split()[1]
+    if tuple(map(int, version.split(".")[:2])) < NEWEST_FEATURES:
+        pytest.skip(f"the current serde and defmt need a newer Rust than {version}")
+    crate = shipped.crate.parent.parent
+    (tmp_path / "src").mkdir()
+    (tmp_path / "src" / "main.rs").write_text(SERDE)
+    dependencies = f'[dependencies]\nicd = {{ path = "{crate}", features = ["std", "serde"] }}\nserde_json = "1"\n'
+    (tmp_path / "Cargo.toml").write_text(MANIFEST + dependencies)
+    fetched = subprocess.run(["cargo", "fetch", "--quiet"], cwd=tmp_path, capture_output=True, text=True)
+    if fetched.returncode:
+        pytest.skip(f"no registry: {fetched.stderr[-200:]}")
+    run("cargo", "run", "--quiet", "--target-dir", target, cwd=tmp_path)
+    command = ("cargo", "clippy", "--quiet", "--all-features", "--target-dir", target, "--")
+    run(*command, "-D", "warnings", "-W", "clippy::pedantic", cwd=crate)

@@ -1,0 +1,86 @@
+"""The Rust tools of this machine, without a registry: rustc, rustfmt, clippy and rustdoc are called themselves."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from functools import cache
+from pathlib import Path
+
+OLDEST = "1.63"
+
+
+def run(*command: str | Path, cwd: Path | None = None, stdin: str | None = None, **environment: str) -> str:
+    """Runs a tool; its output. Fails with what it says."""
+    words = [str(word) for word in command]
+    done = subprocess.run(
+        words, cwd=cwd, env={**os.environ, **environment}, input=stdin, capture_output=True, text=True
+    )
+    assert done.returncode == 0, f"{' '.join(words)}\n{(done.stdout + done.stderr)[:6000]}"
+    return done.stdout
+
+
+@cache
+def toolchains() -> dict[str, tuple[str, ...]]:
+    """What to put before a tool's name: for the machine's own toolchain, and for the oldest supported one if it is there."""
+    found: dict[str, tuple[str, ...]] = {"default": ()}
+    if shutil.which("rustup") and _works("rustup", "run", OLDEST, "rustc", "--version"):
+        found[OLDEST] = ("rustup", "run", OLDEST)
+    return found
+
+
+def _works(*command: str) -> bool:
+    return subprocess.run(command, capture_output=True).returncode == 0
+
+
+class Toolchain:
+    """The tools of one toolchain."""
+
+    def __init__(self, name: str) -> None:
+        self.start = toolchains()[name]
+
+    def formatted(self, file: Path) -> None:
+        """Fails unless rustfmt would leave the crate of ``file`` as it is."""
+        run(*self.start, "rustfmt", "--edition", "2021", "--check", file)
+
+    def linted(self, file: Path, out: Path, *options: str) -> None:
+        """Fails if clippy has anything to say, pedantic lints included."""
+        lints = ("-D", "warnings", "-W", "clippy::pedantic")
+        command = (
+            *self.start,
+            "clippy-driver",
+            "--edition",
+            "2021",
+            "--emit",
+            "metadata",
+            "--out-dir",
+            out,
+            *options,
+            *lints,
+        )
+        run(*command, file, CARGO_PKG_RUST_VERSION=OLDEST)
+
+    def documented(self, file: Path, out: Path) -> None:
+        """Fails if rustdoc has anything to say."""
+        run(*self.start, "rustdoc", "--edition", "2021", "--crate-name", "icd", "-D", "warnings", "-o", out, file)
+
+    def library(self, file: Path, out: Path, *options: str) -> Path:
+        """Compiles the crate; its file."""
+        run(*self._rustc("icd"), "--crate-type", "lib", "-C", "opt-level=3", *options, "--out-dir", out, file)
+        return out / "libicd.rlib"
+
+    def program(self, file: Path, library: Path, out: Path, *options: str) -> Path:
+        """Compiles a program that uses the crate; the program."""
+        run(*self._rustc(out.name), "-C", "opt-level=1", *options, "--extern", f"icd={library}", "-o", out, file)
+        return out
+
+    def freestanding(self, file: Path, library: Path, out: Path, level: str) -> Path:
+        """Compiles a library that stands alone, optimised as a whole; its archive."""
+        options = ("--crate-type", "staticlib", "-C", "panic=abort", "-C", "lto=fat", "-C", "codegen-units=1")
+        start = self._rustc("everything")
+        run(*start, *options, "-C", f"opt-level={level}", "--extern", f"icd={library}", "-o", out, file)
+        return out
+
+    def _rustc(self, name: str) -> tuple[str, ...]:
+        return (*self.start, "rustc", "--edition", "2021", "--crate-name", name, "-D", "warnings")
