@@ -19,7 +19,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 
-def median(command: list[str], runs: int, environment: dict[str, str], before: Callable[[], None] = lambda: None) -> float:
+def median(
+    command: list[str], runs: int, environment: dict[str, str], before: Callable[[], None] = lambda: None
+) -> float:
     """Median wall time in seconds."""
     times = []
     for _ in range(runs):

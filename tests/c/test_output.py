@@ -27,9 +27,11 @@ def shipped() -> dict[str, str]:
 def without_a_field(icd: Icd, node_name: str, message_name: str, field_name: str) -> Icd:
     def changed(node):
         messages = tuple(
-            dataclasses.replace(m, fields=tuple(f for f in m.fields if f.name != field_name))
-            if m.name == message_name
-            else m
+            (
+                dataclasses.replace(m, fields=tuple(f for f in m.fields if f.name != field_name))
+                if m.name == message_name
+                else m
+            )
             for m in node.messages
         )
         return dataclasses.replace(node, messages=messages, digest="0" * 64)

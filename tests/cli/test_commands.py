@@ -84,14 +84,18 @@ class TestDecode:
         assert "-1234" in out and "-12.34" in out and "deg" in out and "Run" in out
 
     def test_json_for_programs(self, icdgen, demo):
-        data = json.loads(icdgen("decode", "demo", "Estimated Roll", "0x2E,0xFB,0x0D", "--icd", demo, "--format", "json").out)
+        data = json.loads(
+            icdgen("decode", "demo", "Estimated Roll", "0x2E,0xFB,0x0D", "--icd", demo, "--format", "json").out
+        )
         assert [field["raw"] for field in data["fields"]] == [-1234, 13]
 
     def test_a_frame_from_a_file_hex_or_binary_and_from_standard_input(self, icdgen, demo, tmp_path, monkeypatch):
         (tmp_path / "frame.hex").write_text("2e fb\n01\n")
         (tmp_path / "frame.bin").write_bytes(b"\x2e\xfb\x01")
         monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"2efb01")))
-        outs = {icdgen("decode", "demo", "146", frame, "--icd", demo).out for frame in ("@frame.hex", "@frame.bin", "-")}
+        outs = {
+            icdgen("decode", "demo", "146", frame, "--icd", demo).out for frame in ("@frame.hex", "@frame.bin", "-")
+        }
         assert len(outs) == 1
 
     @pytest.mark.parametrize(

@@ -81,7 +81,9 @@ def test_a_dependency_file_names_outputs_and_all_inputs(icdgen, demo, tmp_path):
     icdgen("--lang", "c", "--out", "out", "--depfile", "out.d", demo)
     targets, _, needs = (tmp_path / "out.d").read_text().partition(": ")
     assert "demo.h" in targets
-    assert str(demo) in needs and str(overlay) in needs or "icd/demo.yaml" in needs and "icd/errata/demo.yaml" in needs
+    assert (str(demo) in needs and str(overlay) in needs) or (
+        "icd/demo.yaml" in needs and "icd/errata/demo.yaml" in needs
+    )
 
 
 def test_icdgen_toml_says_what_to_generate(icdgen, demo, tmp_path):
@@ -144,7 +146,7 @@ def test_a_bad_template_is_named_with_its_line(icdgen, demo, tmp_path, text, wor
     assert not (tmp_path / "out").exists()
 
 
-PLUGIN = '''
+PLUGIN = """
 from pathlib import PurePosixPath
 
 class ListBackend:
@@ -157,7 +159,7 @@ class ListBackend:
 
     def identifiers(self, icd):
         return iter(())
-'''
+"""
 
 
 def test_a_backend_of_another_package_is_found_by_its_entry_point(demo, tmp_path):

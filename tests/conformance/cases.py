@@ -140,8 +140,7 @@ class MessageCases:
 def node_cases(data: dict) -> Iterator[Case]:
     """What the vectors of a node demand beyond its messages: ids and enumerations."""
     node = data["node"]
-    answer = {"ok": True, "node_type": data.get("node_type"), "interface_version": data.get("interface_version")}
-    yield Case("node", {"op": "node", "node": node}, answer)
+    yield node_itself(data)
     for direction in DIRECTIONS:
         known = data["ids"][direction]
         for id in (*range(256), 256, 65535, 65536, -1):
@@ -152,6 +151,12 @@ def node_cases(data: dict) -> Iterator[Case]:
                 request = {"op": "decode", "node": node, "kind": direction, "id": id, "bytes": ""}
                 yield Case(f"{direction} {id}", request, {"ok": False, "error": "unknown-id"})
     yield from enum_cases(data)
+
+
+def node_itself(data: dict) -> Case:
+    """Its constants."""
+    answer = {"ok": True, "node_type": data.get("node_type"), "interface_version": data.get("interface_version")}
+    return Case("node", {"op": "node", "node": data["node"]}, answer)
 
 
 def enum_cases(data: dict) -> Iterator[Case]:

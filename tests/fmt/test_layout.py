@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
 from icdgen.diagnostics import Findings
 from icdgen.icd import source
 from icdgen.icd.fmt import format_text, same

@@ -8,6 +8,7 @@ import pytest
 import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+
 from icdgen.diagnostics import Findings
 from icdgen.icd import source
 from icdgen.icd.fmt import format_text, same

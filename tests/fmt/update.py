@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from icdgen.icd.fmt import format_text
-
 from tests.fmt.test_layout import CASES, expected
 
 

@@ -47,7 +47,11 @@ def test_nothing_is_missing(icd):
     fields = [field for message in messages for field in message.fields]
     enums = [enum for node in icd.nodes for enum in node.enums]
     assert (len(messages), sum(len(m.ids) for m in messages)) == (171, 209)
-    assert (len(fields), sum(f.scale is not None for f in fields), sum(f.unit is not None for f in fields)) == (1249, 346, 312)
+    assert (len(fields), sum(f.scale is not None for f in fields), sum(f.unit is not None for f in fields)) == (
+        1249,
+        346,
+        312,
+    )
     assert (len(enums), sum(len(e.members) for e in enums)) == (37, 233)
     assert len(icd.node("cubeacp").loggable) == 63
     assert [(m.kind, m.id) for m in icd.node("cubewheel").missing] == [("telemetry", 186)]

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from icdgen.icd.model import Icd
 from tests.conformance.build import build
-from tests.conformance.cases import Case, MessageCases, enum_cases, member_names
+from tests.conformance.cases import Case, MessageCases, enum_cases, member_names, node_itself
 from tests.conformance.compare import difference
 from tests.conformance.driver import Testee
 from tests.conformance.languages import Language
@@ -78,6 +78,8 @@ class Vectors:
         data = self.files[mutant.node]
         if mutant.enum is not None:
             return (case for case in enum_cases({**data, "node": ANY}) if case.request["enum"] == mutant.enum)
+        if mutant.message is None:
+            return [node_itself({**data, "node": ANY})]
         message = self.messages[mutant.node, mutant.message]
         cases = MessageCases(ANY, message, self.enums, data["never_set"])
         return sorted(cases.all(), key=lambda case: case.request["op"] != "constants")  # a cheap and telling one first

@@ -25,12 +25,13 @@ _OTHER_TYPES = {
     "float": ("uint", "int", "bytes"),
     "bytes": ("uint", "int"),
 }
+_HEAD = ("title", "byte_order", "bit_order", "node_type", "interface_version")
 _NUMBER_KEYS = ("formula", "formula_for", "unit", "special", "min", "max", "above", "below", "bitfields", "const")
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """One change, in words, and the ICD that has it. ``message`` or ``enum`` names whose vectors must notice."""
+    """One change, in words, and the ICD that has it. ``message`` or ``enum`` names whose vectors must notice; neither: the node."""
 
     kind: str  # "offset", "width", "type" ...
     about: str
@@ -48,6 +49,7 @@ def mutants(icd: Icd) -> Iterator[Mutant]:
             yield from _message(home, message)
         for enum in node.enums:
             yield from _enum(home, enum)
+        yield from _node(home)
 
 
 def unchanged(icd: Icd) -> Iterator[Mutant]:
@@ -72,10 +74,10 @@ class _Home:
 
     def tree(self, message: Message | None, enums: list[str]) -> dict:
         """A small ICD with one message and some enumerations."""
-        node = self.node
+        node, head = self.node, plain(self.node.source["node"])
         tree: dict = {
             "icdgen": 1,
-            "node": {"title": node.title, "byte_order": node.byte_order, "bit_order": node.bit_order},
+            "node": {key: head[key] for key in _HEAD if key in head},
             "vocabulary": list(node.vocabulary),
         }
         if message is not None:
@@ -149,6 +151,10 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
     if "const" in field:
         for step in (-1, 1):
             yield _number("const", field, "const", step)
+    for key in ("min", "max", "above", "below"):
+        if key in field:
+            for step in (-1, 1):
+                yield _number("limit", field, key, step)
     for index, special in enumerate(field.get("special") or ()):
         for step in (-1, 1):
             value = special["value"] + step
@@ -178,6 +184,15 @@ def _formulas(text: str) -> Iterator[str]:
             yield f"{text[: match.start()]}{other:f}{text[match.end() :]}"
     yield text.replace("raw", "-raw", 1) if "=" not in text else text.replace("value", "-value", 1)
     yield f"{text} + 1"
+
+
+def _node(home: _Home) -> Iterator[Mutant]:
+    for key in ("node_type", "interface_version"):
+        number = getattr(home.node, key)
+        for step in (-1, 1) if number is not None else ():
+            tree = copy.deepcopy(home.tree(None, []))
+            tree["node"][key] = number + step
+            yield Mutant("node", f"{key} {number} -> {number + step}", home.node.name, None, None, tree)
 
 
 def _enum(home: _Home, enum: Enum) -> Iterator[Mutant]:

@@ -37,12 +37,6 @@ def subject(request) -> Subject:
 
 
 @pytest.fixture(scope="session")
-def target(tmp_path_factory) -> Path:
-    """Cargo's folder, the same for all."""
-    return tmp_path_factory.mktemp("target")
-
-
-@pytest.fixture(scope="session")
-def testee(subject, target) -> Path:
-    """The program that answers requests about the crate."""
-    return harness.build_with_cargo(subject.crate, target)
+def testee(subject) -> list[str]:
+    """The command that answers requests about the crate."""
+    return harness.build_testee(subject.icd)

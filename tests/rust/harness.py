@@ -15,8 +15,9 @@ from icdgen import backends
 from icdgen.icd.load import load
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.render import Renderer
+from tests.conformance.build import build
+from tests.conformance.languages import all_languages
 from tests.conformance.reference import Reference
-from tests.rust.tools import run
 
 SHIPPED = Path(__file__).parent.parent.parent / "icd"
 BACKENDS = ("rust", "rust-testee")
@@ -55,26 +56,24 @@ def generate(icd: Icd, folder: Path) -> Path:
     return folder / "rust" / "src" / "lib.rs"
 
 
-def testee_of(crate: Path) -> Path:
+def main_of_testee(crate: Path) -> Path:
     """The main file of the testee that lies beside the crate."""
     return crate.parent.parent.parent / "rust-testee" / "src" / "main.rs"
 
 
-def build_with_cargo(crate: Path, target: Path) -> Path:
-    """The testee, built as a user would: needs nothing from a registry."""
-    manifest = testee_of(crate).parent.parent / "Cargo.toml"
-    run("cargo", "build", "--quiet", "--offline", "--release", "--manifest-path", manifest, "--target-dir", target)
-    return target / "release" / "testee"
+def build_testee(icd: Icd) -> list[str]:
+    """The command that starts the testee, with the checks of a debug build; shared with the conformance run."""
+    return build(all_languages()["rust-debug"], icd)
 
 
-def ask(program: Path, lines: Iterable[bytes]) -> list[dict]:
+def ask(program: list[str], lines: Iterable[bytes]) -> list[dict]:
     """The testee's answers."""
-    done = subprocess.run([program], input=b"".join(line + b"\n" for line in lines), capture_output=True)
+    done = subprocess.run(program, input=b"".join(line + b"\n" for line in lines), capture_output=True)
     assert done.returncode == 0, done.stderr[-2000:]
     return [json.loads(line) for line in done.stdout.splitlines()]
 
 
-def differences(icd: Icd, program: Path, requests: list[dict]) -> list[tuple[dict, dict, dict]]:
+def differences(icd: Icd, program: list[str], requests: list[dict]) -> list[tuple[dict, dict, dict]]:
     """Requests that the reference codec answers otherwise: request, its answer, the testee's."""
     reference = Reference(icd)
     lines = [json.dumps(request).encode() for request in requests]

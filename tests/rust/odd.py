@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tests.c import odd as of_c
 
-LENGTHS = (1, 2, 9, *range(14, 61))  # where rustfmt could begin to break lines
+LENGTHS = (1, 2, 9, *range(17, 41), 44, 48, *range(50, 57), 60)  # where rustfmt could begin to break lines
 
 
 def write(folder: Path) -> list[Path]:

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import json
+import struct
+from math import lcm
 
+from icdgen import codec
+from icdgen.icd.formula import Scale
+from icdgen.icd.model import Field
 from tests.conformance.robust import bad_lines
 from tests.rust import harness
 
@@ -36,14 +41,25 @@ def test_every_physical_value_of_every_scale(subject, testee):
     ]  # fmt: skip
     answers = harness.ask(testee, [json.dumps(request).encode() for request in requests])
     for (scale, _, _), (*_, field), answer in zip(fields, fields.values(), answers, strict=True):
-        assert answer["failures"] == 0, field.name
+        assert answer["failures"] == (_lost(field) if answer["failures"] else 0), field.name
         assert answer["physical"] == _all_doubles(scale, field), field.name
 
 
-def _all_doubles(scale, field) -> str:
-    import struct
-    from math import lcm
+def _lost(field: Field) -> int:
+    """How many raw values do not come back from their double: none but for scales of more digits than a double has."""
+    assert abs(field.scale.offset) > 1 << 53
+    raws = range(field.raw_min, field.raw_max + 1)
+    return sum(_back(field, codec.physical_double(field, raw)) != raw for raw in raws)
 
+
+def _back(field: Field, value: float) -> int | None:
+    try:
+        return codec.raw_from_physical(field, value)
+    except codec.CodecError:
+        return None
+
+
+def _all_doubles(scale: Scale, field: Field) -> str:
     divisor = lcm(scale.factor.denominator, scale.offset.denominator)
     factor, offset = int(scale.factor * divisor), int(scale.offset * divisor)
     values = [(raw * factor + offset) / divisor for raw in range(field.raw_min, field.raw_max + 1)]

@@ -62,7 +62,7 @@ def everything(icd: Icd) -> Iterator[str]:
 def symbols(subject, toolchain: str, level: str, folder: Path, more: str = "") -> set[str]:
     """What the linker sees of the program."""
     tools = Toolchain(toolchain)
-    library = tools.library(subject.crate, folder, "-C", "panic=abort")
+    library = tools.library(subject.crate, folder, level)
     source = folder / "everything.rs"
     source.write_text(HEAD + "".join(everything(subject.icd)) + more)
     archive = tools.freestanding(source, library, folder / "libeverything.a", level)
@@ -74,7 +74,7 @@ def suspicious(found: set[str]) -> list[str]:
     return sorted(one for one in found if "panic" in one or "_fail" in one or "unwrap" in one)
 
 
-@pytest.mark.parametrize("level", ["3", "s", "z", "1"])
+@pytest.mark.parametrize("level", ["3", "z"])
 @pytest.mark.parametrize("toolchain", list(toolchains()))
 def test_no_way_to_a_panic_is_left(shipped, toolchain, level, tmp_path):
     found = symbols(shipped, toolchain, level, tmp_path)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tests.rust.harness import testee_of
+from tests.rust import harness, odd
+from tests.rust.harness import main_of_testee
 from tests.rust.tools import Toolchain, toolchains
 
 
@@ -15,13 +16,13 @@ def toolchain(request) -> Toolchain:
 
 def test_rustfmt_leaves_it_as_it_is(subject, toolchain):
     toolchain.formatted(subject.crate)
-    toolchain.formatted(testee_of(subject.crate))
+    toolchain.formatted(main_of_testee(subject.crate))
 
 
 def test_clippy_has_nothing_to_say(subject, toolchain, tmp_path):
     toolchain.linted(subject.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd")
     library = f"icd={tmp_path / 'libicd.rmeta'}"
-    toolchain.linted(testee_of(subject.crate), tmp_path, "--crate-name", "testee", "--extern", library)
+    toolchain.linted(main_of_testee(subject.crate), tmp_path, "--crate-name", "testee", "--extern", library)
 
 
 def test_rustdoc_has_nothing_to_say(subject, toolchain, tmp_path):
@@ -29,17 +30,15 @@ def test_rustdoc_has_nothing_to_say(subject, toolchain, tmp_path):
 
 
 def test_it_compiles_without_a_warning_and_with_names_of_any_length(toolchain, tmp_path):
-    from tests.rust import harness, odd
-
     folder = tmp_path / "icd"
     folder.mkdir()
     crate = harness.generate(harness.read(*odd.write_long(folder)), tmp_path)
-    toolchain.library(crate, tmp_path)
+    toolchain.library(crate, tmp_path, level="0")
 
 
 def test_the_tools_would_complain(toolchain, tmp_path):
     bad = tmp_path / "bad.rs"
-    bad.write_text("//! <b>\npub fn f(x:u64)->u32{ x as u32 }\n")
+    bad.write_text("//! [nothing]\npub fn f(x:u64)->u32{ x as u32 }\n")
     for check in (
         lambda: toolchain.formatted(bad),
         lambda: toolchain.linted(bad, tmp_path, "--crate-type", "lib"),

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.conformance.build import cache_folder
 from tests.rust.tools import Toolchain, run, toolchains
 
 USER = Path(__file__).parent / "user.rs"
@@ -43,30 +44,22 @@ fn main() {
 
 
 @pytest.mark.parametrize("name", list(toolchains()))
-@pytest.mark.parametrize("checks", [(), ("-C", "overflow-checks=on", "-C", "debug-assertions=on")])
-def test_a_program_that_uses_it(shipped, name, checks, tmp_path):
-    toolchain = Toolchain(name)
-    library = toolchain.library(shipped.crate, tmp_path, *checks)
-    run(toolchain.program(USER, library, tmp_path / "user", *checks))
-
-
-@pytest.mark.parametrize("name", list(toolchains()))
-def test_cargo_add_by_path_needs_no_registry(shipped, name, tmp_path):
+def test_a_program_gets_it_with_cargo_add_and_no_registry(shipped, name, tmp_path):
     cargo = (*Toolchain(name).start, "cargo")
     (tmp_path / "src").mkdir()
     (tmp_path / "src" / "main.rs").write_text(USER.read_text())
     (tmp_path / "Cargo.toml").write_text(MANIFEST)
-    own = {"CARGO_HOME": str(tmp_path / "home"), "CARGO_TARGET_DIR": str(tmp_path / "target")}
-    run(*cargo, "add", "--quiet", "--offline", "--path", shipped.crate.parent.parent, cwd=tmp_path, **own)
-    run(*cargo, "run", "--quiet", "--offline", cwd=tmp_path, **own)
+    own = {"CARGO_HOME": tmp_path / "home", "CARGO_TARGET_DIR": tmp_path / "target", "CARGO_NET_OFFLINE": "true"}
+    run(*cargo, "add", "--quiet", "--path", shipped.crate.parent.parent, cwd=tmp_path, **own)
+    run(*cargo, "run", "--quiet", cwd=tmp_path, **own)
 
 
-def test_its_features(shipped, target, tmp_path):
+def test_its_features(shipped, tmp_path):
     """`std`, `serde` and `defmt`; they come from a registry."""
     version = run("rustc", "--version").split()[1]
     if tuple(map(int, version.split(".")[:2])) < NEWEST_FEATURES:
         pytest.skip(f"the current serde and defmt need a newer Rust than {version}")
-    crate = shipped.crate.parent.parent
+    crate, target = shipped.crate.parent.parent, cache_folder() / "rust-features"
     (tmp_path / "src").mkdir()
     (tmp_path / "src" / "main.rs").write_text(SERDE)
     dependencies = f'[dependencies]\nicd = {{ path = "{crate}", features = ["std", "serde"] }}\nserde_json = "1"\n'

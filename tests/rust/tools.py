@@ -11,12 +11,10 @@ from pathlib import Path
 OLDEST = "1.63"
 
 
-def run(*command: str | Path, cwd: Path | None = None, stdin: str | None = None, **environment: str) -> str:
+def run(*command: str | Path, cwd: Path | None = None, **environment: str | Path) -> str:
     """Runs a tool; its output. Fails with what it says."""
     words = [str(word) for word in command]
-    done = subprocess.run(
-        words, cwd=cwd, env={**os.environ, **environment}, input=stdin, capture_output=True, text=True
-    )
+    done = subprocess.run(words, cwd=cwd, env={**os.environ, **environment}, capture_output=True, text=True)
     assert done.returncode == 0, f"{' '.join(words)}\n{(done.stdout + done.stderr)[:6000]}"
     return done.stdout
 
@@ -65,15 +63,11 @@ class Toolchain:
         """Fails if rustdoc has anything to say."""
         run(*self.start, "rustdoc", "--edition", "2021", "--crate-name", "icd", "-D", "warnings", "-o", out, file)
 
-    def library(self, file: Path, out: Path, *options: str) -> Path:
-        """Compiles the crate; its file."""
-        run(*self._rustc("icd"), "--crate-type", "lib", "-C", "opt-level=3", *options, "--out-dir", out, file)
+    def library(self, file: Path, out: Path, level: str) -> Path:
+        """Compiles the crate, optimised to that level; its file."""
+        options = ("--crate-type", "lib", "-C", "panic=abort", "-C", f"opt-level={level}")
+        run(*self._rustc("icd"), *options, "--out-dir", out, file)
         return out / "libicd.rlib"
-
-    def program(self, file: Path, library: Path, out: Path, *options: str) -> Path:
-        """Compiles a program that uses the crate; the program."""
-        run(*self._rustc(out.name), "-C", "opt-level=1", *options, "--extern", f"icd={library}", "-o", out, file)
-        return out
 
     def freestanding(self, file: Path, library: Path, out: Path, level: str) -> Path:
         """Compiles a library that stands alone, optimised as a whole; its archive."""

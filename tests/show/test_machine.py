@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import jsonschema_rs
 import pytest
+
 from icdgen import places
 from icdgen.icd.load import load
 from icdgen.icd.model import Icd

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+
 from icdgen.icd.load import load
 from icdgen.icd.model import Icd
 

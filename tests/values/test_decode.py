@@ -6,6 +6,7 @@ import json
 import struct
 
 import pytest
+
 from icdgen.icd.load import load
 from icdgen.values import BadLength, decode, parse_hex, to_text
 

@@ -8,6 +8,7 @@ from fractions import Fraction
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from icdgen.values import BadValue, decode, encode, numbers
 
 SPEED = {"x": "1", "y": "-1", "timeout": "0"}

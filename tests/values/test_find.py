@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+
 from icdgen.values import Ambiguous, NotFound, find_field, find_message, find_node
 
 

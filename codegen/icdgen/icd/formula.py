@@ -10,7 +10,9 @@ from typing import NamedTuple
 MAX_LENGTH = 200
 MAX_DIGITS = 40
 
-_TOKEN = re.compile(r"\s*(?:(?P<number>[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,2})?)|(?P<name>[A-Za-z]+)|(?P<op>[-+*/()=]))")
+_TOKEN = re.compile(
+    r"\s*(?:(?P<number>[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,2})?)|(?P<name>[A-Za-z]+)|(?P<op>[-+*/()=]))"
+)
 
 
 class FormulaError(ValueError):

@@ -119,9 +119,7 @@ def _rule_at(path: list) -> dict:
             node = _follow(node)
         if step == "$ref":
             node = _follow(node)
-        elif isinstance(node, dict) and step in node:
-            node = node[step]
-        elif isinstance(node, list):
+        elif (isinstance(node, dict) and step in node) or isinstance(node, list):
             node = node[step]
     if isinstance(node, dict) and "$ref" in node:
         node = _follow(node)

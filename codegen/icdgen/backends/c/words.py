@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-RESERVED = frozenset(
-    """
+RESERVED = frozenset("""
     auto break case char const continue default do double else enum extern float for goto if inline int long register
     restrict return short signed sizeof static struct switch typedef union unsigned void volatile while
     alignas alignof bool constexpr false nullptr static_assert thread_local true typeof typeof_unqual noreturn
@@ -17,6 +16,5 @@ RESERVED = frozenset(
     uint_fast64_t size_t ptrdiff_t max_align_t nullptr_t
     complex imaginary offsetof errno assert stdin stdout stderr setjmp
     unix linux i386 mips sparc
-    """.split()
-)
+    """.split())
 """Member names are lower case, and every other name begins with the node's, so upper-case macros can't be met."""
