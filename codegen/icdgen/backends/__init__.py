@@ -29,7 +29,7 @@ _BUILT_IN = {
 class Identifier(NamedTuple):
     """A name that generated code declares. Two equal names in one scope clash."""
 
-    scope: str  # "members of struct cubeacp_foo_t"
+    scope: str  # "members of struct demo_foo_t"
     text: str
     owner: str  # what it was made from, in a user's words: "field `Foo` of `Bar`"
     source: Map | None  # where that stands in the ICD

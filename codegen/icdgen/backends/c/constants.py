@@ -71,7 +71,7 @@ def limits(field: Field) -> Iterator[tuple[str, Fraction]]:
 
 
 def constant_name(plan: Plan, name: str, end: str) -> str:
-    """``CUBEACP_RESET_MAGIC_NUMBER_CONST``"""
+    """``DEMO_RESET_MAGIC_NUMBER_CONST``"""
     return f"{plan.stem}_{name}_{end}".upper()
 
 

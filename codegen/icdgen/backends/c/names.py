@@ -22,15 +22,15 @@ class Names:
         return _snake(message, self.vocabulary(message.node))
 
     def message(self, message: Message) -> str:
-        """``cubeacp_estimated_attitude_angles``: stem of the functions and the type."""
+        """``demo_estimated_roll``: stem of the functions and the type."""
         return f"{message.node}_{_snake(message, self.vocabulary(message.node))}"
 
     def enum(self, enum: Enum) -> str:
-        """``cubeacp_con_mode_select``"""
+        """``demo_mode``"""
         return f"{enum.node}_{_snake(enum, self.vocabulary(enum.node))}"
 
     def member(self, enum: Enum, member: Member) -> str:
-        """``CUBEACP_CON_MODE_SELECT_NO_CONTROL``"""
+        """``DEMO_MODE_IDLE``"""
         return f"{self.enum(enum)}_{_snake(member, self.vocabulary(enum.node))}".upper()
 
     def field(self, message: Message, field: Field) -> str:

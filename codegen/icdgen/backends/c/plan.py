@@ -26,7 +26,7 @@ class Plan(NamedTuple):
 
     message: Message
     node: Node
-    stem: str  # "cubeacp_estimated_attitude_angles"
+    stem: str  # "demo_estimated_roll"
     file: str  # "estimated_attitude_angles"
     members: tuple[Member, ...]
     runs: dict[int, Flags | Row]
