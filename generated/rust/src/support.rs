@@ -2,7 +2,7 @@
 
 //! What all messages share: the error, access to bytes, scale formulas.
 
-#![allow(dead_code)] // not every interface needs all of it
+#![allow(dead_code, unused_imports, unused_macros)] // not every interface needs all of it
 
 use core::fmt;
 use core::hash::Hash;

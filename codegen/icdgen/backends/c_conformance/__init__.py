@@ -10,6 +10,7 @@ from pathlib import PurePosixPath
 
 from icdgen.backends import Identifier
 from icdgen.icd.model import Icd
+from icdgen.render import Renderer
 
 
 class CTesteeBackend:
@@ -18,7 +19,7 @@ class CTesteeBackend:
     name = "c-testee"
     reserved: frozenset[str] = frozenset()
 
-    def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
+    def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Files that are the same for every ICD, the list of nodes, and one file a node."""
         from icdgen.backends.c_conformance import testee
 
@@ -35,7 +36,7 @@ class CSelftestBackend:
     name = "c-selftest"
     reserved: frozenset[str] = frozenset()
 
-    def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
+    def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The engine, the list of nodes, and one file of vectors a node."""
         from icdgen.backends.c_conformance import selftest
 
