@@ -8,6 +8,22 @@ from pathlib import Path
 from tests.c import odd as of_c
 
 LENGTHS = (1, 2, 9, *range(17, 41), 44, 48, *range(50, 57), 60)  # where rustfmt could begin to break lines
+BORROWED = (
+    "Core",
+    "Alloc",
+    "Ok",
+    "None",
+    "From Bytes",
+    "Bytes",
+    "Vec",
+    "String",
+    "Option",
+    "Copy",
+    "Message",
+    "i8",
+    "f64",
+    "bool",
+)
 
 
 def write(folder: Path) -> list[Path]:
@@ -108,6 +124,9 @@ def _lengths(lengths: tuple[int, ...]) -> dict:
         messages.append(
             {"name": word("x", length), "kind": kind, "id": number, "length": -(-at // 8), "fields": fields}
         )
+    for number, name in enumerate(BORROWED):
+        fields = [{"at": 0, "bits": 8, "name": name, "identifier": f"{name} x", "type": "uint"}]
+        messages.append({"name": name, "kind": "telemetry", "id": 100 + number, "length": 1, "fields": fields})
     return {"icdgen": 1, "node": head, "include": ["base.yaml"], "enums": enums, "messages": messages}
 
 
@@ -129,6 +148,14 @@ def write_clashing(folder: Path) -> Path:
         {"name": "Twins", "kind": "telemetry", "id": 1, "length": 3, "fields": fields},
         {"name": "Result", "kind": "telemetry", "id": 2, "length": 0},
         {"name": "Enums", "kind": "telemetry", "id": 3, "length": 0},
+        {"name": "Str", "kind": "telemetry", "id": 4, "length": 0},
     ]
     enums = [{"name": "Words", "members": [{"value": 0, "name": "Self"}, {"value": 1, "name": "Ok"}]}]
     return _write(folder / "clashing.yaml", {"icdgen": 1, "node": head, "enums": enums, "messages": messages})
+
+
+def write_least(folder: Path) -> Path:
+    """A node of one telecommand without parameters."""
+    head = {"name": "least", "title": "Least", "byte_order": "big", "bit_order": "msb0"}
+    messages = [{"name": "Stop", "kind": "telecommand", "id": 1, "length": 0}]
+    return _write(folder / "least.yaml", {"icdgen": 1, "node": head, "messages": messages})

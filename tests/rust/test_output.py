@@ -104,6 +104,7 @@ def test_what_clashes_in_rust_is_announced_in_one_scope(tmp_path):
     assert clashes == {
         ("a name of the generated code", "message `Result`"),
         ("a name of the generated code", "message `Enums`"),
+        ("a name of the generated code", "message `Str`"),
         ("field `Angle` of `Twins`", "field `Set Angle` of `Twins`"),
         ("a name of the generated code", "node `support`"),
     }

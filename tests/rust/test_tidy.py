@@ -36,6 +36,12 @@ def test_it_compiles_without_a_warning_and_with_names_of_any_length(toolchain, t
     toolchain.library(crate, tmp_path, level="0")
 
 
+def test_a_crate_that_needs_next_to_nothing_is_tidy_too(toolchain, tmp_path):
+    crate = harness.generate(harness.read(odd.write_least(tmp_path)), tmp_path)
+    toolchain.formatted(crate)
+    toolchain.linted(crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd")
+
+
 def test_the_tools_would_complain(toolchain, tmp_path):
     bad = tmp_path / "bad.rs"
     bad.write_text("//! [nothing]\npub fn f(x:u64)->u32{ x as u32 }\n")

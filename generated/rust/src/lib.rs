@@ -37,11 +37,12 @@
 #![allow(
     // clippy of Rust 1.63 does not know all of these;
     unknown_lints,
-    // the ICD's names stand in comments as they are, and share what prefixes they like;
+    // the ICD's names stand in comments as they are, and may be any and share any prefix;
     clippy::doc_markdown,
     clippy::enum_variant_names,
     clippy::struct_field_names,
     clippy::module_name_repetitions,
+    clippy::self_named_constructors,
     // values of an enumeration may share a name;
     clippy::match_same_arms,
     // a frame has as many fields and flags as the ICD says;

@@ -28,7 +28,8 @@ def identifiers(icd: Icd) -> Iterator[Identifier]:
 
 def _node(icd: Icd, node: Node, by_name: dict[str, Node]) -> Iterator[Identifier]:
     modules, types, enums = f"modules of {node.name}", f"types of {node.name}", f"enumerations of {node.name}"
-    yield Identifier(modules, names.ENUMS_MODULE, _OURS, None)
+    for name in names.USED_IN_NODES:
+        yield Identifier(modules, name, _OURS, None)
     for name in names.USED_TYPES:
         yield Identifier(types, name, _OURS, None)
     for name in _ENUM_USES:

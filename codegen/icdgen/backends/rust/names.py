@@ -14,9 +14,11 @@ RESERVED = frozenset("""
 
 # Types and traits that the generated modules call by their bare name, in the scope where a message's type stands.
 USED_TYPES = ("Result", "Error", "Default", "Coded", "Scale", "Telemetry", "Telecommand")
-# Modules that stand beside those of the nodes.
-USED_MODULES = ("support",)
+# What stands beside the modules of the nodes.
+USED_MODULES = ("support", "std")
 ENUMS_MODULE = "enums"
+# What stands beside the modules of a node's messages, and what their parent calls by its bare name.
+USED_IN_NODES = (ENUMS_MODULE, "u8", "u16", "u32", "u64", "usize", "str", "serde", "defmt")
 # The variant of an enumeration that keeps values without a name; the first that no member is called.
 CATCH_ALL = ("Unknown", "Unlisted", "Unnamed", "AnyOther")
 

@@ -12,28 +12,28 @@ use crate::support::{write_to, Error};
 pub mod enums;
 
 mod clear_error_flags;
-pub use clear_error_flags::ClearErrorFlags;
+pub use self::clear_error_flags::ClearErrorFlags;
 
 mod set_boot_index;
-pub use set_boot_index::SetBootIndex;
+pub use self::set_boot_index::SetBootIndex;
 
 mod run_selected_program;
-pub use run_selected_program::RunSelectedProgram;
+pub use self::run_selected_program::RunSelectedProgram;
 
 mod read_program_information;
-pub use read_program_information::ReadProgramInformation;
+pub use self::read_program_information::ReadProgramInformation;
 
 mod copy_program_to_internal_flash;
-pub use copy_program_to_internal_flash::CopyProgramToInternalFlash;
+pub use self::copy_program_to_internal_flash::CopyProgramToInternalFlash;
 
 mod bootloader_state;
-pub use bootloader_state::BootloaderState;
+pub use self::bootloader_state::BootloaderState;
 
 mod program_information;
-pub use program_information::ProgramInformation;
+pub use self::program_information::ProgramInformation;
 
 mod copy_to_internal_flash_progress;
-pub use copy_to_internal_flash_progress::CopyToInternalFlashProgress;
+pub use self::copy_to_internal_flash_progress::CopyToInternalFlashProgress;
 
 /// What the node answers when asked for its type.
 pub const NODE_TYPE: u8 = 110;

@@ -9,127 +9,127 @@ use crate::support::{write_to, Error};
 pub mod enums;
 
 mod reset;
-pub use reset::Reset;
+pub use self::reset::Reset;
 
 mod reset_log_pointer;
-pub use reset_log_pointer::ResetLogPointer;
+pub use self::reset_log_pointer::ResetLogPointer;
 
 mod advance_log_pointer;
-pub use advance_log_pointer::AdvanceLogPointer;
+pub use self::advance_log_pointer::AdvanceLogPointer;
 
 mod reset_boot_registers;
-pub use reset_boot_registers::ResetBootRegisters;
+pub use self::reset_boot_registers::ResetBootRegisters;
 
 mod format_sd_card;
-pub use format_sd_card::FormatSdCard;
+pub use self::format_sd_card::FormatSdCard;
 
 mod erase_file;
-pub use erase_file::EraseFile;
+pub use self::erase_file::EraseFile;
 
 mod load_file_download_block;
-pub use load_file_download_block::LoadFileDownloadBlock;
+pub use self::load_file_download_block::LoadFileDownloadBlock;
 
 mod advance_file_list_read_pointer;
-pub use advance_file_list_read_pointer::AdvanceFileListReadPointer;
+pub use self::advance_file_list_read_pointer::AdvanceFileListReadPointer;
 
 mod initiate_file_upload;
-pub use initiate_file_upload::InitiateFileUpload;
+pub use self::initiate_file_upload::InitiateFileUpload;
 
 mod file_upload_packet;
-pub use file_upload_packet::FileUploadPacket;
+pub use self::file_upload_packet::FileUploadPacket;
 
 mod finalize_upload_block;
-pub use finalize_upload_block::FinalizeUploadBlock;
+pub use self::finalize_upload_block::FinalizeUploadBlock;
 
 mod reset_upload_block;
-pub use reset_upload_block::ResetUploadBlock;
+pub use self::reset_upload_block::ResetUploadBlock;
 
 mod reset_file_list_read_pointer;
-pub use reset_file_list_read_pointer::ResetFileListReadPointer;
+pub use self::reset_file_list_read_pointer::ResetFileListReadPointer;
 
 mod initiate_download_burst;
-pub use initiate_download_burst::InitiateDownloadBurst;
+pub use self::initiate_download_burst::InitiateDownloadBurst;
 
 mod identification;
-pub use identification::Identification;
+pub use self::identification::Identification;
 
 mod boot_and_running_program_status;
-pub use boot_and_running_program_status::BootAndRunningProgramStatus;
+pub use self::boot_and_running_program_status::BootAndRunningProgramStatus;
 
 mod boot_index_and_status;
-pub use boot_index_and_status::BootIndexAndStatus;
+pub use self::boot_index_and_status::BootIndexAndStatus;
 
 mod last_logged_event;
-pub use last_logged_event::LastLoggedEvent;
+pub use self::last_logged_event::LastLoggedEvent;
 
 mod sram_latchup_counters;
-pub use sram_latchup_counters::SramLatchupCounters;
+pub use self::sram_latchup_counters::SramLatchupCounters;
 
 mod edac_error_counters;
-pub use edac_error_counters::EdacErrorCounters;
+pub use self::edac_error_counters::EdacErrorCounters;
 
 mod communication_status;
-pub use communication_status::CommunicationStatus;
+pub use self::communication_status::CommunicationStatus;
 
 mod sd_card_format_erase_progress;
-pub use sd_card_format_erase_progress::SdCardFormatEraseProgress;
+pub use self::sd_card_format_erase_progress::SdCardFormatEraseProgress;
 
 mod telecommand_acknowledge;
-pub use telecommand_acknowledge::TelecommandAcknowledge;
+pub use self::telecommand_acknowledge::TelecommandAcknowledge;
 
 mod file_download_buffer_with_file_contents;
-pub use file_download_buffer_with_file_contents::FileDownloadBufferWithFileContents;
+pub use self::file_download_buffer_with_file_contents::FileDownloadBufferWithFileContents;
 
 mod download_block_ready;
-pub use download_block_ready::DownloadBlockReady;
+pub use self::download_block_ready::DownloadBlockReady;
 
 mod file_information;
-pub use file_information::FileInformation;
+pub use self::file_information::FileInformation;
 
 mod initialize_upload_complete;
-pub use initialize_upload_complete::InitializeUploadComplete;
+pub use self::initialize_upload_complete::InitializeUploadComplete;
 
 mod upload_block_complete;
-pub use upload_block_complete::UploadBlockComplete;
+pub use self::upload_block_complete::UploadBlockComplete;
 
 mod block_checksum;
-pub use block_checksum::BlockChecksum;
+pub use self::block_checksum::BlockChecksum;
 
 mod cache_enabled_state;
-pub use cache_enabled_state::CacheEnabledState;
+pub use self::cache_enabled_state::CacheEnabledState;
 
 mod sram_scrub_parameters;
-pub use sram_scrub_parameters::SramScrubParameters;
+pub use self::sram_scrub_parameters::SramScrubParameters;
 
 mod current_unix_time;
-pub use current_unix_time::CurrentUnixTime;
+pub use self::current_unix_time::CurrentUnixTime;
 
 mod unix_time_save_to_flash;
-pub use unix_time_save_to_flash::UnixTimeSaveToFlash;
+pub use self::unix_time_save_to_flash::UnixTimeSaveToFlash;
 
 mod hole_map_1;
-pub use hole_map_1::HoleMap1;
+pub use self::hole_map_1::HoleMap1;
 
 mod hole_map_2;
-pub use hole_map_2::HoleMap2;
+pub use self::hole_map_2::HoleMap2;
 
 mod hole_map_3;
-pub use hole_map_3::HoleMap3;
+pub use self::hole_map_3::HoleMap3;
 
 mod hole_map_4;
-pub use hole_map_4::HoleMap4;
+pub use self::hole_map_4::HoleMap4;
 
 mod hole_map_5;
-pub use hole_map_5::HoleMap5;
+pub use self::hole_map_5::HoleMap5;
 
 mod hole_map_6;
-pub use hole_map_6::HoleMap6;
+pub use self::hole_map_6::HoleMap6;
 
 mod hole_map_7;
-pub use hole_map_7::HoleMap7;
+pub use self::hole_map_7::HoleMap7;
 
 mod hole_map_8;
-pub use hole_map_8::HoleMap8;
+pub use self::hole_map_8::HoleMap8;
 
 /// Every telecommand of the node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

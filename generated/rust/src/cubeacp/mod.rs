@@ -11,349 +11,349 @@ use crate::support::{write_to, Error};
 pub mod enums;
 
 mod deploy_magnetometer_boom;
-pub use deploy_magnetometer_boom::DeployMagnetometerBoom;
+pub use self::deploy_magnetometer_boom::DeployMagnetometerBoom;
 
 mod set_adcs_run_mode;
-pub use set_adcs_run_mode::SetAdcsRunMode;
+pub use self::set_adcs_run_mode::SetAdcsRunMode;
 
 mod clear_errors;
-pub use clear_errors::ClearErrors;
+pub use self::clear_errors::ClearErrors;
 
 mod set_attitude_control_mode;
-pub use set_attitude_control_mode::SetAttitudeControlMode;
+pub use self::set_attitude_control_mode::SetAttitudeControlMode;
 
 mod set_attitude_estimation_mode;
-pub use set_attitude_estimation_mode::SetAttitudeEstimationMode;
+pub use self::set_attitude_estimation_mode::SetAttitudeEstimationMode;
 
 mod set_magnetorquer_output;
-pub use set_magnetorquer_output::SetMagnetorquerOutput;
+pub use self::set_magnetorquer_output::SetMagnetorquerOutput;
 
 mod set_wheel_speed;
-pub use set_wheel_speed::SetWheelSpeed;
+pub use self::set_wheel_speed::SetWheelSpeed;
 
 mod trigger_adcs_loop;
-pub use trigger_adcs_loop::TriggerAdcsLoop;
+pub use self::trigger_adcs_loop::TriggerAdcsLoop;
 
 mod trigger_adcs_loop_with_simulated_sensor_data;
-pub use trigger_adcs_loop_with_simulated_sensor_data::TriggerAdcsLoopWithSimulatedSensorData;
+pub use self::trigger_adcs_loop_with_simulated_sensor_data::TriggerAdcsLoopWithSimulatedSensorData;
 
 mod asgp4_run_mode;
-pub use asgp4_run_mode::Asgp4RunMode;
+pub use self::asgp4_run_mode::Asgp4RunMode;
 
 mod asgp4_trigger;
-pub use asgp4_trigger::Asgp4Trigger;
+pub use self::asgp4_trigger::Asgp4Trigger;
 
 mod set_mode_of_magnetometer_operation;
-pub use set_mode_of_magnetometer_operation::SetModeOfMagnetometerOperation;
+pub use self::set_mode_of_magnetometer_operation::SetModeOfMagnetometerOperation;
 
 mod convert_to_jpg_file;
-pub use convert_to_jpg_file::ConvertToJpgFile;
+pub use self::convert_to_jpg_file::ConvertToJpgFile;
 
 mod save_configuration;
-pub use save_configuration::SaveConfiguration;
+pub use self::save_configuration::SaveConfiguration;
 
 mod save_orbit_parameters;
-pub use save_orbit_parameters::SaveOrbitParameters;
+pub use self::save_orbit_parameters::SaveOrbitParameters;
 
 mod save_image;
-pub use save_image::SaveImage;
+pub use self::save_image::SaveImage;
 
 mod current_adcs_state;
-pub use current_adcs_state::CurrentAdcsState;
+pub use self::current_adcs_state::CurrentAdcsState;
 
 mod jpg_conversion_progress;
-pub use jpg_conversion_progress::JpgConversionProgress;
+pub use self::jpg_conversion_progress::JpgConversionProgress;
 
 mod cubeacp_state;
-pub use cubeacp_state::CubeacpState;
+pub use self::cubeacp_state::CubeacpState;
 
 mod estimated_attitude_angles;
-pub use estimated_attitude_angles::EstimatedAttitudeAngles;
+pub use self::estimated_attitude_angles::EstimatedAttitudeAngles;
 
 mod estimated_angular_rates;
-pub use estimated_angular_rates::EstimatedAngularRates;
+pub use self::estimated_angular_rates::EstimatedAngularRates;
 
 mod satellite_position_eci;
-pub use satellite_position_eci::SatellitePositionEci;
+pub use self::satellite_position_eci::SatellitePositionEci;
 
 mod satellite_velocity_eci;
-pub use satellite_velocity_eci::SatelliteVelocityEci;
+pub use self::satellite_velocity_eci::SatelliteVelocityEci;
 
 mod satellite_position_llh;
-pub use satellite_position_llh::SatellitePositionLlh;
+pub use self::satellite_position_llh::SatellitePositionLlh;
 
 mod magnetic_field_vector;
-pub use magnetic_field_vector::MagneticFieldVector;
+pub use self::magnetic_field_vector::MagneticFieldVector;
 
 mod coarse_sun_vector;
-pub use coarse_sun_vector::CoarseSunVector;
+pub use self::coarse_sun_vector::CoarseSunVector;
 
 mod fine_sun_vector;
-pub use fine_sun_vector::FineSunVector;
+pub use self::fine_sun_vector::FineSunVector;
 
 mod nadir_vector;
-pub use nadir_vector::NadirVector;
+pub use self::nadir_vector::NadirVector;
 
 mod rate_sensor_rates;
-pub use rate_sensor_rates::RateSensorRates;
+pub use self::rate_sensor_rates::RateSensorRates;
 
 mod wheel_speed;
-pub use wheel_speed::WheelSpeed;
+pub use self::wheel_speed::WheelSpeed;
 
 mod magnetorquer_command;
-pub use magnetorquer_command::MagnetorquerCommand;
+pub use self::magnetorquer_command::MagnetorquerCommand;
 
 mod wheel_speed_commands;
-pub use wheel_speed_commands::WheelSpeedCommands;
+pub use self::wheel_speed_commands::WheelSpeedCommands;
 
 mod igrf_modelled_magnetic_field_vector;
-pub use igrf_modelled_magnetic_field_vector::IgrfModelledMagneticFieldVector;
+pub use self::igrf_modelled_magnetic_field_vector::IgrfModelledMagneticFieldVector;
 
 mod modelled_sun_vector;
-pub use modelled_sun_vector::ModelledSunVector;
+pub use self::modelled_sun_vector::ModelledSunVector;
 
 mod estimated_gyro_bias;
-pub use estimated_gyro_bias::EstimatedGyroBias;
+pub use self::estimated_gyro_bias::EstimatedGyroBias;
 
 mod estimation_innovation_vector;
-pub use estimation_innovation_vector::EstimationInnovationVector;
+pub use self::estimation_innovation_vector::EstimationInnovationVector;
 
 mod quaternion_error_vector;
-pub use quaternion_error_vector::QuaternionErrorVector;
+pub use self::quaternion_error_vector::QuaternionErrorVector;
 
 mod quaternion_covariance;
-pub use quaternion_covariance::QuaternionCovariance;
+pub use self::quaternion_covariance::QuaternionCovariance;
 
 mod angular_rate_covariance;
-pub use angular_rate_covariance::AngularRateCovariance;
+pub use self::angular_rate_covariance::AngularRateCovariance;
 
 mod raw_cam2_sensor;
-pub use raw_cam2_sensor::RawCam2Sensor;
+pub use self::raw_cam2_sensor::RawCam2Sensor;
 
 mod raw_cam1_sensor;
-pub use raw_cam1_sensor::RawCam1Sensor;
+pub use self::raw_cam1_sensor::RawCam1Sensor;
 
 mod raw_css_1_to_6;
-pub use raw_css_1_to_6::RawCss1To6;
+pub use self::raw_css_1_to_6::RawCss1To6;
 
 mod raw_css_7_to_10;
-pub use raw_css_7_to_10::RawCss7To10;
+pub use self::raw_css_7_to_10::RawCss7To10;
 
 mod raw_magnetometer;
-pub use raw_magnetometer::RawMagnetometer;
+pub use self::raw_magnetometer::RawMagnetometer;
 
 mod cubesense1_current_measurements;
-pub use cubesense1_current_measurements::Cubesense1CurrentMeasurements;
+pub use self::cubesense1_current_measurements::Cubesense1CurrentMeasurements;
 
 mod cubecontrol_current_measurements;
-pub use cubecontrol_current_measurements::CubecontrolCurrentMeasurements;
+pub use self::cubecontrol_current_measurements::CubecontrolCurrentMeasurements;
 
 mod wheel_currents;
-pub use wheel_currents::WheelCurrents;
+pub use self::wheel_currents::WheelCurrents;
 
 mod adcs_temperatures;
-pub use adcs_temperatures::AdcsTemperatures;
+pub use self::adcs_temperatures::AdcsTemperatures;
 
 mod rate_sensor_temperatures;
-pub use rate_sensor_temperatures::RateSensorTemperatures;
+pub use self::rate_sensor_temperatures::RateSensorTemperatures;
 
 mod raw_gps_status;
-pub use raw_gps_status::RawGpsStatus;
+pub use self::raw_gps_status::RawGpsStatus;
 
 mod raw_gps_time;
-pub use raw_gps_time::RawGpsTime;
+pub use self::raw_gps_time::RawGpsTime;
 
 mod raw_gps_x;
-pub use raw_gps_x::RawGpsX;
+pub use self::raw_gps_x::RawGpsX;
 
 mod raw_gps_y;
-pub use raw_gps_y::RawGpsY;
+pub use self::raw_gps_y::RawGpsY;
 
 mod raw_gps_z;
-pub use raw_gps_z::RawGpsZ;
+pub use self::raw_gps_z::RawGpsZ;
 
 mod star_1_body_vector;
-pub use star_1_body_vector::Star1BodyVector;
+pub use self::star_1_body_vector::Star1BodyVector;
 
 mod star_2_body_vector;
-pub use star_2_body_vector::Star2BodyVector;
+pub use self::star_2_body_vector::Star2BodyVector;
 
 mod star_3_body_vector;
-pub use star_3_body_vector::Star3BodyVector;
+pub use self::star_3_body_vector::Star3BodyVector;
 
 mod star_1_orbit_vector;
-pub use star_1_orbit_vector::Star1OrbitVector;
+pub use self::star_1_orbit_vector::Star1OrbitVector;
 
 mod star_2_orbit_vector;
-pub use star_2_orbit_vector::Star2OrbitVector;
+pub use self::star_2_orbit_vector::Star2OrbitVector;
 
 mod star_3_orbit_vector;
-pub use star_3_orbit_vector::Star3OrbitVector;
+pub use self::star_3_orbit_vector::Star3OrbitVector;
 
 mod star_magnitude;
-pub use star_magnitude::StarMagnitude;
+pub use self::star_magnitude::StarMagnitude;
 
 mod star_performance1;
-pub use star_performance1::StarPerformance1;
+pub use self::star_performance1::StarPerformance1;
 
 mod star_timing;
-pub use star_timing::StarTiming;
+pub use self::star_timing::StarTiming;
 
 mod adcs_state;
-pub use adcs_state::AdcsState;
+pub use self::adcs_state::AdcsState;
 
 mod adcs_measurements;
-pub use adcs_measurements::AdcsMeasurements;
+pub use self::adcs_measurements::AdcsMeasurements;
 
 mod actuator_commands;
-pub use actuator_commands::ActuatorCommands;
+pub use self::actuator_commands::ActuatorCommands;
 
 mod estimation_data;
-pub use estimation_data::EstimationData;
+pub use self::estimation_data::EstimationData;
 
 mod raw_sensor_measurements;
-pub use raw_sensor_measurements::RawSensorMeasurements;
+pub use self::raw_sensor_measurements::RawSensorMeasurements;
 
 mod power_and_temperature_measurements;
-pub use power_and_temperature_measurements::PowerAndTemperatureMeasurements;
+pub use self::power_and_temperature_measurements::PowerAndTemperatureMeasurements;
 
 mod adcs_execution_times;
-pub use adcs_execution_times::AdcsExecutionTimes;
+pub use self::adcs_execution_times::AdcsExecutionTimes;
 
 mod adcs_misc_current_measurements;
-pub use adcs_misc_current_measurements::AdcsMiscCurrentMeasurements;
+pub use self::adcs_misc_current_measurements::AdcsMiscCurrentMeasurements;
 
 mod fine_estimated_angular_rates;
-pub use fine_estimated_angular_rates::FineEstimatedAngularRates;
+pub use self::fine_estimated_angular_rates::FineEstimatedAngularRates;
 
 mod raw_gps_measurements;
-pub use raw_gps_measurements::RawGpsMeasurements;
+pub use self::raw_gps_measurements::RawGpsMeasurements;
 
 mod raw_star_tracker;
-pub use raw_star_tracker::RawStarTracker;
+pub use self::raw_star_tracker::RawStarTracker;
 
 mod star_1_raw_data;
-pub use star_1_raw_data::Star1RawData;
+pub use self::star_1_raw_data::Star1RawData;
 
 mod star_2_raw_data;
-pub use star_2_raw_data::Star2RawData;
+pub use self::star_2_raw_data::Star2RawData;
 
 mod star_3_raw_data;
-pub use star_3_raw_data::Star3RawData;
+pub use self::star_3_raw_data::Star3RawData;
 
 mod secondary_magnetometer_raw_measurements;
-pub use secondary_magnetometer_raw_measurements::SecondaryMagnetometerRawMeasurements;
+pub use self::secondary_magnetometer_raw_measurements::SecondaryMagnetometerRawMeasurements;
 
 mod raw_rate_sensor;
-pub use raw_rate_sensor::RawRateSensor;
+pub use self::raw_rate_sensor::RawRateSensor;
 
 mod estimated_quaternion;
-pub use estimated_quaternion::EstimatedQuaternion;
+pub use self::estimated_quaternion::EstimatedQuaternion;
 
 mod ecef_position;
-pub use ecef_position::EcefPosition;
+pub use self::ecef_position::EcefPosition;
 
 mod acp_execution_state;
-pub use acp_execution_state::AcpExecutionState;
+pub use self::acp_execution_state::AcpExecutionState;
 
 mod current_adcs_state_2;
-pub use current_adcs_state_2::CurrentAdcsState2;
+pub use self::current_adcs_state_2::CurrentAdcsState2;
 
 mod asgp4_tles;
-pub use asgp4_tles::Asgp4Tles;
+pub use self::asgp4_tles::Asgp4Tles;
 
 mod cubestar_estimated_rates;
-pub use cubestar_estimated_rates::CubestarEstimatedRates;
+pub use self::cubestar_estimated_rates::CubestarEstimatedRates;
 
 mod cubestar_estimated_quaternion;
-pub use cubestar_estimated_quaternion::CubestarEstimatedQuaternion;
+pub use self::cubestar_estimated_quaternion::CubestarEstimatedQuaternion;
 
 mod star_performance2;
-pub use star_performance2::StarPerformance2;
+pub use self::star_performance2::StarPerformance2;
 
 mod cubesense2_current_measurements;
-pub use cubesense2_current_measurements::Cubesense2CurrentMeasurements;
+pub use self::cubesense2_current_measurements::Cubesense2CurrentMeasurements;
 
 mod status_of_image_capture_and_save_operation;
-pub use status_of_image_capture_and_save_operation::StatusOfImageCaptureAndSaveOperation;
+pub use self::status_of_image_capture_and_save_operation::StatusOfImageCaptureAndSaveOperation;
 
 mod set_magnetorquer_configuration;
-pub use set_magnetorquer_configuration::SetMagnetorquerConfiguration;
+pub use self::set_magnetorquer_configuration::SetMagnetorquerConfiguration;
 
 mod set_wheel_configuration;
-pub use set_wheel_configuration::SetWheelConfiguration;
+pub use self::set_wheel_configuration::SetWheelConfiguration;
 
 mod set_rate_gyro_configuration;
-pub use set_rate_gyro_configuration::SetRateGyroConfiguration;
+pub use self::set_rate_gyro_configuration::SetRateGyroConfiguration;
 
 mod css_configuration;
-pub use css_configuration::CssConfiguration;
+pub use self::css_configuration::CssConfiguration;
 
 mod adcs_power_control;
-pub use adcs_power_control::AdcsPowerControl;
+pub use self::adcs_power_control::AdcsPowerControl;
 
 mod commanded_attitude_angles;
-pub use commanded_attitude_angles::CommandedAttitudeAngles;
+pub use self::commanded_attitude_angles::CommandedAttitudeAngles;
 
 mod tracking_controller_target_reference;
-pub use tracking_controller_target_reference::TrackingControllerTargetReference;
+pub use self::tracking_controller_target_reference::TrackingControllerTargetReference;
 
 mod set_star_tracker_configuration;
-pub use set_star_tracker_configuration::SetStarTrackerConfiguration;
+pub use self::set_star_tracker_configuration::SetStarTrackerConfiguration;
 
 mod cubesense_configuration;
-pub use cubesense_configuration::CubesenseConfiguration;
+pub use self::cubesense_configuration::CubesenseConfiguration;
 
 mod magnetometer_configuration;
-pub use magnetometer_configuration::MagnetometerConfiguration;
+pub use self::magnetometer_configuration::MagnetometerConfiguration;
 
 mod redundant_magnetometer_configuration;
-pub use redundant_magnetometer_configuration::RedundantMagnetometerConfiguration;
+pub use self::redundant_magnetometer_configuration::RedundantMagnetometerConfiguration;
 
 mod adcs_configuration;
-pub use adcs_configuration::AdcsConfiguration;
+pub use self::adcs_configuration::AdcsConfiguration;
 
 mod sgp4_orbit_parameters;
-pub use sgp4_orbit_parameters::Sgp4OrbitParameters;
+pub use self::sgp4_orbit_parameters::Sgp4OrbitParameters;
 
 mod set_detumbling_control_parameters;
-pub use set_detumbling_control_parameters::SetDetumblingControlParameters;
+pub use self::set_detumbling_control_parameters::SetDetumblingControlParameters;
 
 mod set_y_wheel_control_parameters;
-pub use set_y_wheel_control_parameters::SetYWheelControlParameters;
+pub use self::set_y_wheel_control_parameters::SetYWheelControlParameters;
 
 mod set_reaction_wheel_control_parameters;
-pub use set_reaction_wheel_control_parameters::SetReactionWheelControlParameters;
+pub use self::set_reaction_wheel_control_parameters::SetReactionWheelControlParameters;
 
 mod set_tracking_controller_gain_parameters;
-pub use set_tracking_controller_gain_parameters::SetTrackingControllerGainParameters;
+pub use self::set_tracking_controller_gain_parameters::SetTrackingControllerGainParameters;
 
 mod moment_of_inertia_matrix;
-pub use moment_of_inertia_matrix::MomentOfInertiaMatrix;
+pub use self::moment_of_inertia_matrix::MomentOfInertiaMatrix;
 
 mod estimation_parameters;
-pub use estimation_parameters::EstimationParameters;
+pub use self::estimation_parameters::EstimationParameters;
 
 mod adcs_system_configuration;
-pub use adcs_system_configuration::AdcsSystemConfiguration;
+pub use self::adcs_system_configuration::AdcsSystemConfiguration;
 
 mod user_coded_controller_and_estimator_parameters;
-pub use user_coded_controller_and_estimator_parameters::UserCodedControllerAndEstimatorParameters;
+pub use self::user_coded_controller_and_estimator_parameters::UserCodedControllerAndEstimatorParameters;
 
 mod augmented_sgp4_parameters;
-pub use augmented_sgp4_parameters::AugmentedSgp4Parameters;
+pub use self::augmented_sgp4_parameters::AugmentedSgp4Parameters;
 
 mod sd_log1_configuration;
-pub use sd_log1_configuration::SdLog1Configuration;
+pub use self::sd_log1_configuration::SdLog1Configuration;
 
 mod sd_log2_configuration;
-pub use sd_log2_configuration::SdLog2Configuration;
+pub use self::sd_log2_configuration::SdLog2Configuration;
 
 mod uart_log_configuration;
-pub use uart_log_configuration::UartLogConfiguration;
+pub use self::uart_log_configuration::UartLogConfiguration;
 
 mod inertial_pointing_reference_vector;
-pub use inertial_pointing_reference_vector::InertialPointingReferenceVector;
+pub use self::inertial_pointing_reference_vector::InertialPointingReferenceVector;
 
 /// What the node answers when asked for its type.
 pub const NODE_TYPE: u8 = 10;

@@ -9,16 +9,16 @@ use crate::support::{write_to, Error};
 pub mod enums;
 
 mod state;
-pub use state::State;
+pub use self::state::State;
 
 mod deployment_status;
-pub use deployment_status::DeploymentStatus;
+pub use self::deployment_status::DeploymentStatus;
 
 mod redundant_magnetometer_measurement;
-pub use redundant_magnetometer_measurement::RedundantMagnetometerMeasurement;
+pub use self::redundant_magnetometer_measurement::RedundantMagnetometerMeasurement;
 
 mod primary_magnetometer_measurement;
-pub use primary_magnetometer_measurement::PrimaryMagnetometerMeasurement;
+pub use self::primary_magnetometer_measurement::PrimaryMagnetometerMeasurement;
 
 /// Every telemetry of the node.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,13 +9,13 @@ use crate::support::{write_to, Error};
 pub mod enums;
 
 mod wheel_speed;
-pub use wheel_speed::WheelSpeed;
+pub use self::wheel_speed::WheelSpeed;
 
 mod wheel_reference_speed;
-pub use wheel_reference_speed::WheelReferenceSpeed;
+pub use self::wheel_reference_speed::WheelReferenceSpeed;
 
 mod motor_power;
-pub use motor_power::MotorPower;
+pub use self::motor_power::MotorPower;
 
 /// Every telemetry of the node.
 #[derive(Clone, Copy, Debug, PartialEq)]
