@@ -46,7 +46,7 @@ def batches(files: dict) -> Iterator[Batch]:
 
 def refused(cases: list[dict]) -> Iterator[dict]:
     """The first request of each op, with each of its keys missing or of another type."""
-    optional = {"address", "senders", "end", "limit", "crc", "node"}
+    optional = {"address", "senders", "end", "limit", "crc", "node", "settings", "block", "size", "all"}
     seen = set()
     for case in cases:
         request = case["request"]
@@ -55,7 +55,7 @@ def refused(cases: list[dict]) -> Iterator[dict]:
         seen.add(request["op"])
         for key in request:
             if key != "op":
-                yield {**request, key: {"no": "such value"}}
+                yield {**request, key: [None] if key == "settings" else {"no": "such value"}}
                 if key not in optional and not (key == "value" and request["op"] == "dos_time"):
                     yield {k: v for k, v in request.items() if k != key}
         if isinstance(request.get("bytes"), str):

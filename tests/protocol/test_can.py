@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from icdgen.protocol import can
+from tests.protocol import quick
 
 NODE, OBC, OTHER = 1, 0x42, 0x43
 LONG = 19  # a telecommand of 127 bytes
@@ -51,12 +52,14 @@ def test_the_longest_message_has_256_packets_and_no_more(known):
         can.split(known, can.Message("acknowledge", 1, NODE, OBC, b"\0"))
 
 
+@quick
 @given(data=contents, order=st.permutations(range(19)))
 def test_the_order_of_packets_does_not_matter(known, data, order):
     packets = [sent(known, data)[number] for number in order]
     assert messages(joined(known, packets)[0]) == [data]
 
 
+@quick
 @given(data=contents, twice=st.sets(st.integers(0, 18)))
 def test_repeated_packets_change_nothing_and_are_told(known, data, twice):
     packets = [p for number, p in enumerate(sent(known, data)) for _ in range(1 + (number in twice))]
@@ -65,6 +68,7 @@ def test_repeated_packets_change_nothing_and_are_told(known, data, twice):
     assert sum(e.event == can.DUPLICATE for e in events) == len(twice)
 
 
+@quick
 @given(sources=st.permutations([0x10, 0x20, 0x30, 0x40]), shuffle=st.randoms(use_true_random=False))
 def test_senders_may_interleave(known, sources, shuffle):
     data = {source: bytes([source]) * 127 for source in sources}
@@ -76,6 +80,7 @@ def test_senders_may_interleave(known, sources, shuffle):
     assert {e.source: e.message.data for e in events if e.message} == data
 
 
+@quick
 @given(lost=st.integers(0, 18), first=contents, second=contents)
 def test_a_lost_packet_costs_one_message_at_most(known, lost, first, second):
     packets = sent(known, first)
@@ -87,12 +92,14 @@ def test_a_lost_packet_costs_one_message_at_most(known, lost, first, second):
     assert messages([e for p in sent(known, second) for e in joiner.feed(10_000, p)]) == [second]
 
 
+@quick
 @given(lost=st.integers(1, 18), data=contents)
 def test_a_message_that_is_sent_again_arrives(known, lost, data):
     packets = sent(known, data)
     assert messages(joined(known, packets[:lost] + packets)[0])[0] == data
 
 
+@quick
 @given(
     begun=st.integers(1, 18),
     alike=st.integers(0, 18),

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from icdgen.protocol import crc
 from icdgen.protocol.facts import Crc
+from tests.protocol import quick
 
 CATALOGUE = [
     (Crc(8, 0x07, 0, False, False, 0), 0xF4),  # CRC-8/SMBUS
@@ -29,11 +30,13 @@ def test_no_bytes_at_all_have_the_value_that_the_icd_gives(known):
     assert crc.compute(known.crc16, b"") == 0
 
 
+@quick
 @given(data=st.binary(max_size=300))
 def test_the_wide_one_is_that_of_the_standard_library(known, data):
     assert crc.compute(known.crc16, data) == binascii.crc_hqx(data, 0)
 
 
+@quick
 @given(data=st.binary(min_size=1, max_size=300))
 def test_the_narrow_one_shifts_after_the_constant_is_applied(known, data):
     register = 0
@@ -44,6 +47,7 @@ def test_the_narrow_one_shifts_after_the_constant_is_applied(known, data):
     assert crc.compute(known.checksum.crc, data) == register
 
 
+@quick
 @given(pieces=st.lists(st.binary(max_size=20)))
 def test_pieces_give_what_the_whole_gives(known, pieces):
     for parameters in (known.checksum.crc, known.crc16):

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from icdgen.protocol import files, i2c, logs, times
+from tests.protocol import quick
 
 
 def mask(*bits: int) -> bytes:
@@ -28,6 +29,7 @@ def test_short_frames_fill_their_slot_and_unassigned_bits_have_one(known):
     assert logs.decode(known, file).entries[0].frames == (logs.Frame(2, None, b"free!!"), logs.Frame(21, 171, b"four"))
 
 
+@quick
 @given(
     bits=st.sets(st.integers(0, 79), max_size=20),
     count=st.integers(0, 3),
@@ -60,6 +62,7 @@ def test_an_unsolicited_log_has_id_mask_and_frames(known):
         logs.decode_message(known, message + b"\0")
 
 
+@quick
 @given(st.datetimes(datetime(1980, 1, 1), datetime(2107, 12, 31, 23, 59, 59)))
 def test_packed_times_come_back_to_two_seconds(known, moment):
     parts = {name: getattr(moment, name) for name in times.PARTS}
@@ -70,6 +73,7 @@ def test_packed_times_come_back_to_two_seconds(known, moment):
     assert times.unpack(known, value) == {**parts, "second": moment.second // 2 * 2}
 
 
+@quick
 @given(st.integers(0, (1 << 32) - 1))
 def test_a_time_is_valid_if_the_calendar_has_it(known, value):
     parts = times.unpack(known, value)
@@ -81,6 +85,7 @@ def test_a_time_is_valid_if_the_calendar_has_it(known, value):
     assert (times.wrong(parts) is None) == there
 
 
+@quick
 @given(count=st.integers(0, 1024), seed=st.randoms(use_true_random=False))
 def test_a_hole_map_names_what_is_missing(known, count, seed):
     received = {number for number in range(count) if seed.random() < 0.9}
@@ -90,6 +95,7 @@ def test_a_hole_map_names_what_is_missing(known, count, seed):
     assert b"".join(files.in_messages(known, map_)) == map_ and len(files.in_messages(known, map_)) == 8
 
 
+@quick
 @given(
     st.lists(
         st.tuples(
@@ -110,6 +116,7 @@ def test_a_telecommand_without_parameters_has_a_checksum_too(known):
     assert i2c.telecommand(known, 63, b"", False).hex() == "3f"
 
 
+@quick
 @given(frame=st.binary(min_size=6, max_size=6), bit=st.integers(0, 47))
 def test_a_reply_with_a_wrong_bit_is_refused(known, frame, bit):
     read = i2c.telecommand(known, 146, frame, True)[1:]

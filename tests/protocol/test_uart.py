@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from icdgen.protocol import uart
+from tests.protocol import quick
 
 ESCAPE, START, END = 0x1F, 0x7F, 0xFF
 markers = st.sampled_from([ESCAPE, START, END, 0x00, 0x90])
@@ -36,6 +37,7 @@ def test_an_end_within_the_data_is_data(known):
     assert found(known, uart.encode(known.framing, message)) == [message]
 
 
+@quick
 @given(all=st.lists(messages, max_size=5))
 def test_what_is_encoded_is_decoded(known, all):
     stream = b"".join(uart.encode(known.framing, one) for one in all)
@@ -44,6 +46,7 @@ def test_what_is_encoded_is_decoded(known, all):
     assert decoder.discarded == decoder.pending == 0
 
 
+@quick
 @given(stream=streams, cuts=st.lists(st.integers(0, 200), max_size=6))
 def test_events_do_not_depend_on_how_a_stream_is_cut(known, stream, cuts):
     places = sorted({0, len(stream), *(cut for cut in cuts if cut < len(stream))})
@@ -54,6 +57,7 @@ def test_events_do_not_depend_on_how_a_stream_is_cut(known, stream, cuts):
     assert (first.discarded, first.pending) == (second.discarded, second.pending)
 
 
+@quick
 @given(noise=streams.filter(lambda noise: bytes([ESCAPE, START]) not in noise), message=messages)
 def test_noise_costs_nothing_but_the_noise(known, noise, message):
     events, decoder = decode(known, noise + uart.encode(known.framing, message))
@@ -61,12 +65,14 @@ def test_noise_costs_nothing_but_the_noise(known, noise, message):
     assert decoder.discarded == len(noise)
 
 
+@quick
 @given(stream=streams, message=messages)
 def test_a_message_after_an_end_is_found_whatever_was_before_it(known, stream, message):
     line = uart.encode(known.framing, message)
     assert found(known, stream + bytes([0, ESCAPE, END]) + line)[-1] == message
 
 
+@quick
 @given(stream=streams, limit=st.integers(1, 30))
 def test_no_more_is_kept_than_the_longest_message(known, stream, limit):
     decoder = uart.Decoder(known.framing, limit)

@@ -230,7 +230,7 @@ class Files:
     block_packets: int
     block_bytes: int
     steps: dict[str, Step]
-    numbers: dict[str, int]  # ``download.silence_ms`` and the like
+    numbers: dict[str, int]  # ``download.silence_ms`` and the like; truth values as 0 and 1
     packet_ids: dict[str, int]  # bus -> id that heads a download packet there
 
 

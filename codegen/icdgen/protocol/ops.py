@@ -5,21 +5,13 @@ Described in ``tests/conformance/README.md``. `answer` is the reference.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 
 from icdgen.icd.model import Icd
-from icdgen.protocol import can, crc, facts, files, i2c, logs, times, uart
+from icdgen.protocol import can, crc, facts, files, i2c, logs, scripts, times, uart
+from icdgen.protocol.asked import Refusal, Request, flag, mappings, number, octets, rows, text
+from icdgen.protocol.asked import hex_bytes as _hex
 from icdgen.protocol.facts import Facts
-
-Request = dict
-
-
-class Refusal(Exception):
-    """An answer of ``"ok": false``."""
-
-    def __init__(self, error: str, **more: object) -> None:
-        self.answer = {"ok": False, "error": error, **more}
 
 
 def answer(icd: Icd, request: Request) -> dict:
@@ -53,51 +45,6 @@ def _facts(icd: Icd, request: Request) -> Facts:
         if icd.protocol_of(node):
             return facts.of(icd, node)
     raise facts.Unsupported("no node has a protocol")
-
-
-def number(request: Request, key: str, least: int = 0, most: int = (1 << 32) - 1, default: int | None = None) -> int:
-    value = request.get(key, default)
-    if type(value) is not int or not least <= value <= most:
-        raise Refusal("request", detail=f"`{key}` is missing or is no number from {least} to {most}")
-    return value
-
-
-def text(request: Request, key: str) -> str:
-    value = request.get(key)
-    if not isinstance(value, str):
-        raise Refusal("request", detail=f"`{key}` is missing or is no text")
-    return value
-
-
-def octets(request: Request, key: str = "bytes") -> bytes:
-    return _hex(request.get(key))
-
-
-def _hex(value: object) -> bytes:
-    if not isinstance(value, str) or not re.fullmatch("([0-9A-Fa-f]{2})*", value):
-        raise Refusal("request", detail="not hex digits, two a byte")
-    return bytes.fromhex(value)
-
-
-def flag(request: Request, key: str) -> bool:
-    value = request.get(key, False)
-    if type(value) is not bool:
-        raise Refusal("request", detail=f"`{key}` is neither true nor false")
-    return value
-
-
-def rows(request: Request, key: str) -> list:
-    value = request.get(key)
-    if not isinstance(value, list):
-        raise Refusal("request", detail=f"`{key}` is missing or is no list")
-    return value
-
-
-def mappings(request: Request, key: str) -> list[dict]:
-    found = rows(request, key)
-    if not all(isinstance(row, dict) for row in found):
-        raise Refusal("request", detail=f"`{key}` has an entry that is no object")
-    return found
 
 
 def crc8(known: Facts, request: Request) -> dict:
@@ -279,5 +226,6 @@ OPS: dict[str, Callable[[Facts, Request], dict]] = {
     for op in (
         crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
         log_encode, log_message_decode, log_message_encode, dos_time, hole_map, index_decode, index_encode, identify,
+        scripts.client, scripts.file,
     )
 }  # fmt: skip

@@ -234,8 +234,8 @@ class Reader:
         steps, numbers, packet_ids = {}, {}, {}
         for part in ("list", "download", "upload", "erase", "format"):
             for key, value in self.section("file_transfer", part).items():
-                if isinstance(value, int) and not isinstance(value, bool):
-                    numbers[f"{part}.{key}"] = value
+                if isinstance(value, int):
+                    numbers[f"{part}.{key}"] = int(value)
                 elif isinstance(value, dict) and "message" in value:
                     step = self.step(value)
                     if step:

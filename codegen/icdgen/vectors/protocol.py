@@ -11,7 +11,7 @@ from icdgen import __version__
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts, ops
 from icdgen.protocol.facts import Facts
-from icdgen.vectors import wire
+from icdgen.vectors.wire import clients, files, i2c, logs, packets, procedures, streams
 
 FORMAT = 1
 
@@ -55,12 +55,14 @@ def text(icd: Icd) -> str | None:
 
 def _requests(known: Facts) -> Iterator[tuple[str, dict]]:
     source = random.Random(known.node.name)
-    yield from wire.checksums(known, source)
+    yield from streams.checksums(known, source)
     if known.framing:
-        yield from wire.encoded(known, source)
-        yield from wire.streams(known, source)
+        yield from streams.encoded(known, source)
+        yield from streams.streams(known, source)
     if known.can:
-        yield from wire.packets(known, source)
-    yield from wire.i2c(known, source)
-    yield from wire.logs(known, source)
-    yield from wire.files(known, source)
+        yield from packets.requests(known, source)
+    yield from i2c.requests(known, source)
+    yield from logs.requests(known, source)
+    yield from files.requests(known, source)
+    yield from clients.scripts(known)
+    yield from procedures.scripts(known)
