@@ -102,3 +102,21 @@ def test_without_a_node_the_last_one_that_has_a_protocol_is_meant(icd):
     assert ask(b'{"op": "uart_encode", "bytes": "1f00"}') == {"ok": True, "bytes": "1f7f1f1f001fff"}
     assert ask(b'{"op": "uart_decode", "bytes": "551f7f1f1f001fff"}') == {"ok": True, "frames": ["1f00"]}
     assert ask(b'{"op": "crc8", "node": "bootloader", "bytes": ""}') == {"ok": False, "error": "unsupported"}
+
+
+def test_what_an_icd_does_not_describe_is_refused_and_breaks_nothing(files, tmp_path):
+    text = (
+        "icdgen: 1\nnode: {name: demo, title: D, byte_order: big, bit_order: msb0}\n"
+        "protocol:\n  uart: {baud_rate: 9600}\n  "
+        "file_transfer: {packet_bytes: 8, packet_counter_bytes: 1, block_packets: 9, block_bytes: 72}\n"
+        "messages: [{name: Ping, id: 1, kind: telecommand, length: 0}]\n"
+    )
+    (tmp_path / "demo.yaml").write_text(text, encoding="utf-8")
+    bare = icd_of([tmp_path / "demo.yaml"])
+    protocol.text(bare)
+    for node in files["nodes"]:
+        for case in node["cases"]:
+            answer = ops.answer(bare, {**case["request"], "node": "demo"})
+            if case["request"]["op"] not in ("i2c_request", "i2c_reply", "uart_encode", "uart_events", "file"):
+                assert answer == {"ok": False, "error": "unsupported"}, case
+            assert answer["ok"] or answer["error"] in ("unsupported", "unknown-id", "length", "request"), case

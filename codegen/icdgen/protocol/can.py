@@ -78,7 +78,7 @@ def split(facts: Facts, message: Message) -> list[Packet]:
     can = need(facts.can, "can")
 
     def packet(types: dict[str, int], data: bytes) -> Packet:
-        type_ = types[message.kind]
+        type_ = need(types.get(message.kind), f"can: {message.kind}")
         id = identifier(can, type=type_, channel=message.id, source=message.source, destination=message.destination)
         return Packet(id, data)
 

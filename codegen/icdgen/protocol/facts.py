@@ -319,7 +319,7 @@ class Facts:
 
 def need(part, name: str):
     """The part of the facts, or `Unsupported` if the ICD does not have it."""
-    if not part:
+    if part is None or part == {}:
         raise Unsupported(f"the ICD says nothing about `{name}`")
     return part
 

@@ -13,6 +13,8 @@ from icdgen.protocol.asked import Refusal, Request, flag, mappings, number, octe
 from icdgen.protocol.asked import hex_bytes as _hex
 from icdgen.protocol.facts import Facts
 
+CAN_BYTES = 8  # of a classic CAN frame
+
 
 def answer(icd: Icd, request: Request) -> dict:
     """The answer to one request. ``op`` must be one of `OPS`."""
@@ -65,17 +67,18 @@ def uart_encode(known: Facts, request: Request) -> dict:
 
 
 def uart_decode(known: Facts, request: Request) -> dict:
-    decoder = uart.Decoder(facts.need(known.framing, "uart"), known.longest)
-    found = decoder.feed(octets(request))
+    stream = octets(request)
+    found = uart.Decoder(facts.need(known.framing, "uart"), known.longest).feed(stream)
     return {"frames": [event.message.hex() for event in found if event.event == uart.MESSAGE]}
 
 
 def uart_events(known: Facts, request: Request) -> dict:
     limit = number(request, "limit", 1, known.longest, known.longest)
+    chunks = [_hex(chunk) for chunk in rows(request, "chunks")]
     decoder = uart.Decoder(facts.need(known.framing, "uart"), limit)
     events = []
-    for chunk in rows(request, "chunks"):
-        for event in decoder.feed(_hex(chunk)):
+    for chunk in chunks:
+        for event in decoder.feed(chunk):
             row: dict = {"event": event.event}
             if event.event == uart.MESSAGE:
                 row.update(kind=uart.kind(known, event.message), bytes=event.message.hex())
@@ -89,24 +92,23 @@ def can_split(known: Facts, request: Request) -> dict:
 
 
 def _message(known: Facts, request: Request) -> can.Message:
-    form, kind = facts.need(known.can, "can"), text(request, "kind")
+    kind, data = text(request, "kind"), octets(request)
     if kind not in can.KINDS:
         raise Refusal("request", detail="there is no such kind")
     id, source, destination = (number(request, key, 0, 255) for key in ("id", "source", "destination"))
-    if kind not in form.types:
-        raise facts.Unsupported(kind)
-    return can.Message(kind, id, source, destination, octets(request))
+    return can.Message(kind, id, source, destination, data)
 
 
 def can_join(known: Facts, request: Request) -> dict:
     address = number(request, "address", 0, 255) if "address" in request else None
-    joiner = can.Joiner(known, address, number(request, "senders", 1, 16, 4))
-    events = []
+    senders, packets = number(request, "senders", 1, 16, 4), []
     for row in mappings(request, "packets"):
         packet = can.Packet(number(row, "id", 0, (1 << 29) - 1), octets(row))
-        if len(packet.data) > facts.need(known.can, "can").data_bytes:
+        if len(packet.data) > CAN_BYTES:
             raise Refusal("request", detail="a packet has too many bytes")
-        events += joiner.feed(number(row, "at", default=0), packet)
+        packets.append((number(row, "at", default=0), packet))
+    joiner = can.Joiner(known, address, senders)
+    events = [event for at, packet in packets for event in joiner.feed(at, packet)]
     if "end" in request:
         events += joiner.expire(number(request, "end"))
     return {"events": [_can_event(event) for event in events]}

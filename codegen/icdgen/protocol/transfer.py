@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from icdgen import codec
 from icdgen.protocol import crc, files
 from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Request
-from icdgen.protocol.facts import UART, Facts, need
+from icdgen.protocol.facts import UART, Facts, Step, need
 
 OUTCOMES = ("done", "refused", "timeout")
 
@@ -102,9 +102,17 @@ class Procedure:
             raise Failed(outcome["event"])
         return outcome
 
+    def step(self, name: str) -> Step:
+        """The message of a step and its fields by role. Raises `icdgen.protocol.facts.Unsupported`."""
+        return need(self.files.steps.get(name), f"file_transfer.{name}")
+
+    def number(self, name: str) -> int:
+        """A number of the ICD by its path. Raises `icdgen.protocol.facts.Unsupported`."""
+        return need(self.files.numbers.get(name), f"file_transfer.{name}")
+
     def request(self, step: str, repeat: bool = True, /, **values: int | bytes) -> Request:
         """The telecommand of a step."""
-        part = self.files.steps[step]
+        part = self.step(step)
         message, raw = part.message, {}
         for field in message.fields:
             raw[field.name] = bytes(field.bits // 8) if field.type == "bytes" else field.const or 0
@@ -114,7 +122,7 @@ class Procedure:
 
     def telemetry(self, step: str) -> Generator[Request | Wait, dict | None, tuple[dict, bytes]]:
         """Requests the frame of a step: its values by role, and its bytes."""
-        part = self.files.steps[step]
+        part = self.step(step)
         assert part.message.telemetry_id is not None
         outcome = yield from self.ask(Request(TELEMETRY, part.message.telemetry_id, repeat=True))
         if outcome["event"] != "done":
@@ -134,7 +142,7 @@ class Procedure:
                 return values, frame
             if self.now >= end:
                 raise Failed("timeout")
-            yield from self.wait(self.files.numbers[interval])
+            yield from self.wait(self.number(interval))
 
 
 class List(Procedure):
@@ -145,11 +153,11 @@ class List(Procedure):
         self.entries: list[dict] = []
 
     def run(self) -> Run:
-        numbers, last, again = self.files.numbers, None, 0
+        last, again = None, 0
         yield from self.telecommand("list.reset")
         while True:
             values, frame = yield from self.poll(
-                "list.information", "busy", 0, "list.poll_interval_ms", numbers["list.timeout_ms"]
+                "list.information", "busy", 0, "list.poll_interval_ms", self.number("list.timeout_ms")
             )
             if not any(frame):
                 return
@@ -199,13 +207,13 @@ class Download(Procedure):
                 return
 
     def _block(self, want: int) -> Generator[Request | Wait, dict | None, bytes]:
-        numbers, rounds = self.files.numbers, 0
+        rounds = 0
         while True:
             self.got, self.count = {}, 0
             place = {"type": self.type, "counter": self.counter, "offset": self.offset}
             yield from self.telecommand("download.load", True, **place, length=want)
             ready, _ = yield from self.poll(
-                "download.ready", "ready", 1, "download.poll_interval_ms", numbers["download.ready_timeout_ms"]
+                "download.ready", "ready", 1, "download.poll_interval_ms", self.number("download.ready_timeout_ms")
             )
             if ready["error"]:
                 raise Failed("parameter")
@@ -214,21 +222,20 @@ class Download(Procedure):
                 raise Failed("length")
             self.count = self.known.packets_of(size)
             while len(self.got) < self.count:
-                if rounds == numbers["download.rounds"]:
+                if rounds == self.number("download.rounds"):
                     raise Failed("rounds")
                 rounds += 1
                 yield from self._round()
             packets = b"".join(self.got[position] for position in range(self.count))
-            covered = packets if numbers.get("download.checksum_covers_fill") else packets[:size]
+            covered = packets if self.files.numbers.get("download.checksum_covers_fill") else packets[:size]
             if crc.compute(need(self.known.crc16, "crc16"), covered) == ready["checksum"]:
                 return packets[:size]
-            if rounds == numbers["download.rounds"]:
+            if rounds == self.number("download.rounds"):
                 raise Failed("checksum")
             if not size:
                 rounds += 1
 
     def _round(self) -> Run:
-        numbers = self.files.numbers
         if self.got:
             yield from self._send_hole_map()
         missing = [position for position in range(self.count) if position not in self.got]
@@ -239,7 +246,7 @@ class Download(Procedure):
             self.request(
                 "download.burst",
                 False,
-                length=numbers["download.message_length"],
+                length=self.number("download.message_length"),
                 ignore_hole_map=int(everything),
             )
         )
@@ -248,14 +255,20 @@ class Download(Procedure):
         if self.bus != UART:
             counter = self.files.counter_bytes
             for _ in missing:
-                outcome = yield from self.ask(Request(TELEMETRY, self.files.packet_ids[self.bus], repeat=True))
+                outcome = yield from self.ask(
+                    Request(
+                        TELEMETRY,
+                        need(self.files.packet_ids.get(self.bus), f"file_transfer.download.{self.bus}"),
+                        repeat=True,
+                    )
+                )
                 if outcome["event"] == "done":
                     data = bytes.fromhex(outcome["bytes"])
                     self.packet(self.known.number(data[:counter]), data[counter:])
             return
         self.last = max(self.last, self.now)
-        while len(self.got) < self.count and self.now < self.last + numbers["download.silence_ms"]:
-            yield Wait(self.last + numbers["download.silence_ms"])
+        while len(self.got) < self.count and self.now < self.last + self.number("download.silence_ms"):
+            yield Wait(self.last + self.number("download.silence_ms"))
 
     def _send_hole_map(self) -> Run:
         form, first = need(self.known.hole_map, "file_transfer.hole_map"), self.files.first_packet
@@ -284,11 +297,10 @@ class Upload(Procedure):
         self.sent = 0
 
     def run(self) -> Run:
-        numbers = self.files.numbers
         yield from self.telecommand(
-            "upload.initiate", destination=self.destination, block_size=numbers["upload.block_size"]
+            "upload.initiate", destination=self.destination, block_size=self.number("upload.block_size")
         )
-        timeout = numbers["upload.erase_timeout_s"] * 1000
+        timeout = self.number("upload.erase_timeout_s") * 1000
         yield from self.poll("upload.initiated", "busy", 0, "upload.poll_interval_ms", timeout)
         while self.sent < len(self.data):
             data = self.data[self.sent : self.sent + self.block]
@@ -296,15 +308,15 @@ class Upload(Procedure):
             self.sent += len(data)
 
     def _block(self, data: bytes) -> Run:
-        numbers, size, rounds = self.files.numbers, self.files.packet_bytes, 0
+        size, rounds = self.files.packet_bytes, 0
         count = self.known.packets_of(len(data))
         filled = data.ljust(count * size, bytes([self.files.fill]))
-        covered = filled if numbers.get("upload.checksum_covers_fill") else data
+        covered = filled if self.files.numbers.get("upload.checksum_covers_fill") else data
         while True:
             yield from self.telecommand("upload.begin")
             missing = list(range(count))
             while missing:
-                if rounds == numbers["upload.rounds"]:
+                if rounds == self.number("upload.rounds"):
                     raise Failed("rounds")
                 rounds += 1
                 for position in missing:
@@ -319,11 +331,11 @@ class Upload(Procedure):
                     "upload.finalize", destination=self.destination, offset=self.sent, length=len(data)
                 )
                 finalized, _ = yield from self.poll(
-                    "upload.finalized", "busy", 0, "upload.poll_interval_ms", numbers["upload.finalize_timeout_ms"]
+                    "upload.finalized", "busy", 0, "upload.poll_interval_ms", self.number("upload.finalize_timeout_ms")
                 )
                 if not finalized["error"]:
                     return
-            if rounds == numbers["upload.rounds"]:
+            if rounds == self.number("upload.rounds"):
                 raise Failed("checksum")
 
     def _missing(self, count: int) -> Generator[Request | Wait, dict | None, list[int]]:
@@ -351,7 +363,7 @@ class Erase(Procedure):
     def run(self) -> Run:
         yield from self.telecommand("erase.request", True, **self.values)
         if self.values["all"]:
-            timeout = self.files.numbers["erase.timeout_ms"]
+            timeout = self.number("erase.timeout_ms")
             yield from self.poll("erase.progress", "busy", 0, "erase.poll_interval_ms", timeout)
 
 
@@ -360,5 +372,5 @@ class Format(Procedure):
 
     def run(self) -> Run:
         yield from self.telecommand("format.request")
-        timeout = self.files.numbers["format.timeout_ms"]
+        timeout = self.number("format.timeout_ms")
         yield from self.poll("format.progress", "busy", 0, "format.poll_interval_ms", timeout)
