@@ -13,6 +13,7 @@ from pathlib import Path
 
 from icdgen import codec
 from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.protocol import ops
 from icdgen.vectors.settings import bits_of
 from tests.conformance.icds import icd_of
 
@@ -41,7 +42,10 @@ class Reference:
             request = json.loads(line.decode("utf-8"))
             if not isinstance(request, dict):
                 raise Refusal("request")
-            op = self.ops.get(key(request, "op", str))
+            name = key(request, "op", str)
+            if name in ops.OPS:
+                return ops.answer(self.icd, request)
+            op = self.ops.get(name)
             if op is None:
                 raise Refusal("request", detail="there is no such op")
             return {"ok": True, **op(request)}

@@ -1,4 +1,4 @@
-"""The golden vectors as one JSON file a node. They are data, so there is no template: see `icdgen.vectors.write`."""
+"""The golden vectors: one JSON file a node and one for the protocol. Data, so without a template: see `icdgen.vectors`."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from pathlib import PurePosixPath
 from icdgen.backends import Identifier
 from icdgen.icd.model import Icd
 
+FILE = "protocol"  # the file of the protocol's vectors, without its ending
+
 
 class VectorsBackend:
     """``icdgen --lang vectors``"""
@@ -16,12 +18,19 @@ class VectorsBackend:
     reserved: frozenset[str] = frozenset()
 
     def files(self, icd: Icd, render: object) -> Iterator[tuple[PurePosixPath, str]]:
-        """``<node>.json`` for each node, in their order."""
+        """``<node>.json`` for each node, in their order, and ``protocol.json`` if a node has a protocol."""
         from icdgen import vectors
+        from icdgen.vectors import protocol
 
         for node in icd.nodes:
             yield PurePosixPath(f"{node.name}.json"), vectors.text(vectors.make(icd, node))
+        text = protocol.text(icd)
+        if text:
+            yield PurePosixPath(f"{FILE}.json"), text
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """None: JSON strings may hold any name."""
-        return iter(())
+        """Only those of the files: JSON strings may hold any name."""
+        if any(icd.protocol_of(node) for node in icd.nodes):
+            yield Identifier("the files of the vectors", FILE, "vectors of the protocol", None)
+        for node in icd.nodes:
+            yield Identifier("the files of the vectors", node.name, f"node `{node.name}`", node.source)

@@ -41,7 +41,7 @@ class Builder:
         self.scope.units.update((u.symbol, u) for u in units)
         enums = tuple(self.each("enums", self.enum))
         self.scope.enums.update((e.name, e) for e in enums)
-        listed = self.tree.get("vocabulary")
+        listed, protocol = self.tree.get("vocabulary"), self.tree.get("protocol")
         words = tuple(w for w in (listed if isinstance(listed, list) else ()) if isinstance(w, str) and w.isalnum())
         return model.Node(
             name=self.name,
@@ -57,7 +57,7 @@ class Builder:
             includes=includes,
             vocabulary=tuple(dict.fromkeys((*self.scope.vocabulary, *words))),
             units=units,
-            protocol=plain(self.tree.get("protocol") or {}),
+            protocol=plain(protocol) if isinstance(protocol, Map) else {},
             loggable=tuple(self.each("loggable", self.loggable)),
             missing=tuple(self.each("missing", self.missing)),
             errata=tuple(self.applied.entries),
@@ -112,7 +112,9 @@ class Builder:
             table=where.get("table"),
             page=where.get("page"),
             summary=item.get("summary", ""),
-            acknowledge=item.get("acknowledge", True),
+            acknowledge=item.get("acknowledge", True) is True,
+            expects_reset=item.get("acknowledge") == "reset",
+            assumptions=tuple((key, str(why)) for key, why in (item.get("assumptions") or {}).items()),
             contains=tuple(self.each("contains", lambda p: model.Part(p["message"], p["at"]), item)),
             node=self.name,
             errata=self.applied.about(item),

@@ -155,6 +155,8 @@ class Message(_Value):
     page: int | None = None
     summary: str = ""
     acknowledge: bool = True
+    expects_reset: bool = False  # not acknowledged because the node restarts instead
+    assumptions: tuple[tuple[str, str], ...] = ()  # key and reason of what is assumed
     contains: tuple[Part, ...] = ()
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()

@@ -57,7 +57,7 @@ def _message(message: Message) -> _Object:
         table=message.table,
         page=message.page,
         summary=message.summary,
-        acknowledge=None if message.acknowledge else False,
+        acknowledge=None if message.acknowledge else "reset" if message.expects_reset else False,
         contains=[{"message": part.message, "offset": part.at} for part in message.contains],
         errata=_ids(message.errata),
     ) | {"fields": [_field(f) for f in message.fields]}

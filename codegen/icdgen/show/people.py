@@ -117,7 +117,11 @@ def _message(icd: Icd, message: Message, width: int | None) -> str:
         f"table {message.table}" if message.table else "",
         f"page {message.page}" if message.page else "",
         message.group,
-        "" if message.acknowledge else "not acknowledged",
+        (
+            ""
+            if message.acknowledge
+            else "restarts instead of acknowledging" if message.expects_reset else "not acknowledged"
+        ),
     ]
     lines = [f"{node.name}: {message.name}", "; ".join(filter(None, facts)), message.summary]
     lines += [f"From bit {part.at} it repeats {part.message}." for part in message.contains]

@@ -6,6 +6,7 @@
  * @file
  * Run Selected Program: telecommand 101, 0 bytes. Table 64.
  * Starts the program in internal flash at once.
+ * The node restarts instead of acknowledging it.
  * @note BOOT-008: Run Selected Program does not run what was selected elsewhere.
  */
 

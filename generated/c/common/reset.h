@@ -6,6 +6,7 @@
  * @file
  * Reset: telecommand 1, 1 byte. Table 10.
  * Restarts the CubeComputer.
+ * The node restarts instead of acknowledging it.
  * @note COM-028: The Reset telecommand: acknowledged or not.
  */
 

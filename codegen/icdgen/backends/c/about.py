@@ -44,7 +44,9 @@ def message(one: Message, loggable: dict[int, int]) -> list[str]:
     if one.table is not None:
         head += f" Table {one.table}."
     facts = []
-    if not one.acknowledge:
+    if one.expects_reset:
+        facts.append("The node restarts instead of acknowledging it.")
+    elif not one.acknowledge:
         facts.append("The node does not acknowledge it.")
     if one.telemetry_id in loggable:
         facts.append(f"Bit {loggable[one.telemetry_id]} of the log mask.")

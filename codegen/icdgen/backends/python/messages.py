@@ -102,7 +102,9 @@ def _documentation(message: Message) -> list[str]:
     paragraphs = [f"{prose(message.name)}: {ids}, {size}{table}."]
     if message.summary:
         paragraphs.append(sentence(message.summary))
-    if not message.acknowledge:
+    if message.expects_reset:
+        paragraphs.append("The node restarts instead of acknowledging it.")
+    elif not message.acknowledge:
         paragraphs.append("The node does not acknowledge it.")
     for part in message.contains:
         paragraphs.append(f"Repeats `{prose(part.message)}` from bit {part.at}.")

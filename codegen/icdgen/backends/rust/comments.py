@@ -31,7 +31,9 @@ def message(message: Message) -> list[str]:
         kind = f"{message.kind}, set by {message.set_id} and got by {message.get_id}"
     head = f"{prose(message.name)}: {kind}, {_bytes(message.length)}.{_table(message.table)}"
     more = [sentence(prose(message.summary))] if message.summary else []
-    if not message.acknowledge:
+    if message.expects_reset:
+        more.append("The node restarts instead of acknowledging it.")
+    elif not message.acknowledge:
         more.append("It is not acknowledged.")
     return [head, " ".join(more), *errata(message.errata)]
 

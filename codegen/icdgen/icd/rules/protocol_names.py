@@ -1,4 +1,4 @@
-"""Messages and enumeration members that the protocol section names."""
+"""Messages, fields, enumeration members and message types that the protocol section names."""
 
 from __future__ import annotations
 
@@ -11,9 +11,16 @@ from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import close_to, quote
 from icdgen.icd.tree import Map, Seq
 
-MESSAGES = ("message", "packet", "id_of", "stop_request", "set_by")  # keys that name messages
+MESSAGES = ("message", "packet", "id_of", "stop_request", "set_by", "names")  # keys that name messages
+FIELDS = ("id", "until", "until_clear", "error", "parameter")  # keys that, beside `message`, name fields of it
 # keys that name an enumeration, and the keys beside them that give its values
-MEMBERS = (("enum", "value"), ("failure_enum", "failure"), ("destination_enum", "destinations"))
+MEMBERS = (
+    ("enum", ("value", "none", "unknown_id", "length", "parameter", "checksum")),
+    ("failure_enum", ("failure",)),
+    ("destination_enum", ("destinations",)),
+)
+# keys of `can.telecommand` and `can.telemetry` that name message types
+TYPES = ("request", "extended_request", "acknowledge", "response", "extended_response", "failure")
 
 
 @rule("ICD093", whole=True)
@@ -25,16 +32,60 @@ def named_things_exist(ctx: Context) -> Iterator[Fault]:
             for key in MESSAGES:
                 for name, place in _values(section, key, str):
                     if name not in messages:
-                        close = close_to(name, messages)
-                        help = f"did you mean {quote(close)}?" if close else "names are the manual's, to the letter"
-                        yield Fault(section, place, f"there is no message {quote(name)}", help)
-            for name, key in MEMBERS:
+                        yield Fault(section, place, f"there is no message {quote(name)}", _verbatim(name, messages))
+            for name, keys in MEMBERS:
                 enum = section.get(name)
                 known = enums.get(enum) if isinstance(enum, str) else None
-                for value, place in _values(section, key, int) if known is not None else ():
-                    if value not in known:
-                        message = f"the enumeration {quote(enum)} has no member {value}"
-                        yield Fault(section, place, message, f"correct `{key}` or `{name}`")
+                for key in keys if known is not None else ():
+                    for value, place in _values(section, key, int):
+                        if value not in known:
+                            message = f"the enumeration {quote(enum)} has no member {value}"
+                            yield Fault(section, place, message, f"correct `{key}` or `{name}`")
+
+
+@rule("ICD094", whole=True)
+def named_fields_exist(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        messages = {m.name: {f.name for f in m.fields} for m in ctx.messages_of(node)}
+        for section in sections(node):
+            named: list[tuple[Map, str, str]] = []
+            if isinstance(section.get("message"), str):
+                named = [(section, key, section["message"]) for key in FIELDS if key in section]
+                fields = section.get("fields")
+                if isinstance(fields, Map):
+                    named += [(fields, key, section["message"]) for key in fields]
+            if isinstance(section.get("names"), Seq) and isinstance(section.get("field"), str):
+                named += [(section, "field", name) for name in section["names"] if isinstance(name, str)]
+            for owner, key, message in named:
+                known, field = messages.get(message), owner[key]
+                if known is not None and isinstance(field, str) and field not in known:
+                    text = f"{quote(message)} has no field {quote(field)}"
+                    yield Fault(owner, owner.at(key), text, _verbatim(field, known))
+
+
+@rule("ICD095")
+def message_types_exist(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        protocol = node.source.get("protocol")
+        can = protocol.get("can") if isinstance(protocol, Map) else None
+        types = can.get("message_types") if isinstance(can, Map) else None
+        values = types.get("values") if isinstance(types, Map) else None
+        if not isinstance(values, Seq):
+            continue
+        known = {row["name"] for row in values if isinstance(row, Map) and isinstance(row.get("name"), str)}
+        for direction in ("telecommand", "telemetry"):
+            section = can.get(direction)
+            for key in TYPES if isinstance(section, Map) else ():
+                name = section.get(key)
+                if isinstance(name, str) and name not in known:
+                    yield Fault(
+                        section, section.at(key), f"there is no message type {quote(name)}", _verbatim(name, known)
+                    )
+
+
+def _verbatim(name: str, known: set[str]) -> str:
+    close = close_to(name, known)
+    return f"did you mean {quote(close)}?" if close else "names are the manual's, to the letter"
 
 
 def _values(section: Map, key: str, kind: type) -> Iterator[tuple[object, Place]]:

@@ -6,7 +6,7 @@ use crate::support::Error;
 
 /// Run Selected Program: telecommand 101, 0 bytes. Table 64.
 ///
-/// Starts the program in internal flash at once.
+/// Starts the program in internal flash at once. The node restarts instead of acknowledging it.
 ///
 /// Erratum BOOT-008 (open): Run Selected Program does not run what was selected elsewhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

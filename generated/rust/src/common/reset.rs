@@ -6,7 +6,7 @@ use crate::support::Error;
 
 /// Reset: telecommand 1, 1 byte. Table 10.
 ///
-/// Restarts the CubeComputer.
+/// Restarts the CubeComputer. The node restarts instead of acknowledging it.
 ///
 /// Erratum COM-028 (open): The Reset telecommand: acknowledged or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

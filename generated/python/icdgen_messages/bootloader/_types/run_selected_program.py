@@ -18,6 +18,8 @@ class RunSelectedProgram(_base.Message):
 
     Starts the program in internal flash at once.
 
+    The node restarts instead of acknowledging it.
+
     Erratum BOOT-008: Run Selected Program does not run what was selected elsewhere.
     """
 
@@ -30,6 +32,7 @@ class RunSelectedProgram(_base.Message):
     IDS = (ID,)
     LENGTH = 0
     TABLE = 64
+    ACKNOWLEDGED = False
 
     @classmethod
     def from_bytes(cls, data: _base.Buffer) -> RunSelectedProgram:

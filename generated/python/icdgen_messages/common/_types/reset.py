@@ -18,6 +18,8 @@ class Reset(_base.Message):
 
     Restarts the CubeComputer.
 
+    The node restarts instead of acknowledging it.
+
     Erratum COM-028: The Reset telecommand: acknowledged or not.
     """
 
@@ -30,6 +32,7 @@ class Reset(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 10
+    ACKNOWLEDGED = False
     FIELDS = (_base.FieldInfo("magic_number", "Magic number", 0, 8, "uint", const=90),)
 
     magic_number: int

@@ -1,0 +1,113 @@
+"""Numbers of the protocol section that follow from one another, and what is assumed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.icd.model import Node
+from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.protocol import sections
+from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.wording import count as counted
+from icdgen.icd.tree import Map, Seq
+
+CAN_IDENTIFIER_BITS = 29  # of an extended CAN frame
+
+
+def _section(node: Node, *path: str) -> Map | None:
+    found: object = node.source
+    for key in ("protocol", *path):
+        found = found.get(key) if isinstance(found, Map) else None
+    return found if isinstance(found, Map) else None
+
+
+def _numbers(section: Map, *keys: str) -> tuple[int, ...] | None:
+    """The numbers under the keys, if all of them are there."""
+    found = tuple(section.get(key) for key in keys)
+    return found if all(isinstance(value, int) for value in found) else None  # type: ignore[return-value]
+
+
+@rule("ICD096")
+def markers_differ(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        framing = _section(node, "uart", "framing")
+        if framing is None:
+            continue
+        seen: dict[int, str] = {}
+        for key in ("start_of_message", "end_of_message", "escaped_data"):
+            value = framing.get(key)
+            if isinstance(value, int) and value in seen:
+                message = f"after the escape byte 0x{value:02X} means both `{seen[value]}` and `{key}`"
+                yield Fault(framing, framing.at(key), message, "each has a byte of its own")
+            elif isinstance(value, int):
+                seen[value] = key
+
+
+@rule("ICD097")
+def sizes_agree(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        can = _section(node, "can")
+        if can is not None:
+            yield from _identifier(can)
+        extended = _section(node, "can", "extended")
+        if extended is not None:
+            yield from _product(extended, "max_bytes", "max_packets", "data_bytes")
+            yield from _packets_left(can, extended)
+        files = _section(node, "file_transfer")
+        if files is not None:
+            yield from _product(files, "block_bytes", "block_packets", "packet_bytes")
+            hole_map = files.get("hole_map")
+            if isinstance(hole_map, Map):
+                yield from _product(hole_map, "bytes", "messages", "message_bytes")
+                yield from _hole_map(files, hole_map)
+
+
+def _product(section: Map, whole: str, count: str, part: str) -> Iterator[Fault]:
+    numbers = _numbers(section, whole, count, part)
+    if numbers and numbers[0] != numbers[1] * numbers[2]:
+        message = f"`{whole}` is {numbers[0]}, but `{count}` times `{part}` is {numbers[1] * numbers[2]}"
+        yield Fault(section, section.at(whole), message, f"correct `{whole}`, `{count}` or `{part}`")
+
+
+def _identifier(can: Map) -> Iterator[Fault]:
+    parts = can.get("identifier")
+    if not isinstance(parts, Seq):
+        return
+    widths = [part.get("bits") for part in parts if isinstance(part, Map)]
+    if all(isinstance(width, int) for width in widths) and sum(widths) != CAN_IDENTIFIER_BITS:
+        message = f"the parts of the identifier have {sum(widths)} bits in all, not {CAN_IDENTIFIER_BITS}"
+        yield Fault(can, can.at("identifier"), message, "correct `bits` of a part")
+
+
+def _packets_left(can: Map, extended: Map) -> Iterator[Fault]:
+    data, left, room = extended.get("data_bytes"), extended.get("packets_left_byte"), can.get("max_data_bytes")
+    if isinstance(data, int) and isinstance(left, int) and left < data:
+        message = f"byte {left} counts packets, but the data take bytes 0 to {data - 1}"
+        yield Fault(extended, extended.at("packets_left_byte"), message, f"the count stands behind the data: {data}")
+    elif isinstance(left, int) and isinstance(room, int) and left >= room:
+        message = f"byte {left} is outside a packet of {room} bytes"
+        yield Fault(extended, extended.at("packets_left_byte"), message, "correct it or `max_data_bytes`")
+
+
+def _hole_map(files: Map, hole_map: Map) -> Iterator[Fault]:
+    size, packets, count, names = (
+        hole_map.get("bytes"), files.get("block_packets"), hole_map.get("messages"), hole_map.get("names"),
+    )  # fmt: skip
+    if isinstance(size, int) and isinstance(packets, int) and packets > size * 8:
+        message = f"a hole map of {size} bytes has {size * 8} bits, a block {packets} packets"
+        yield Fault(hole_map, hole_map.at("bytes"), message, "correct `bytes` or `block_packets`")
+    if isinstance(count, int) and isinstance(names, Seq) and len(names) != count:
+        message = f"`names` has {counted(len(names), 'message')}, `messages` says {count}"
+        yield Fault(hole_map, hole_map.at("names"), message, "correct `names` or `messages`")
+
+
+@rule("ICD098")
+def assumptions_are_about_something(ctx: Context) -> Iterator[Fault]:
+    owners = [section for node in ctx.icd.nodes for section in sections(node)]
+    owners += [message.source for message, _ in ctx.messages]
+    for owner in owners:
+        assumptions = owner.get("assumptions")
+        for key in assumptions if isinstance(assumptions, Map) else ():
+            if key == "assumptions" or key not in owner:
+                message = f"`{key}` is said to be assumed, but there is no such key beside it"
+                yield Fault(owner, assumptions.keys_at[key], message, "name a key of this section")

@@ -1,0 +1,233 @@
+"""The protocol as questions and answers in JSON: what the golden vectors hold and what the testees are asked.
+
+Described in ``tests/conformance/README.md``. `answer` is the reference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from icdgen.icd.model import Icd
+from icdgen.protocol import can, crc, facts, files, i2c, logs, scripts, times, uart
+from icdgen.protocol.asked import Refusal, Request, flag, mappings, number, octets, rows, text
+from icdgen.protocol.asked import hex_bytes as _hex
+from icdgen.protocol.facts import Facts
+
+CAN_BYTES = 8  # of a classic CAN frame
+
+
+def answer(icd: Icd, request: Request) -> dict:
+    """The answer to one request. ``op`` must be one of `OPS`."""
+    try:
+        return {"ok": True, **OPS[request["op"]](_facts(icd, request), request)}
+    except Refusal as refusal:
+        return refusal.answer
+    except facts.Unsupported:
+        return {"ok": False, "error": "unsupported"}
+    except i2c.WrongLength as error:
+        return {"ok": False, "error": "length", "expected": error.expected, "actual": error.actual}
+    except can.TooLong as error:
+        return {"ok": False, "error": "too-long", "expected": error.most, "actual": error.actual}
+    except i2c.ChecksumError as error:
+        return {"ok": False, "error": "checksum", "expected": error.expected, "actual": error.actual}
+    except times.OutOfRange as error:
+        return {"ok": False, "error": "range", "field": error.part}
+    except (files.NoSuchPacket, OverflowError):
+        return {"ok": False, "error": "range"}
+
+
+def _facts(icd: Icd, request: Request) -> Facts:
+    """Those of the node that is named; without a name, of the last node that has a protocol."""
+    if "node" in request:
+        name = text(request, "node")
+        if name not in {node.name for node in icd.nodes}:
+            raise Refusal("unknown-node")
+        return facts.of(icd, icd.node(name))
+    for node in reversed(icd.nodes):
+        if icd.protocol_of(node):
+            return facts.of(icd, node)
+    raise facts.Unsupported("no node has a protocol")
+
+
+def crc8(known: Facts, request: Request) -> dict:
+    data = octets(request)
+    return {"crc": crc.compute(facts.need(known.checksum, "crc8").crc, data)}
+
+
+def crc16(known: Facts, request: Request) -> dict:
+    data = octets(request)
+    return {"crc": crc.compute(facts.need(known.crc16, "crc16"), data)}
+
+
+def uart_encode(known: Facts, request: Request) -> dict:
+    message, framing = octets(request), facts.need(known.framing, "uart")
+    if not message:
+        raise Refusal("length", expected=1, actual=0)
+    return {"bytes": uart.encode(framing, message).hex()}
+
+
+def uart_decode(known: Facts, request: Request) -> dict:
+    stream = octets(request)
+    found = uart.Decoder(facts.need(known.framing, "uart"), known.longest).feed(stream)
+    return {"frames": [event.message.hex() for event in found if event.event == uart.MESSAGE]}
+
+
+def uart_events(known: Facts, request: Request) -> dict:
+    limit = number(request, "limit", 1, known.longest, known.longest)
+    chunks = [_hex(chunk) for chunk in rows(request, "chunks")]
+    decoder = uart.Decoder(facts.need(known.framing, "uart"), limit)
+    events = []
+    for chunk in chunks:
+        for event in decoder.feed(chunk):
+            row: dict = {"event": event.event}
+            if event.event == uart.MESSAGE:
+                row.update(kind=uart.kind(known, event.message), bytes=event.message.hex())
+            events.append(row)
+    return {"events": events, "discarded": decoder.discarded, "pending": decoder.pending}
+
+
+def can_split(known: Facts, request: Request) -> dict:
+    packets = can.split(known, _message(known, request))
+    return {"packets": [{"id": packet.id, "bytes": packet.data.hex()} for packet in packets]}
+
+
+def _message(known: Facts, request: Request) -> can.Message:
+    kind, data = text(request, "kind"), octets(request)
+    if kind not in can.KINDS:
+        raise Refusal("request", detail="there is no such kind")
+    id, source, destination = (number(request, key, 0, 255) for key in ("id", "source", "destination"))
+    return can.Message(kind, id, source, destination, data)
+
+
+def can_join(known: Facts, request: Request) -> dict:
+    address = number(request, "address", 0, 255) if "address" in request else None
+    senders, packets = number(request, "senders", 1, 16, 4), []
+    for row in mappings(request, "packets"):
+        packet = can.Packet(number(row, "id", 0, (1 << 29) - 1), octets(row))
+        if len(packet.data) > CAN_BYTES:
+            raise Refusal("request", detail="a packet has too many bytes")
+        packets.append((number(row, "at", default=0), packet))
+    joiner = can.Joiner(known, address, senders)
+    events = [event for at, packet in packets for event in joiner.feed(at, packet)]
+    if "end" in request:
+        events += joiner.expire(number(request, "end"))
+    return {"events": [_can_event(event) for event in events]}
+
+
+def _can_event(event: can.Event) -> dict:
+    row: dict = {"event": event.event, "id": event.id, "source": event.source}
+    if event.message:
+        row.update(kind=event.message.kind, destination=event.message.destination, bytes=event.message.data.hex())
+    if event.event == can.INCOMPLETE:
+        row["missing"] = event.missing
+    return row
+
+
+def i2c_request(known: Facts, request: Request) -> dict:
+    kind, id, checked = text(request, "kind"), number(request, "id", 0, 255), flag(request, "crc")
+    if kind == "telemetry":
+        if id not in known.telemetry:
+            raise Refusal("unknown-id")
+        return {"write": bytes([id]).hex(), "read": i2c.read_length(known, known.telemetry[id], checked)}
+    if kind != "telecommand":
+        raise Refusal("request", detail="there is no such kind")
+    return {"write": i2c.telecommand(known, id, octets(request), checked).hex(), "read": 0}
+
+
+def i2c_reply(known: Facts, request: Request) -> dict:
+    id, data, checked = number(request, "id", 0, 255), octets(request), flag(request, "crc")
+    if id not in known.telemetry:
+        raise Refusal("unknown-id")
+    return {"bytes": i2c.reply(known, id, data, checked).hex()}
+
+
+def log_decode(known: Facts, request: Request) -> dict:
+    log = logs.decode(known, octets(request))
+    entries = [
+        {"seconds": e.seconds, "milliseconds": e.milliseconds, "frames": [_frame(f) for f in e.frames]}
+        for e in log.entries
+    ]
+    return {"mask": None if log.mask is None else log.mask.hex(), "entries": entries, "truncated": log.truncated}
+
+
+def _frame(frame: logs.Frame) -> dict:
+    return {"bit": frame.bit, "id": frame.id, "bytes": frame.data.hex()}
+
+
+def log_encode(known: Facts, request: Request) -> dict:
+    entries = [
+        (number(e, "seconds"), number(e, "milliseconds", 0, 65535), [_hex(f) for f in rows(e, "frames")])
+        for e in mappings(request, "entries")
+    ]
+    return {"bytes": logs.encode(known, octets(request, "mask"), entries).hex()}
+
+
+def log_message_decode(known: Facts, request: Request) -> dict:
+    mask, found = logs.decode_message(known, octets(request))
+    return {"mask": mask.hex(), "frames": [_frame(frame) for frame in found]}
+
+
+def log_message_encode(known: Facts, request: Request) -> dict:
+    data = [_hex(frame) for frame in rows(request, "frames")]
+    return {"bytes": logs.encode_message(known, octets(request, "mask"), data).hex()}
+
+
+def dos_time(known: Facts, request: Request) -> dict:
+    if "value" in request:
+        parts = times.unpack(known, number(request, "value"))
+        return {**{name: parts[name] for name in times.PARTS}, "valid": times.wrong(parts) is None}
+    return {"value": times.pack(known, {name: number(request, name, 0, 9999) for name in times.PARTS})}
+
+
+def hole_map(known: Facts, request: Request) -> dict:
+    packets = number(request, "packets")
+    if "bytes" in request:
+        map_ = octets(request)
+        return {"missing": files.missing(known, packets, map_)}
+    received = rows(request, "received")
+    if any(type(one) is not int for one in received):
+        raise Refusal("request", detail="`received` holds numbers")
+    map_ = files.hole_map(known, packets, received)
+    return {
+        "bytes": map_.hex(),
+        "messages": [piece.hex() for piece in files.in_messages(known, map_)],
+        "missing": files.missing(known, packets, map_),
+    }
+
+
+def index_decode(known: Facts, request: Request) -> dict:
+    entries, truncated = files.index_decode(known, octets(request))
+    return {"entries": [{**e._asdict(), "meta": e.meta.hex()} for e in entries], "truncated": truncated}
+
+
+def index_encode(known: Facts, request: Request) -> dict:
+    entries = []
+    for row in mappings(request, "entries"):
+        numbers = {key: number(row, key) for key in files.IndexEntry._fields[:-1]}
+        entries.append(files.IndexEntry(**numbers, meta=octets(row, "meta")))
+    return {"bytes": files.index_encode(known, entries).hex()}
+
+
+def identify(known: Facts, request: Request) -> dict:
+    from icdgen import codec
+
+    data = octets(request)
+    step = facts.need(known.identification, "identification")
+    try:
+        raw = codec.decode(known.node, step.message, data)
+    except codec.LengthError as error:
+        raise i2c.WrongLength(error.expected, error.actual) from None
+    found = {role: raw[name] for role, name in step.fields.items()}
+    expected = {"node_type": known.node.node_type, "interface_version": known.node.interface_version}
+    matches = all(expected[role] in (None, found[role]) for role in expected)
+    return {**found, "matches": matches}
+
+
+OPS: dict[str, Callable[[Facts, Request], dict]] = {
+    op.__name__: op
+    for op in (
+        crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
+        log_encode, log_message_decode, log_message_encode, dos_time, hole_map, index_decode, index_encode, identify,
+        scripts.client, scripts.file,
+    )
+}  # fmt: skip

@@ -1,0 +1,144 @@
+"""Scripts for the client and for the procedures: what happens at which time, and what they do then."""
+
+from __future__ import annotations
+
+from icdgen.protocol import can, transfer
+from icdgen.protocol.asked import Refusal, flag, hex_bytes, mappings, number, octets, text
+from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Machine, NotNow, Request, UnknownId
+from icdgen.protocol.facts import CAN, I2C, UART, Client, Facts
+from icdgen.protocol.i2c import WrongLength
+
+BUSES = (UART, I2C, CAN)
+
+
+def client(known: Facts, request: dict) -> dict:
+    """The op ``client``."""
+    bus = text(request, "bus")
+    if bus not in BUSES:
+        raise Refusal("request", detail="there is no such bus")
+    machine = Machine(
+        known, bus, flag(request, "crc"), number(request, "address", 0, 255, 0), _settings(known, request)
+    )
+    steps = []
+    for row in mappings(request, "script"):
+        steps.append(_client_step(machine, row))
+    return {"steps": steps}
+
+
+def _settings(known: Facts, request: dict) -> Client:
+    given, default = request.get("settings", {}), known.client
+    if not isinstance(given, dict):
+        raise Refusal("request", detail="`settings` is no object")
+    return Client(
+        number(given, "reply_timeout", 1, default=default.reply_timeout),
+        number(given, "retries", 0, 255, default.retries),
+        number(given, "poll_interval", 1, default=default.poll_interval),
+        number(given, "poll_timeout", 1, default=default.poll_timeout),
+    )
+
+
+def _client_step(machine: Machine, row: dict) -> dict:
+    now = number(row, "at")
+    step: dict[str, object] = {}
+    events: list[dict] = []
+    try:
+        if "telecommand" in row:
+            asked = Request(TELECOMMAND, number(row, "telecommand", 0, 255), octets(row), flag(row, "repeat"))
+            events = machine.start(now, asked)
+        elif "telemetry" in row:
+            events = machine.start(now, Request(TELEMETRY, number(row, "telemetry", 0, 255)))
+        elif "receive" in row:
+            events = _receive(machine, now, row)
+        else:
+            events = machine.tick(now)
+    except NotNow:
+        step = {"error": "busy"}
+    except UnknownId:
+        step = {"error": "unknown-id"}
+    except WrongLength as error:
+        step = {"error": "length", "expected": error.expected, "actual": error.actual}
+    out, machine.out = machine.out, []
+    return {**step, "out": [_sent(machine.bus, one) for one in out], "events": events, "deadline": machine.deadline}
+
+
+def _receive(machine: Machine, now: int, row: dict) -> list[dict]:
+    given = row["receive"]
+    if machine.bus == UART:
+        return machine.received(now, hex_bytes(given))
+    if machine.bus == I2C:
+        return machine.transferred(now, None if given is None else hex_bytes(given))
+    if not isinstance(given, dict):
+        raise Refusal("request", detail="`receive` is no packet")
+    return machine.packet(now, can.Packet(number(given, "id", 0, (1 << 29) - 1), octets(given)))
+
+
+def _sent(bus: str, one) -> object:
+    if bus == UART:
+        return one.hex()
+    if bus == CAN:
+        return {"id": one.id, "bytes": one.data.hex()}
+    return {"write": one[0].hex(), "read": one[1]}
+
+
+def file(known: Facts, request: dict) -> dict:
+    """The op ``file``."""
+    procedure = procedure_of(known, request)
+    steps = []
+    for row in mappings(request, "script"):
+        now, event = number(row, "at"), row.get("event")
+        if event is not None:
+            procedure.event(now, _event(event))
+        asked = procedure.next(now)
+        steps.append({"request": _asked(asked), "deadline": procedure.deadline, "result": procedure.result})
+    answer: dict = {"steps": steps}
+    if isinstance(procedure, transfer.Download):
+        answer["blocks"] = [{"offset": offset, "bytes": data.hex()} for offset, data in procedure.blocks]
+    elif isinstance(procedure, transfer.List):
+        answer["entries"] = procedure.entries
+    elif isinstance(procedure, transfer.Upload):
+        answer["sent"] = procedure.sent
+    return answer
+
+
+def _event(event: object) -> dict:
+    """An event of the client as it stands in a script: the keys that a procedure looks at."""
+    if not isinstance(event, dict) or text(event, "event") not in (*transfer.OUTCOMES, "packet"):
+        raise Refusal("request", detail="there is no such event")
+    if event["event"] == "packet":
+        number(event, "number", 0, 65535)
+    if event["event"] in ("packet", "done"):
+        octets(event)
+    return event
+
+
+def _asked(asked: Request | None) -> dict | None:
+    if asked is None:
+        return None
+    if asked.kind == TELEMETRY:
+        return {"telemetry": asked.id}
+    return {"telecommand": asked.id, "bytes": asked.data.hex(), "repeat": asked.repeat}
+
+
+def procedure_of(known: Facts, request: dict) -> transfer.Procedure:
+    """The procedure that a request of the op ``file`` means."""
+    name = text(request, "do")
+    block = number(request, "block", 1) if "block" in request else None
+    if name == "list":
+        return transfer.List(known)
+    if name == "download":
+        bus = text(request, "bus")
+        if bus not in BUSES:
+            raise Refusal("request", detail="there is no such bus")
+        size = number(request, "size") if "size" in request else None
+        return transfer.Download(
+            known, bus, number(request, "type", 0, 255), number(request, "counter", 0, 255), size, block
+        )
+    if name == "upload":
+        return transfer.Upload(known, number(request, "destination", 0, 255), octets(request), block)
+    if name == "erase":
+        return transfer.Erase(
+            known, number(request, "type", 0, 255), number(request, "counter", 0, 255), flag(request, "all")
+        )
+    if name == "format":
+        return transfer.Format(known)
+    raise Refusal("request", detail="there is no such procedure")

@@ -1,0 +1,56 @@
+"""Date and time packed into bits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from icdgen.protocol.facts import Facts, need
+
+PARTS = ("year", "month", "day", "hour", "minute", "second")
+MONTH_DAYS = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)
+
+
+class OutOfRange(ValueError):
+    """A part of the date does not exist, or does not fit its bits."""
+
+    def __init__(self, part: str) -> None:
+        super().__init__(f"the {part} does not exist or does not fit")
+        self.part = part
+
+
+def unpack(facts: Facts, value: int) -> dict[str, int]:
+    """The parts of a packed time, whatever they are."""
+    form = need(facts.time, "msdos_time")
+    return {name: (value >> p.at & (1 << p.bits) - 1) * p.factor + p.offset for name, p in form.items()}
+
+
+def pack(facts: Facts, parts: Mapping[str, int]) -> int:
+    """The packed time; what is finer than its resolution is cut off. Raises `OutOfRange`."""
+    form, value = need(facts.time, "msdos_time"), 0
+    bad = wrong(parts)
+    if bad:
+        raise OutOfRange(bad)
+    for name, part in form.items():
+        raw = (parts[name] - part.offset) // part.factor
+        if not 0 <= raw < 1 << part.bits:
+            raise OutOfRange(name)
+        value |= raw << part.at
+    return value
+
+
+def wrong(parts: Mapping[str, int]) -> str | None:
+    """The first part of a date and time that does not exist."""
+    limits = {"month": (1, 12), "hour": (0, 23), "minute": (0, 59), "second": (0, 59)}
+    for name in PARTS:
+        if name == "day":
+            limits["day"] = 1, days(parts["year"], parts["month"])
+        low, high = limits.get(name, (parts[name], parts[name]))
+        if not low <= parts[name] <= high:
+            return name
+    return None
+
+
+def days(year: int, month: int) -> int:
+    """Days of a month."""
+    leap = month == 2 and ((year % 4 == 0 and year % 100 != 0) or year % 400 == 0)
+    return MONTH_DAYS[month - 1] + leap

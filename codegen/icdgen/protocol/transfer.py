@@ -1,0 +1,376 @@
+"""Procedures over a client: list of files, download, upload, erasing, formatting.
+
+A procedure says which request comes next and is told what became of it. It knows neither clock nor bus: `next` gives the
+request, or None while there is nothing to send; `event` takes the events of the client.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass
+
+from icdgen import codec
+from icdgen.protocol import crc, files
+from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Request
+from icdgen.protocol.facts import UART, Facts, Step, need
+
+OUTCOMES = ("done", "refused", "timeout")
+
+
+class Failed(Exception):
+    """Why a procedure cannot go on: "refused", "timeout", "parameter", "length", "rounds", "checksum", "error"."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """Nothing to send until then, or until something comes."""
+
+    until: int
+
+
+Run = Generator["Request | Wait", "dict | None", None]
+
+
+class Procedure:
+    """What all procedures share. ``result``: None while it runs, then "done" or why it failed."""
+
+    def __init__(self, known: Facts) -> None:
+        self.known, self.files = known, need(known.files, "file_transfer")
+        self.now = 0
+        self.result: str | None = None
+        self.asked = False  # a request was given out, its outcome is waited for
+        self.want: Request | Wait | None = None
+        self.body: Run | None = None
+
+    def run(self) -> Run:
+        raise NotImplementedError
+
+    @property
+    def deadline(self) -> int | None:
+        """When `next` wants to be called at the latest; None: when something has come."""
+        return self.want.until if isinstance(self.want, Wait) else None
+
+    def next(self, now: int) -> Request | None:
+        """The next request, once."""
+        self.now = now
+        if self.body is None:
+            self.body = self.run()
+            self._resume(None)
+        while isinstance(self.want, Wait) and now >= self.want.until:
+            self._resume(None)
+        if isinstance(self.want, Request) and not self.asked:
+            self.asked = True
+            return self.want
+        return None
+
+    def event(self, now: int, event: dict) -> None:
+        """Takes an event of the client."""
+        self.now = now
+        if event["event"] == "packet":
+            self.packet(event["number"], bytes.fromhex(event["bytes"]))
+        elif event["event"] in OUTCOMES and self.asked:
+            self.asked = False
+            self._resume(event)
+
+    def packet(self, number: int, data: bytes) -> None:
+        """Takes a download packet."""
+
+    def _resume(self, event: dict | None) -> None:
+        try:
+            assert self.body
+            self.want = self.body.send(event)
+        except StopIteration:
+            self.want, self.result = None, "done"
+        except Failed as failure:
+            self.want, self.result = None, str(failure)
+
+    def ask(self, request: Request) -> Generator[Request | Wait, dict | None, dict]:
+        """A request; its outcome."""
+        outcome = yield request
+        assert outcome
+        return outcome
+
+    def wait(self, milliseconds: int) -> Generator[Request | Wait, dict | None, None]:
+        yield Wait(self.now + milliseconds)
+
+    def telecommand(
+        self, step: str, repeat: bool = True, **values: int | bytes
+    ) -> Generator[Request | Wait, dict | None, dict]:
+        """Sends the telecommand of a step with values by role; others as a fresh message has them."""
+        outcome = yield from self.ask(self.request(step, repeat, **values))
+        if outcome["event"] != "done":
+            raise Failed(outcome["event"])
+        return outcome
+
+    def step(self, name: str) -> Step:
+        """The message of a step and its fields by role. Raises `icdgen.protocol.facts.Unsupported`."""
+        return need(self.files.steps.get(name), f"file_transfer.{name}")
+
+    def number(self, name: str) -> int:
+        """A number of the ICD by its path. Raises `icdgen.protocol.facts.Unsupported`."""
+        return need(self.files.numbers.get(name), f"file_transfer.{name}")
+
+    def request(self, step: str, repeat: bool = True, /, **values: int | bytes) -> Request:
+        """The telecommand of a step."""
+        part = self.step(step)
+        message, raw = part.message, {}
+        for field in message.fields:
+            raw[field.name] = bytes(field.bits // 8) if field.type == "bytes" else field.const or 0
+        raw.update({part.fields[role]: value for role, value in values.items()})
+        assert message.telecommand_id is not None
+        return Request(TELECOMMAND, message.telecommand_id, codec.encode(self.known.node, message, raw), repeat)
+
+    def telemetry(self, step: str) -> Generator[Request | Wait, dict | None, tuple[dict, bytes]]:
+        """Requests the frame of a step: its values by role, and its bytes."""
+        part = self.step(step)
+        assert part.message.telemetry_id is not None
+        outcome = yield from self.ask(Request(TELEMETRY, part.message.telemetry_id, repeat=True))
+        if outcome["event"] != "done":
+            raise Failed(outcome["event"])
+        frame = bytes.fromhex(outcome["bytes"])
+        raw = codec.decode(self.known.node, part.message, frame)
+        return {role: raw[name] for role, name in part.fields.items()}, frame
+
+    def poll(
+        self, step: str, role: str, wanted: int, interval: str, timeout: int
+    ) -> Generator[Request | Wait, dict | None, tuple[dict, bytes]]:
+        """Requests the frame until the flag is as wanted."""
+        end = self.now + timeout
+        while True:
+            values, frame = yield from self.telemetry(step)
+            if values[role] == wanted or values.get("error"):
+                return values, frame
+            if self.now >= end:
+                raise Failed("timeout")
+            yield from self.wait(self.number(interval))
+
+
+class List(Procedure):
+    """The files of the node, one after the other, in ``entries``: values of the information frame by role."""
+
+    def __init__(self, known: Facts) -> None:
+        super().__init__(known)
+        self.entries: list[dict] = []
+
+    def run(self) -> Run:
+        last, again = None, 0
+        yield from self.telecommand("list.reset")
+        while True:
+            values, frame = yield from self.poll(
+                "list.information", "busy", 0, "list.poll_interval_ms", self.number("list.timeout_ms")
+            )
+            if not any(frame):
+                return
+            if frame != last:
+                self.entries.append({role: value for role, value in values.items() if role != "busy"})
+                again = 0
+            elif again > self.known.client.retries:
+                raise Failed("timeout")
+            last, again = frame, again + 1
+            # Sent once: if only its acknowledge was lost, the next frame tells that it arrived.
+            outcome = yield from self.ask(self.request("list.advance", False))
+            if outcome["event"] == "refused":
+                raise Failed("refused")
+
+
+class Download(Procedure):
+    """A file from the node, block by block, in ``blocks``. ``size`` None: as much as there is, as of the index file."""
+
+    def __init__(
+        self, known: Facts, bus: str, type: int, counter: int, size: int | None, block: int | None = None
+    ) -> None:
+        super().__init__(known)
+        self.bus, self.type, self.counter, self.size = bus, type, counter, size
+        self.block = min(block or self.files.block_bytes, self.files.block_bytes)
+        self.blocks: list[tuple[int, bytes]] = []
+        self.offset = 0
+        self.got: dict[int, bytes] = {}  # packets of this block by position
+        self.count = 0
+        self.last = 0  # when the last packet came
+
+    def packet(self, number: int, data: bytes) -> None:
+        position = number - self.files.first_packet
+        if 0 <= position < self.count:
+            self.got.setdefault(position, data)
+            self.last = self.now
+            if len(self.got) == self.count and isinstance(self.want, Wait):
+                self.want = Wait(self.now)
+
+    def run(self) -> Run:
+        while self.size is None or self.offset < self.size:
+            want = self.block if self.size is None else min(self.block, self.size - self.offset)
+            data = yield from self._block(want)
+            if data:
+                self.blocks.append((self.offset, data))
+                self.offset += len(data)
+            if self.size is None and len(data) < want:
+                return
+
+    def _block(self, want: int) -> Generator[Request | Wait, dict | None, bytes]:
+        rounds = 0
+        while True:
+            self.got, self.count = {}, 0
+            place = {"type": self.type, "counter": self.counter, "offset": self.offset}
+            yield from self.telecommand("download.load", True, **place, length=want)
+            ready, _ = yield from self.poll(
+                "download.ready", "ready", 1, "download.poll_interval_ms", self.number("download.ready_timeout_ms")
+            )
+            if ready["error"]:
+                raise Failed("parameter")
+            size = ready["length"]
+            if size > want or (self.size is not None and size != want):
+                raise Failed("length")
+            self.count = self.known.packets_of(size)
+            while len(self.got) < self.count:
+                if rounds == self.number("download.rounds"):
+                    raise Failed("rounds")
+                rounds += 1
+                yield from self._round()
+            packets = b"".join(self.got[position] for position in range(self.count))
+            covered = packets if self.files.numbers.get("download.checksum_covers_fill") else packets[:size]
+            if crc.compute(need(self.known.crc16, "crc16"), covered) == ready["checksum"]:
+                return packets[:size]
+            if rounds == self.number("download.rounds"):
+                raise Failed("checksum")
+            if not size:
+                rounds += 1
+
+    def _round(self) -> Run:
+        if self.got:
+            yield from self._send_hole_map()
+        missing = [position for position in range(self.count) if position not in self.got]
+        everything = not self.got
+        self.last = self.now
+        # Sent once: that packets come, or none, tells more than its acknowledge.
+        outcome = yield from self.ask(
+            self.request(
+                "download.burst",
+                False,
+                length=self.number("download.message_length"),
+                ignore_hole_map=int(everything),
+            )
+        )
+        if outcome["event"] == "refused":
+            raise Failed("refused")
+        if self.bus != UART:
+            counter = self.files.counter_bytes
+            for _ in missing:
+                outcome = yield from self.ask(
+                    Request(
+                        TELEMETRY,
+                        need(self.files.packet_ids.get(self.bus), f"file_transfer.download.{self.bus}"),
+                        repeat=True,
+                    )
+                )
+                if outcome["event"] == "done":
+                    data = bytes.fromhex(outcome["bytes"])
+                    self.packet(self.known.number(data[:counter]), data[counter:])
+            return
+        self.last = max(self.last, self.now)
+        while len(self.got) < self.count and self.now < self.last + self.number("download.silence_ms"):
+            yield Wait(self.last + self.number("download.silence_ms"))
+
+    def _send_hole_map(self) -> Run:
+        form, first = need(self.known.hole_map, "file_transfer.hole_map"), self.files.first_packet
+        map_ = files.hole_map(self.known, self.count, [first + position for position in self.got])
+        for message, piece in list(zip(form.messages, files.in_messages(self.known, map_), strict=True))[
+            : self._maps()
+        ]:
+            assert message.telecommand_id is not None
+            data = codec.encode(self.known.node, message, {form.field: piece})
+            outcome = yield from self.ask(Request(TELECOMMAND, message.telecommand_id, data, repeat=True))
+            if outcome["event"] != "done":
+                raise Failed(outcome["event"])
+
+    def _maps(self) -> int:
+        """Messages that carry the hole map of this block."""
+        return -(-self.count // (need(self.known.hole_map, "file_transfer.hole_map").message_bytes * 8))
+
+
+class Upload(Procedure):
+    """A file to the node, block by block. ``sent``: bytes that are committed."""
+
+    def __init__(self, known: Facts, destination: int, data: bytes, block: int | None = None) -> None:
+        super().__init__(known)
+        self.destination, self.data = destination, data
+        self.block = min(block or self.files.block_bytes, self.files.block_bytes)
+        self.sent = 0
+
+    def run(self) -> Run:
+        yield from self.telecommand(
+            "upload.initiate", destination=self.destination, block_size=self.number("upload.block_size")
+        )
+        timeout = self.number("upload.erase_timeout_s") * 1000
+        yield from self.poll("upload.initiated", "busy", 0, "upload.poll_interval_ms", timeout)
+        while self.sent < len(self.data):
+            data = self.data[self.sent : self.sent + self.block]
+            yield from self._block(data)
+            self.sent += len(data)
+
+    def _block(self, data: bytes) -> Run:
+        size, rounds = self.files.packet_bytes, 0
+        count = self.known.packets_of(len(data))
+        filled = data.ljust(count * size, bytes([self.files.fill]))
+        covered = filled if self.files.numbers.get("upload.checksum_covers_fill") else data
+        while True:
+            yield from self.telecommand("upload.begin")
+            missing = list(range(count))
+            while missing:
+                if rounds == self.number("upload.rounds"):
+                    raise Failed("rounds")
+                rounds += 1
+                for position in missing:
+                    packet = filled[position * size : (position + 1) * size]
+                    yield from self.telecommand(
+                        "upload.packet", False, number=self.files.first_packet + position, bytes=packet
+                    )
+                missing = yield from self._missing(count)
+            checksum, _ = yield from self.telemetry("upload.checksum")
+            if checksum["checksum"] == crc.compute(need(self.known.crc16, "crc16"), covered):
+                yield from self.telecommand(
+                    "upload.finalize", destination=self.destination, offset=self.sent, length=len(data)
+                )
+                finalized, _ = yield from self.poll(
+                    "upload.finalized", "busy", 0, "upload.poll_interval_ms", self.number("upload.finalize_timeout_ms")
+                )
+                if not finalized["error"]:
+                    return
+            if rounds == self.number("upload.rounds"):
+                raise Failed("checksum")
+
+    def _missing(self, count: int) -> Generator[Request | Wait, dict | None, list[int]]:
+        """Positions of the packets that the node has not."""
+        form = need(self.known.hole_map, "file_transfer.hole_map")
+        map_ = b""
+        for message in form.messages[: -(-count // (form.message_bytes * 8))]:
+            assert message.telemetry_id is not None
+            outcome = yield from self.ask(Request(TELEMETRY, message.telemetry_id, repeat=True))
+            if outcome["event"] != "done":
+                raise Failed(outcome["event"])
+            raw = codec.decode(self.known.node, message, bytes.fromhex(outcome["bytes"]))
+            map_ += raw[form.field]  # type: ignore[operator]
+        lost = files.missing(self.known, count, map_.ljust(form.bytes, b"\0"))
+        return [number - self.files.first_packet for number in lost]
+
+
+class Erase(Procedure):
+    """Deletes a file, or all of them: then it is done when the node is no longer busy."""
+
+    def __init__(self, known: Facts, type: int, counter: int, all: bool) -> None:
+        super().__init__(known)
+        self.values = {"type": type, "counter": counter, "all": int(all)}
+
+    def run(self) -> Run:
+        yield from self.telecommand("erase.request", True, **self.values)
+        if self.values["all"]:
+            timeout = self.number("erase.timeout_ms")
+            yield from self.poll("erase.progress", "busy", 0, "erase.poll_interval_ms", timeout)
+
+
+class Format(Procedure):
+    """Formats the medium."""
+
+    def run(self) -> Run:
+        yield from self.telecommand("format.request")
+        timeout = self.number("format.timeout_ms")
+        yield from self.poll("format.progress", "busy", 0, "format.poll_interval_ms", timeout)

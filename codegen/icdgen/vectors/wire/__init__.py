@@ -1,0 +1,1 @@
+"""What the protocol layer is asked: requests made from the protocol facts of a node, a module a theme."""

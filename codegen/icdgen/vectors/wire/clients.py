@@ -1,0 +1,253 @@
+"""Scripts of the client on each bus: replies, refusals, silence, late and foreign messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from random import Random
+
+from icdgen import codec
+from icdgen.icd.model import CONFIGURATION, Message
+from icdgen.protocol import can, i2c, uart
+from icdgen.protocol import logs as log_files
+from icdgen.protocol.facts import CAN, I2C, UART, Facts
+
+Requests = Iterator[tuple[str, dict]]
+
+SETTINGS = {"reply_timeout": 100, "retries": 2, "poll_interval": 10, "poll_timeout": 50}
+OURS = 0x42
+
+
+class Sample:
+    """Messages of the node that the scripts speak of."""
+
+    def __init__(self, known: Facts, source: Random) -> None:
+        self.known = known
+        sent = known.telecommands.values()
+        acknowledged = [m for m in sent if m.acknowledge and m.kind != CONFIGURATION]
+        self.plain: Message = max(acknowledged, key=lambda m: (m.length <= 8, m.length))
+        self.long: Message = max(sent, key=lambda m: m.length)
+        self.setting = next((m for m in sent if m.kind == CONFIGURATION), None)
+        self.silent = next((m for m in sent if not m.acknowledge and not m.expects_reset), None)
+        self.reset = next((m for m in sent if m.expects_reset), None)
+        self.frame: Message = next(m for m in known.telemetry.values() if m.length > 1)
+        self.wide: Message = max(known.telemetry.values(), key=lambda m: m.length)
+        self.source = source
+
+    def ask(self, at: int, message: Message, **more: object) -> dict:
+        return {
+            "at": at,
+            "telecommand": message.telecommand_id,
+            "bytes": self.source.randbytes(message.length).hex(),
+            **more,
+        }
+
+    def request(self, at: int, message: Message) -> dict:
+        return {"at": at, "telemetry": message.telemetry_id}
+
+
+def scripts(known: Facts) -> Requests:
+    """Everything that is asked of the client."""
+    if not known.telecommands or not known.telemetry:
+        return
+    sample = Sample(known, Random(f"{known.node.name} client"))
+    if known.framing and known.acknowledge:
+        for why, rows in _uart(known, sample):
+            yield f"UART: {why}", _op(UART, rows)
+        if known.checksum and UART in known.checksum.telecommand_buses:
+            for why, rows in _checked(known, sample):
+                yield f"UART with checksum: {why}", _op(UART, rows, crc=True)
+    if known.polled and known.i2c_address is not None:
+        for checked in (False, True) if known.checksum else (False,):
+            for why, rows in _i2c(known, sample, checked):
+                yield f"I2C{' with checksum' * checked}: {why}", _op(I2C, rows, **({"crc": True} if checked else {}))
+    if known.can:
+        for why, rows in _can(known, sample):
+            yield f"CAN: {why}", _op(CAN, rows, address=OURS)
+
+
+def _op(bus: str, script: list[dict], **more: object) -> dict:
+    return {"op": "client", "bus": bus, **more, "settings": SETTINGS, "script": script}
+
+
+def _line(known: Facts, message: bytes) -> str:
+    assert known.framing
+    return uart.encode(known.framing, message).hex()
+
+
+def _acknowledge(known: Facts, message: Message, code: int = 0) -> str:
+    form = known.acknowledge
+    assert form and message.telecommand_id is not None
+    data = bytearray(form.length)
+    data[form.id_at], data[form.error_at] = message.telecommand_id, code
+    return _line(known, bytes(data))
+
+
+def _uart(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict]]]:
+    def ack(at: int, message: Message, code: int = 0) -> dict:
+        return {"at": at, "receive": _acknowledge(known, message, code)}
+
+    def reply(at: int, message: Message, more: int = 0) -> dict:
+        data = s.source.randbytes(message.length + more)
+        return {"at": at, "receive": _line(known, bytes([message.telemetry_id or 0]) + data)}
+
+    plain, frame = s.plain, s.frame
+    other = next(m for m in known.telecommands.values() if m.acknowledge and m is not plain)
+    yield "a telecommand and its acknowledge", [s.ask(0, plain), ack(30, plain), s.ask(30, plain), ack(40, plain)]
+    for name, code in known.errors.items():
+        if name != "none":
+            yield f"refused: {name}", [s.ask(0, plain), ack(30, plain, code)]
+    yield "refused with a code that has no name", [s.ask(0, plain), ack(30, plain, 200)]
+    yield "the next before the acknowledge", [s.ask(0, plain), s.ask(5, plain), s.request(5, frame), ack(30, plain)]
+    yield "no acknowledge", [s.ask(0, plain), {"at": 99}, {"at": 100}, s.request(101, frame), reply(102, frame)]
+    yield "no acknowledge, and it may be repeated", [
+        s.ask(0, plain, repeat=True), {"at": 100}, {"at": 200}, {"at": 299}, {"at": 300}, {"at": 1000},
+    ]  # fmt: skip
+    yield "a late acknowledge is not that of the next with the same id", [
+        s.ask(0, plain, repeat=True), {"at": 100}, ack(120, plain), s.ask(125, plain), ack(130, plain), {"at": 219},
+        {"at": 220}, ack(230, plain),
+    ]  # fmt: skip
+    yield "after a late acknowledge another id need not wait", [
+        s.ask(0, plain, repeat=True), {"at": 100}, ack(120, plain), s.ask(125, other), ack(130, plain), ack(140, other),
+    ]  # fmt: skip
+    yield "an acknowledge that nobody waits for", [ack(0, plain), s.request(1, frame), ack(2, plain), reply(3, frame)]
+    yield "the acknowledge of another telecommand", [s.ask(0, plain), ack(1, other), ack(2, plain)]
+    yield "a frame", [s.request(0, frame), reply(30, frame)]
+    yield "the longest frame and the longest telecommand", [s.request(0, s.wide), reply(90, s.wide), s.ask(91, s.long)]
+    yield "a frame that comes in pieces, after noise", [
+        s.request(0, frame), {"at": 1, "receive": "0055" + reply(1, frame)["receive"][:6]}, {"at": 2},
+        {"at": 3, "receive": "00" * (frame.length - 1) + "1fff"},
+    ]  # fmt: skip
+    yield "a frame that comes at the third try", [s.request(0, frame), {"at": 100}, {"at": 200}, reply(250, frame)]
+    yield "a frame that never comes", [s.request(0, frame), {"at": 100}, {"at": 200}, {"at": 300}]
+    yield "time stands still, then jumps", [s.request(0, frame), {"at": 5000}, {"at": 5000}, reply(5001, frame)]
+    yield "a frame that is too long", [s.request(0, frame), reply(1, frame, 1), reply(2, frame)]
+    yield "a frame that was not asked for", [s.request(0, frame), reply(1, s.wide), reply(2, frame)]
+    yield "errors in the stream", [
+        s.request(0, frame), {"at": 1, "receive": "1f7f901f00"}, {"at": 2, "receive": "1f7f1fff1f7f90"}, reply(3, frame),
+    ]  # fmt: skip
+    if s.setting:
+        yield "a setting is repeated", [s.ask(0, s.setting), {"at": 100}, ack(110, s.setting)]
+    if s.silent:
+        yield "not acknowledged", [s.ask(0, s.silent), s.ask(0, s.silent), s.request(0, frame), reply(9, frame)]
+    if s.reset:
+        yield "a reset", [s.ask(0, s.reset), ack(5, s.reset)]
+    unknown = next(id for id in range(256) if id not in known.telecommands)
+    yield "an unknown id", [{"at": 0, "telecommand": unknown, "bytes": ""}, {"at": 0, "telemetry": 0}]
+    yield "a wrong length", [{"at": 0, "telecommand": plain.telecommand_id, "bytes": "00" * (plain.length + 1)}]
+    if known.files and UART in known.files.packet_ids:
+        data = bytes([known.files.packet_ids[UART]]) + s.source.randbytes(
+            known.files.counter_bytes + known.files.packet_bytes
+        )
+        yield "download packets", [{"at": 0, "receive": _line(known, data) * 2}]
+    if known.mask and known.log_message:
+        log = log_files.encode_message(known, bytes(known.mask.size), [])
+        yield "an unsolicited log while a reply is awaited", [
+            s.request(0, frame), {"at": 1, "receive": _line(known, log)}, reply(2, frame),
+        ]  # fmt: skip
+
+
+def _checked(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict]]]:
+    code = known.errors.get("checksum")
+    if code is None:
+        return
+    bad = {"receive": _acknowledge(known, s.plain, code)}
+    good = {"receive": _acknowledge(known, s.plain)}
+    yield "sent again after a wrong checksum", [s.ask(0, s.plain), {"at": 1, **bad}, {"at": 2, **good}]
+    yield "always a wrong checksum", [s.ask(0, s.plain), *({"at": at, **bad} for at in range(1, 5))]
+
+
+def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dict]]]:
+    polled = known.polled
+    assert polled
+    checked_frames = bool(checked and known.checksum and I2C in known.checksum.telemetry_buses)
+
+    def frame(message: Message, data: bytes) -> str:
+        return i2c.telecommand(known, message.telemetry_id or 0, data, checked_frames)[1:].hex()
+
+    def state(at: int, message: Message, processed: int, code: int = 0) -> dict:
+        raw: dict = {field.name: 0 for field in polled.message.fields}
+        raw[polled.id], raw[polled.processed] = message.telecommand_id, processed
+        raw[polled.error], raw[polled.parameter] = code, 7 if code else 0
+        return {"at": at, "receive": frame(polled.message, codec.encode(known.node, polled.message, raw))}
+
+    plain, wide = s.plain, s.frame
+    other = next(m for m in known.telecommands.values() if m is not plain)
+    written, failed = {"at": 1, "receive": ""}, {"receive": None}
+    yield "a telecommand, polled until it is processed", [
+        s.ask(0, plain), written, {"at": 10}, {"at": 11}, state(12, plain, 0), {"at": 22}, state(23, plain, 1),
+    ]  # fmt: skip
+    yield "the acknowledge is still that of another telecommand", [
+        s.ask(0, plain), written, {"at": 11}, state(12, other, 1), {"at": 22}, state(23, plain, 1),
+    ]  # fmt: skip
+    for name, code in known.errors.items():
+        yield f"outcome {name}", [s.ask(0, plain), written, {"at": 11}, state(12, plain, 1, code)]
+    yield "never processed", [
+        s.ask(0, plain), written, *(row for at in range(11, 100, 11) for row in ({"at": at}, state(at + 1, plain, 0))),
+    ]  # fmt: skip
+    yield "polling fails once", [
+        s.ask(0, plain),
+        written,
+        {"at": 11},
+        {"at": 12, **failed},
+        {"at": 22},
+        state(23, plain, 1),
+    ]
+    yield "the write fails", [s.ask(0, plain), {"at": 1, **failed}]
+    yield "the write fails, and it may be repeated", [
+        s.ask(0, plain, repeat=True), {"at": 1, **failed}, {"at": 11}, {"at": 12, **failed}, {"at": 22}, {"at": 23, **failed},
+    ]  # fmt: skip
+    yield "the driver says nothing", [
+        s.request(0, wide),
+        {"at": 100},
+        {"at": 110},
+        {"at": 210},
+        {"at": 220},
+        {"at": 320},
+    ]
+    yield "a frame", [s.request(0, wide), {"at": 1, "receive": frame(wide, bytes(range(wide.length)))}]
+    yield "a frame of the wrong length, then the right one", [
+        s.request(0, wide), {"at": 1, "receive": "00"}, {"at": 11}, {"at": 12, "receive": frame(wide, bytes(wide.length))},
+    ]  # fmt: skip
+    if checked_frames:
+        broken = bytes([1]).hex() + frame(wide, bytes(wide.length))[2:]
+        yield "a frame with a wrong checksum", [s.request(0, wide), *({"at": at, "receive": broken} for at in (1, 12))]
+    if s.silent:
+        yield "not acknowledged", [s.ask(0, s.silent), written, s.ask(2, s.silent), {"at": 3, "receive": ""}]
+    yield "a transfer that was not asked for", [{"at": 0, "receive": "00"}]
+
+
+def _can(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict]]]:
+    assert known.can
+    node = known.can.node_address
+
+    def come(at: int, kind: str, id: int | None, data: bytes = b"", source: int = node) -> list[dict]:
+        packets = can.split(known, can.Message(kind, id or 0, source, OURS, data))
+        return [{"at": at, "receive": {"id": p.id, "bytes": p.data.hex()}} for p in packets]
+
+    plain, frame, wide = s.plain, s.frame, s.wide
+    id, frame_id = plain.telecommand_id, frame.telemetry_id
+    yield "a telecommand and its acknowledge", [s.ask(0, plain), *come(5, "acknowledge", id)]
+    yield "a long telecommand", [s.ask(0, s.long), *come(5, "acknowledge", s.long.telecommand_id)]
+    yield "refused", [s.ask(0, plain), *come(5, "refusal", id)]
+    yield "a request refused", [s.request(0, frame), *come(5, "request_refusal", frame_id)]
+    yield "a frame", [s.request(0, frame), *come(5, "reply", frame_id, bytes(frame.length))]
+    data = s.source.randbytes(wide.length)
+    packets = come(5, "reply", wide.telemetry_id, data)
+    yield "a long frame", [s.request(0, wide), *packets]
+    if len(packets) > 1:
+        yield "a long frame, turned round", [s.request(0, wide), *packets[::-1]]
+        again = [{**row, "at": 105} for row in packets]
+        yield "a lost packet, and the frame once more", [s.request(0, wide), *packets[1:], {"at": 100}, *again]
+    yield "a frame that is too short", [s.request(0, frame), *come(5, "reply", frame_id, bytes(1)), {"at": 100}]
+    yield "from another node", [
+        s.ask(0, plain),
+        *come(5, "acknowledge", id, source=node ^ 2),
+        *come(6, "acknowledge", id),
+    ]
+    yield "to somebody else", [
+        s.ask(0, plain), {"at": 1, "receive": {"id": come(1, "acknowledge", id)[0]["receive"]["id"] ^ 1, "bytes": ""}},
+    ]  # fmt: skip
+    yield "no reply", [s.request(0, frame), {"at": 100}, {"at": 200}, {"at": 300}]
+    yield "an acknowledge that nobody waits for", come(0, "acknowledge", id)
+    if s.silent:
+        yield "not acknowledged", [s.ask(0, s.silent), s.ask(0, s.silent)]

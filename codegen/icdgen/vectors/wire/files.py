@@ -1,0 +1,61 @@
+"""Packed times, hole maps, the index file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from random import Random
+
+from icdgen.protocol import files as reference
+from icdgen.protocol.facts import Facts
+
+Requests = Iterator[tuple[str, dict]]
+
+
+def requests(known: Facts, source: Random) -> Requests:
+    """Packed times, hole maps, the index file."""
+    if known.time:
+        for value in (
+            0,
+            0xFFFFFFFF,
+            0x00210000,
+            *(1 << bit for bit in range(32)),
+            *(source.getrandbits(32) for _ in range(20)),
+        ):
+            yield f"{value:08x}", {"op": "dos_time", "value": value}
+        dates = [
+            (1980, 1, 1, 0, 0, 0), (2000, 2, 29, 12, 30, 31), (2020, 11, 3, 23, 59, 59), (2107, 12, 31, 23, 59, 58),
+            (1979, 12, 31, 0, 0, 0), (2108, 1, 1, 0, 0, 0), (2100, 2, 29, 0, 0, 0), (2021, 4, 31, 0, 0, 0),
+            (2021, 0, 1, 0, 0, 0), (2021, 13, 1, 0, 0, 0), (2021, 1, 0, 0, 0, 0), (2021, 1, 1, 24, 0, 0),
+            (2021, 1, 1, 0, 60, 0), (2021, 1, 1, 0, 0, 60),
+        ]  # fmt: skip
+        for date in dates:
+            yield "a date", {
+                "op": "dos_time",
+                **dict(zip(("year", "month", "day", "hour", "minute", "second"), date, strict=True)),
+            }
+    if known.hole_map and known.files:
+        most, first = known.hole_map.bytes * 8, known.files.first_packet
+        for count in (0, 1, 3, 8, 9, most - 1, most):
+            every = range(first, first + count)
+            for received in ([], list(every), [n for n in every if n % 3], source.sample(every, count // 2)):
+                yield f"{count} packets", {"op": "hole_map", "packets": count, "received": received}
+        yield "too many packets", {"op": "hole_map", "packets": most + 1, "received": []}
+        yield "a packet beyond the end", {"op": "hole_map", "packets": 3, "received": [first + 3]}
+        for count in (0, 5, most):
+            yield "any map", {"op": "hole_map", "packets": count, "bytes": source.randbytes(known.hole_map.bytes).hex()}
+        yield "a map that is too short", {"op": "hole_map", "packets": 1, "bytes": "00"}
+    if known.index:
+        index = known.index
+        entries: list[dict] = []
+        for _ in range(3):
+            sizes = {role: place.bytes for role, place in index.fields.items()}
+            entries.append(
+                {r: source.randbytes(n).hex() if r == "meta" else source.getrandbits(8 * n) for r, n in sizes.items()}
+            )
+        made = [reference.IndexEntry(**{**e, "meta": bytes.fromhex(e["meta"])}) for e in entries]
+        data = reference.index_encode(known, made)
+        yield "three entries", {"op": "index_encode", "entries": entries}
+        for size in (0, 1, index.entry_bytes, len(data) - 1, len(data)):
+            yield f"{size} of {len(data)} bytes", {"op": "index_decode", "bytes": data[:size].hex()}
+        yield "meta-data that are too short", {"op": "index_encode", "entries": [{**entries[0], "meta": "00"}]}
+        yield "a number that does not fit", {"op": "index_encode", "entries": [{**entries[0], "counter": 256}]}

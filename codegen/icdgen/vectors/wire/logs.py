@@ -1,0 +1,62 @@
+"""Log files and unsolicited logs, whole and truncated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from random import Random
+
+from icdgen.protocol import logs as log_files
+from icdgen.protocol.facts import Facts
+
+Requests = Iterator[tuple[str, dict]]
+
+
+def masks(known: Facts) -> list[bytes]:
+    layout = known.mask
+    assert layout
+    none = bytes(layout.size)
+    masks = [none]
+    masks += [(1 << bit).to_bytes(layout.size, "little") for bit in sorted(layout.bits)[::7]]
+    short = [bit for bit, row in layout.bits.items() if row.length < layout.slot_bytes]
+    free = [bit for bit in range(layout.size * 8) if bit not in layout.bits]
+    masks += [(1 << bit).to_bytes(layout.size, "little") for bit in (*short, *free[:1], *free[-1:])]
+    some = sum(1 << bit for bit in (*sorted(layout.bits)[1:20:3], *short, *free[:1]))
+    return [*masks, some.to_bytes(layout.size, "little"), b"\xff" * layout.size]
+
+
+def requests(known: Facts, source: Random) -> Requests:
+    """Log files and unsolicited logs, whole and truncated."""
+    layout = known.mask
+    if not layout:
+        return
+    for mask in masks(known):
+        slots = layout.selected(mask)
+        data = [[source.randbytes(slot.length) for slot in slots] for _ in range(2)]
+        if known.log_file:
+            times = [(0, 0), (0xFFFFFFFF, 999)]
+            entries = [
+                {"seconds": s, "milliseconds": ms, "frames": [f.hex() for f in one]}
+                for (s, ms), one in zip(times, data, strict=True)
+            ]
+            file = log_files.encode(known, mask, [(s, ms, one) for (s, ms), one in zip(times, data, strict=True)])
+            yield "two entries", {"op": "log_encode", "mask": mask.hex(), "entries": entries}
+            for size in sorted({0, len(mask) - 1, len(mask), len(mask) + 1, len(file) - 1, len(file)}):
+                yield f"{size} of {len(file)} bytes", {"op": "log_decode", "bytes": file[:size].hex()}
+        if known.log_message:
+            message = log_files.encode_message(known, mask, data[0])
+            yield "an unsolicited log", {
+                "op": "log_message_encode",
+                "mask": mask.hex(),
+                "frames": [f.hex() for f in data[0]],
+            }
+            for size in (len(message), len(message) - 1, 3):
+                yield f"{size} of {len(message)} bytes", {"op": "log_message_decode", "bytes": message[:size].hex()}
+    one = (1 << min(layout.bits, default=0)).to_bytes(layout.size, "little").hex()
+    wrong = [
+        ("a frame too few", []),
+        ("a frame too many", ["00" * layout.slot_bytes] * 2),
+        ("a frame too short", ["00"]),
+    ]
+    for why, data_ in wrong:
+        yield why, {"op": "log_encode", "mask": one, "entries": [{"seconds": 1, "milliseconds": 2, "frames": data_}]}
+    yield "a mask that is too short", {"op": "log_encode", "mask": "01", "entries": []}

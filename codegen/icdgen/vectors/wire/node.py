@@ -1,0 +1,148 @@
+"""A node with files, as far as a procedure can tell: answers requests, loses some. Made from the roles of the ICD."""
+
+from __future__ import annotations
+
+from random import Random
+
+from icdgen import codec
+from icdgen.protocol import crc, files
+from icdgen.protocol.client import TELECOMMAND, Request
+from icdgen.protocol.facts import UART, Facts, Step
+
+
+class FileNode:
+    """``files``: content by type and counter. ``loss``: how likely a packet, a reply or an acknowledge is lost."""
+
+    def __init__(self, known: Facts, bus: str, source: Random, loss: float = 0.0) -> None:
+        assert known.files and known.hole_map and known.crc16
+        self.known, self.form, self.bus, self.source, self.loss = known, known.files, bus, source, loss
+        self.files: dict[tuple[int, int], bytes] = {}
+        self.pointer = 0
+        self.block = b""  # loaded for download
+        self.map = bytes(known.hole_map.bytes)
+        self.queue: list[int] = []  # packets still to be read, where the client reads them
+        self.uploaded: dict[int, bytes] = {}
+        self.program = b""
+        self.polls = 0  # until a flag says that it is done
+        self.steps = {step.message.ids[0]: (name, step) for name, step in self.form.steps.items()}
+        self.holes = {m.telecommand_id: n for n, m in enumerate(known.hole_map.messages)}
+        self.holes |= {m.telemetry_id: n for n, m in enumerate(known.hole_map.messages)}
+
+    def lost(self) -> bool:
+        return self.source.random() < self.loss
+
+    def answer(self, request: Request) -> list[dict]:
+        """The events that a client would give: packets, and at last the outcome."""
+        if request.kind == TELECOMMAND:
+            acknowledged = self.known.telecommands[request.id].acknowledge
+            if acknowledged and self.lost():  # the request or its acknowledge
+                return [*(self._telecommand(request) if self.lost() else ()), {"event": "timeout"}]
+            if not acknowledged and self.lost():
+                return [{"event": "done", "bytes": ""}]
+            return [*self._telecommand(request), {"event": "done", "bytes": ""}]
+        return [{"event": "done", "bytes": self._telemetry(request.id).hex()}]
+
+    def _raw(self, step: Step, data: bytes) -> dict:
+        raw = codec.decode(self.known.node, step.message, data)
+        return {role: raw[name] for role, name in step.fields.items()}
+
+    def _telecommand(self, request: Request) -> list[dict]:
+        if request.id in self.holes:
+            size = len(request.data)
+            at = self.holes[request.id] * size
+            self.map = self.map[:at] + request.data + self.map[at + size :]
+            return []
+        name, step = self.steps[request.id]
+        raw = self._raw(step, request.data)
+        if name == "list.reset":
+            self.pointer, self.polls = 0, 1
+        elif name == "list.advance":
+            self.pointer, self.polls = self.pointer + 1, 1
+        elif name == "download.load":
+            content, self.polls = self.files[raw["type"], raw["counter"]], 1
+            self.block = content[raw["offset"] : raw["offset"] + raw["length"]]
+        elif name == "download.burst":
+            return self._burst(bool(raw["ignore_hole_map"]))
+        elif name in ("upload.initiate", "erase.request", "format.request"):
+            self.polls = 2
+        elif name == "upload.begin":
+            self.uploaded = {}
+        elif name == "upload.packet":
+            self.uploaded[raw["number"] - self.form.first_packet] = raw["bytes"]
+        elif name == "upload.finalize":
+            data = b"".join(self.uploaded[n] for n in range(len(self.uploaded)))[: raw["length"]]
+            self.program = self.program[: raw["offset"]].ljust(raw["offset"], b"\xff") + data
+            self.polls = 1
+        return []
+
+    def _packet(self, position: int) -> bytes:
+        size = self.form.packet_bytes
+        data = self.block[position * size : (position + 1) * size].ljust(size, b"\xee")
+        return self.known.bytes_of(self.form.first_packet + position, self.form.counter_bytes) + data
+
+    def _burst(self, everything: bool) -> list[dict]:
+        count = self.known.packets_of(len(self.block))
+        first = self.form.first_packet
+        lost = range(count) if everything else [n - first for n in files.missing(self.known, count, self.map)]
+        if self.bus != UART:
+            self.queue = list(lost)
+            return []
+        sent = [(n, self._packet(n)[self.form.counter_bytes :]) for n in lost if not self.lost()]
+        return [{"event": "packet", "number": first + n, "bytes": data.hex()} for n, data in sent]
+
+    def _telemetry(self, id: int) -> bytes:
+        if id in self.holes:
+            size = self.known.telemetry[id].length
+            map_ = files.hole_map(
+                self.known, self.form.block_packets, [self.form.first_packet + n for n in self.uploaded]
+            )
+            return map_[self.holes[id] * size : (self.holes[id] + 1) * size]
+        if id == self.form.packet_ids.get(self.bus):
+            while self.queue and self.lost():
+                self.queue.pop(0)
+            position = self.queue.pop(0) if self.queue else self.form.block_packets
+            return self._packet(position)
+        name, step = self.steps[id]
+        busy, self.polls = int(self.polls > 0), max(0, self.polls - 1)
+        return self._frame(step, getattr(self, "_" + name.replace(".", "_"))(busy) if "." in name else {})
+
+    def _frame(self, step: Step, values: dict) -> bytes:
+        raw = {f.name: bytes(f.bits // 8) if f.type == "bytes" else 0 for f in step.message.fields}
+        raw.update({step.fields[role]: value for role, value in values.items()})
+        return codec.encode(self.known.node, step.message, raw)
+
+    def _sum(self, data: bytes) -> int:
+        assert self.known.crc16
+        return crc.compute(self.known.crc16, data)
+
+    def _list_information(self, busy: int) -> dict:
+        if busy:
+            return {"busy": 1}
+        if self.pointer >= len(self.files):
+            return {}
+        (type_, counter), content = list(self.files.items())[self.pointer]
+        return {
+            "type": type_,
+            "counter": counter,
+            "size": len(content),
+            "time": 0x51634000,
+            "checksum": self._sum(content),
+        }
+
+    def _download_ready(self, busy: int) -> dict:
+        return {} if busy else {"ready": 1, "checksum": self._sum(self.block), "length": len(self.block)}
+
+    def _upload_initiated(self, busy: int) -> dict:
+        return {"busy": busy}
+
+    def _upload_checksum(self, busy: int) -> dict:
+        return {"checksum": self._sum(b"".join(self.uploaded[n] for n in sorted(self.uploaded)))}
+
+    def _upload_finalized(self, busy: int) -> dict:
+        return {"busy": busy}
+
+    def _erase_progress(self, busy: int) -> dict:
+        return {"busy": busy}
+
+    def _format_progress(self, busy: int) -> dict:
+        return {"busy": busy}

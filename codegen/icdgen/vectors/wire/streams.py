@@ -1,0 +1,131 @@
+"""Checksums, and messages in streams of bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from random import Random
+
+from icdgen.protocol import logs as log_files
+from icdgen.protocol import uart
+from icdgen.protocol.facts import Facts, need
+from icdgen.vectors.wire.logs import masks
+
+Requests = Iterator[tuple[str, dict]]
+
+
+CHECKED = b"123456789"  # what check values of CRCs are computed over
+
+
+def checksums(known: Facts, source: Random) -> Requests:
+    """CRCs of nothing, of single bytes, and of random data."""
+    data = [
+        ("nothing", b""),
+        ("the check value", CHECKED),
+        ("a zero", b"\0"),
+        ("zeros", bytes(20)),
+        ("ones", b"\xff" * 20),
+    ]
+    data += [(f"bit {bit}", bytes([1 << bit])) for bit in range(8)]
+    data += [(f"{size} random bytes", source.randbytes(size)) for size in (2, 7, 22, 255, 1000)]
+    for op, there in (("crc8", known.checksum), ("crc16", known.crc16)):
+        for why, one in data if there else ():
+            yield why, {"op": op, "bytes": one.hex()}
+
+
+def _messages(known: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
+    """Messages as they are framed: id and data."""
+    framing = known.framing
+    assert framing
+    escape, end, start = framing.escape, framing.end, framing.start
+    yield "an id alone", b"\x80"
+    yield "an id that is the escape byte", bytes([escape, 0])
+    yield "nothing but escape bytes", bytes([escape] * 5)
+    yield "what looks like an end within the data", bytes([1, escape, escape, end, escape, end, 2])
+    yield "what looks like a start within the data", bytes([1, escape, start, 2, escape])
+    yield "the markers as data", bytes([end, start, end])
+    yield "every byte", bytes([0x90, *range(256)])[: known.longest]
+    for id in sorted({min(known.telecommands, default=0), max(known.telecommands, default=0)}):
+        yield f"telecommand {id}", bytes([id]) + source.randbytes(known.telecommands[id].length)
+    longest = known.longest
+    yield "the longest message", bytes([0x80]) + source.randbytes(longest - 1)
+    yield "the longest message, all escaped", bytes([escape] * longest)
+
+
+def encoded(known: Facts, source: Random) -> Requests:
+    """Messages on the line, and back."""
+    yield "no id", {"op": "uart_encode", "bytes": ""}
+    for why, message in _messages(known, source):
+        yield why, {"op": "uart_encode", "bytes": message.hex()}
+        yield why, {"op": "uart_decode", "bytes": uart.encode(need(known.framing, "uart"), message).hex()}
+
+
+def streams(known: Facts, source: Random) -> Requests:
+    """Streams that are cut, noisy, broken off."""
+    framing = known.framing
+    assert framing
+    escape, start, end = framing.escape, framing.start, framing.end
+    begin, finish = bytes([escape, start]), bytes([escape, end])
+
+    def line(*data: int) -> bytes:
+        return uart.encode(framing, bytes(data))
+
+    good = line(0x90, 1, escape, end, 2)
+    whole = [
+        ("two messages", good + line(0x91)),
+        ("noise before, between and after", b"\x00\xff\x7f" + good + b"noise" + good + b"\x55"),
+        ("an escape byte before the start", bytes([escape]) + good),
+        ("many escape bytes before the start", bytes([escape] * 5) + good),
+        ("an end without a start", finish + good),
+        ("a start within a message", begin + b"\x90\x01\x02" + good),
+        ("two starts in a row", begin + good),
+        ("an escape byte before another byte", begin + bytes([0x90, escape, 0x55, 0x01]) + finish + good),
+        ("a message without an id", begin + finish + good),
+        ("an escape byte at the very end", good + bytes([escape])),
+        ("an escape byte at the very end of a started message", good + begin + bytes([0x90, escape])),
+        ("a message that is not finished", good + begin + b"\x90\x01"),
+        ("nothing", b""),
+        ("random bytes", source.randbytes(600)),
+        ("random bytes rich in markers", bytes(source.choices([escape, start, end, 0, 0x90], k=600)) + good),
+    ]
+    for why, stream in whole:
+        yield why, {"op": "uart_decode", "bytes": stream.hex()}
+        yield why, {"op": "uart_events", "chunks": [stream.hex()]}
+        yield f"{why}, byte by byte", {"op": "uart_events", "chunks": [f"{byte:02x}" for byte in stream]}
+        cuts = sorted(source.sample(range(len(stream) + 1), min(5, len(stream))))
+        pieces = [stream[a:b].hex() for a, b in zip([0, *cuts], [*cuts, len(stream)], strict=True)]
+        yield f"{why}, cut at odd places", {"op": "uart_events", "chunks": pieces}
+    long = line(0x90, *range(1, 9), escape)
+    for limit in (9, 10):
+        yield f"ten bytes in a buffer of {limit}", {
+            "op": "uart_events",
+            "limit": limit,
+            "chunks": [(long + good[:-2]).hex(), finish.hex()],
+        }
+    too_long = uart.encode(framing, bytes([0x90]) * (known.longest + 1))
+    yield "a message that is too long by one", {"op": "uart_events", "chunks": [(too_long + good).hex()]}
+    for why, message in _kinds(known, source):
+        yield why, {"op": "uart_events", "chunks": [uart.encode(framing, message).hex()]}
+
+
+def _kinds(known: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
+    """Messages of each kind, and such as are none."""
+    if known.acknowledge:
+        ids = sorted({min(known.telecommands, default=0), known.framing.escape if known.framing else 0})
+        for id in ids:
+            yield f"the acknowledge of telecommand {id}", bytes([id, *bytes(known.acknowledge.length - 1)])
+        yield "an acknowledge that is too long", bytes([ids[0], *bytes(known.acknowledge.length)])
+    files = known.files
+    if files and "uart" in files.packet_ids:
+        size = files.counter_bytes + files.packet_bytes
+        for more in (-1, 0, 1):
+            yield f"a download packet{('', ' too long', ' too short')[more]}", bytes(
+                [files.packet_ids["uart"]]
+            ) + source.randbytes(size + more)
+    for id, message in list(known.telemetry.items())[:3]:
+        yield f"telemetry {id}", bytes([id]) + source.randbytes(message.length)
+    if known.log_message and known.mask:
+        for mask in masks(known)[:4]:
+            data = [source.randbytes(slot.length) for slot in known.mask.selected(mask)]
+            log = log_files.encode_message(known, mask, data)
+            yield "an unsolicited log", log
+            yield "an unsolicited log that is too short", log[:-1]

@@ -1,0 +1,51 @@
+"""What the protocol layer is made from: the facts of the ICD, each assumption with its reason."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.protocol import facts
+
+
+def test_a_node_has_the_facts_of_what_it_includes_and_its_own(icd, known):
+    assert known.framing and known.can and known.files and known.checksum and known.mask
+    bootloader = facts.of(icd, icd.node("bootloader"))
+    assert bootloader.framing == known.framing
+    assert bootloader.checksum is None and bootloader.mask is None
+
+
+def test_a_node_without_a_protocol_has_none(icd):
+    alone = facts.of(icd, icd.node("cubemag"))
+    assert (alone.framing, alone.can, alone.files, alone.assumptions) == (None, None, None, ())
+    with pytest.raises(facts.Unsupported, match="uart"):
+        facts.need(alone.framing, "uart")
+
+
+def test_buffers_are_as_long_as_the_longest_message_with_id_and_checksum(known):
+    assert max(m.length for m in known.telemetry.values()) == 504
+    assert known.longest_data == 504
+    assert known.longest == 506
+
+
+def test_every_assumption_says_what_is_held_and_why(known):
+    held = {(a.section, a.key): a for a in known.assumptions}
+    assert held["can.extended", "fill"].value == 0
+    assert held["log_mask", "frame_order"].value == "rising bits"
+    assert held["crc8", "covers_id"].value is False
+    assert held["message Reset", "acknowledge"].value == "reset"
+    assert all(a.why and a.value is not None for a in known.assumptions)
+
+
+def test_a_telecommand_is_acknowledged_or_not_or_answered_by_a_reset(icd):
+    messages = {m.name: m for m in icd.messages_of(icd.node("bootloader"))}
+    assert (messages["Reset"].acknowledge, messages["Reset"].expects_reset) == (False, True)
+    assert messages["Run Selected Program"].expects_reset
+    packet = messages["File Upload Packet"]
+    assert (packet.acknowledge, packet.expects_reset) == (False, False)
+    assert messages["Erase File"].acknowledge and not messages["Erase File"].expects_reset
+
+
+def test_numbers_of_the_procedures_are_found_by_path(known):
+    assert known.files.numbers["download.message_length"] == 20
+    assert known.files.steps["upload.finalize"].fields["offset"] == "Offset"
+    assert known.boot_ms == 5000

@@ -1,0 +1,122 @@
+"""The golden vectors of the protocol: as committed, in the published form, and answered by the reference."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+
+import jsonschema_rs
+import pytest
+
+import icdgen
+from icdgen.icd.load import load
+from icdgen.protocol import ops
+from icdgen.vectors import protocol
+from tests.conformance import odd, wire
+from tests.conformance.icds import icd_of
+from tests.conformance.languages import all_languages
+from tests.conformance.reference import Reference
+
+SCHEMA = json.loads((Path(icdgen.__file__).parent / "protocol.schema.json").read_text(encoding="utf-8"))
+SPEAKING = ("reference",)  # languages whose testees know the protocol
+
+
+@pytest.fixture(scope="module")
+def icd():
+    return icd_of()
+
+
+@pytest.fixture(scope="module")
+def files(icd):
+    return wire.vectors_of(icd)
+
+
+def test_the_file_follows_the_published_schema(files):
+    validator = jsonschema_rs.validator_for(SCHEMA)
+    validator.validate(files)
+    broken = json.loads(json.dumps(files))
+    case = next(c for c in broken["nodes"][0]["cases"] if c["request"]["op"] == "uart_events")
+    case["answer"]["events"] = [{"event": "surprise"}]
+    assert not validator.is_valid(broken)
+
+
+def test_every_operation_is_shown_with_success_and_where_it_can_fail_with_failure(files):
+    seen = Counter((c["request"]["op"], c["answer"]["ok"]) for n in files["nodes"] for c in n["cases"])
+    assert {op for op, ok in seen if ok} == set(ops.OPS)
+    assert {op for op, ok in seen if not ok} >= {
+        "uart_encode", "can_split", "i2c_reply", "log_encode", "log_message_decode", "dos_time", "hole_map",
+        "index_encode", "identify",
+    }  # fmt: skip
+
+
+def test_every_kind_of_event_is_shown(files):
+    events = [e for n in files["nodes"] for c in n["cases"] for e in c["answer"].get("events", ()) if "event" in e]
+    assert {e["event"] for e in events} >= {
+        "message", "unexpected_start", "protocol_error", "overrun", "empty", "duplicate", "incomplete", "malformed", "busy",
+        "unknown_type",
+    }  # fmt: skip
+    assert {e["kind"] for e in events if "kind" in e} >= {
+        "reply",
+        "acknowledge",
+        "packet",
+        "log",
+        "other",
+        "telecommand",
+    }
+
+
+def test_the_text_is_the_same_on_every_run_and_small_enough_to_commit(icd):
+    text = protocol.text(icd)
+    assert text == protocol.text(icd)
+    assert len(text) < 2_000_000
+
+
+def test_there_is_no_file_without_a_protocol(tmp_path):
+    assert protocol.text(icd_of([odd.write(tmp_path)])) is None
+
+
+def test_a_node_that_would_take_the_files_name_is_found(tmp_path):
+    text = (
+        "icdgen: 1\nnode: {name: protocol, title: P, byte_order: little, bit_order: lsb0}\n"
+        "protocol: {uart: {baud_rate: 9600}}\nmessages: [{name: Ping, id: 1, kind: telecommand, length: 0}]\n"
+    )
+    path = tmp_path / "protocol.yaml"
+    path.write_text(text, encoding="utf-8")
+    findings = load([path]).findings
+    assert [f.code for f in findings] == ["ICD071"] and "vectors" in findings[0].message
+
+
+@pytest.mark.parametrize("name", SPEAKING)
+def test_a_language_answers_as_the_reference_does(icd, files, name, tmp_path):
+    (result,) = wire.run([all_languages()[name]], icd, files, tmp_path)
+    assert result.differences == 0, "\n".join(result.shown)
+    assert result.vectors > 900
+
+
+def test_without_a_node_the_last_one_that_has_a_protocol_is_meant(icd):
+    ask = Reference(icd).answer
+    assert ask(b'{"op": "crc8", "bytes": "313233343536373839"}') == {"ok": True, "crc": 0x25}
+    assert ask(b'{"op": "crc16", "bytes": "313233343536373839"}') == {"ok": True, "crc": 0x31C3}
+    assert ask(b'{"op": "crc8", "bytes": ""}') == {"ok": True, "crc": 0xFF}
+    assert ask(b'{"op": "uart_encode", "bytes": "1f00"}') == {"ok": True, "bytes": "1f7f1f1f001fff"}
+    assert ask(b'{"op": "uart_decode", "bytes": "551f7f1f1f001fff"}') == {"ok": True, "frames": ["1f00"]}
+    assert ask(b'{"op": "crc8", "node": "bootloader", "bytes": ""}') == {"ok": False, "error": "unsupported"}
+
+
+def test_what_an_icd_does_not_describe_is_refused_and_breaks_nothing(files, tmp_path):
+    text = (
+        "icdgen: 1\nnode: {name: demo, title: D, byte_order: big, bit_order: msb0}\n"
+        "protocol:\n  uart: {baud_rate: 9600}\n  "
+        "file_transfer: {packet_bytes: 8, packet_counter_bytes: 1, block_packets: 9, block_bytes: 72}\n"
+        "messages: [{name: Ping, id: 1, kind: telecommand, length: 0}]\n"
+    )
+    (tmp_path / "demo.yaml").write_text(text, encoding="utf-8")
+    bare = icd_of([tmp_path / "demo.yaml"])
+    protocol.text(bare)
+    for node in files["nodes"]:
+        for case in node["cases"]:
+            answer = ops.answer(bare, {**case["request"], "node": "demo"})
+            if case["request"]["op"] not in ("i2c_request", "i2c_reply", "uart_encode", "uart_events", "file"):
+                assert answer == {"ok": False, "error": "unsupported"}, case
+            assert answer["ok"] or answer["error"] in ("unsupported", "unknown-id", "length", "request"), case
