@@ -1,0 +1,56 @@
+"""Golden vectors that a page shows: few, and such that each says something."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from icdgen import codec
+from icdgen.backends.html.texts import MINUS, number
+from icdgen.icd.model import Field, Message, Node
+from icdgen.values.numbers import float_text
+from icdgen.vectors import patterns
+
+_MOST = 60  # fields of a message whose values are written out for each example
+
+
+class Cell(NamedTuple):
+    raw: str
+    value: str
+
+
+class Example(NamedTuple):
+    """A frame and what it holds, field by field."""
+
+    why: str
+    hex: str
+    frame: bytes
+    cells: list[Cell]
+
+
+def examples(message: Message, node: Node) -> list[Example]:
+    """The pseudo-random frame and all ones, which the golden vectors hold too; none for a message without bytes."""
+    if not message.length:
+        return []
+    rows = [("random 0", patterns.random_frame(message, "vector 0")), ("all ones", b"\xff" * message.length)]
+    found = []
+    for why, frame in rows:
+        raw = codec.decode(node, message, frame) if len(message.fields) <= _MOST else {}
+        cells = [_cell(field, raw[field.name]) for field in message.fields] if raw else []
+        found.append(Example(why, frame.hex(" ").upper(), frame, cells))
+    return found
+
+
+def _cell(field: Field, raw: int | bytes) -> Cell:
+    if isinstance(raw, bytes):
+        text = raw.hex(" ").upper()
+        return Cell(text if len(raw) <= 16 else f"{text[:47]} …", "")
+    if field.type == "float":
+        value = float_text(codec.float_value(field, raw), field.bits)
+        return Cell(f"0x{raw:0{field.bits // 4}X}", value.replace("-", MINUS))
+    if field.enum is not None:
+        name = next((member.name for member in field.enum.members if member.value == raw), "no member")
+        return Cell(number(raw), name)
+    if field.type == "bool":
+        return Cell(str(raw), "true" if raw else "false")
+    exact = codec.physical(field, raw)
+    return Cell(number(raw), "" if exact is None else number(exact))
