@@ -49,6 +49,7 @@ def page_facts(message: Message, protocol: dict, checks: list[dict]) -> dict[str
     facts: dict[str, object] = {
         "ids": list(message.ids),
         "id": message.telecommand_id if message.telecommand_id is not None else message.telemetry_id,
+        "command": message.telecommand_id is not None,
         "crc": [{key: facts[key] for key in keys if key in facts} for facts in checks if facts["width"] == 8],
     }
     if framing:
