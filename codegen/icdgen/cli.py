@@ -19,6 +19,7 @@ _COMMANDS = {
     "fmt": "fmt",
     "rule": "rule",
     "show": "show",
+    "docs": "docs",
     "decode": "codec",
     "encode": "codec",
 }

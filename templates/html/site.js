@@ -43,10 +43,10 @@
     const rows = [...document.querySelectorAll("#message-table tbody tr")];
     const words = rows.map((row) => `${row.textContent} ${row.dataset.ids}`.toLowerCase());
     const apply = () => {
-      const { text, kind, group, length, mask } = filter.elements;
+      const { text, kind, group, bytes, mask } = filter.elements;
       const wanted = text.value.toLowerCase().split(/\s+/).filter(Boolean);
-      const fits = lengths(length.value);
-      length.setAttribute("aria-invalid", String(fits === null));
+      const fits = lengths(bytes.value);
+      bytes.setAttribute("aria-invalid", String(fits === null));
       let shown = 0;
       rows.forEach((row, index) => {
         const { kind: k, group: g, length: n, mask: m } = row.dataset;

@@ -198,19 +198,18 @@
     firsts.forEach((first, line) => {
       if (first < 0) return;
       for (let column = 0; column < 8 * across && first * 8 + column < frame.length * 8; column += 1) {
-        const one = isSet(frame, first * 8 + column);
+        if (!isSet(frame, first * 8 + column)) continue;
         const [x, y] = [left + column * cell, top + line * row];
-        if (one) marks.push(shape("rect", { x: x + 1, y: y + row - 5, width: cell - 2, height: 4 }));
-        marks.push(shape("text", { x: x + cell - 8, y: y + row - 8, class: one ? "one" : "zero" }, String(one)));
+        marks.push(shape("rect", { x, y, width: cell, height: row, class: "glow" }));
+        marks.push(shape("rect", { x: x + 1, y: y + row - 4.5, width: cell - 2, height: 4 }));
       }
     });
     layer.replaceChildren(...marks);
   }
 
-  function shape(name, attributes, text) {
+  function shape(name, attributes) {
     const element = document.createElementNS(SVG, name);
     for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-    if (text) element.textContent = text;
     return element;
   }
 

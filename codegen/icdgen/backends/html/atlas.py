@@ -107,12 +107,16 @@ class Atlas:
         return [Place(f"{m.name}: {f.name}", self.links.field(m, f)) for m, f in uses]
 
 
-def document(node: Node) -> str:
-    """``Some Manual 7.2 (2020-11-03), section 6.3``"""
+def manual(node: Node) -> str:
+    """``Some Manual 7.2 (2020-11-03)``"""
     facts = dict(node.document)
     text = " ".join(filter(None, (facts.get("document"), facts.get("version"))))
-    text += f" ({facts['date']})" if "date" in facts else ""
-    section = facts.get("section", "")
+    return texts.clip(text + (f" ({facts['date']})" if "date" in facts else ""), 200)
+
+
+def document(node: Node) -> str:
+    """``Some Manual 7.2 (2020-11-03), section 6.3``"""
+    text, section = manual(node), dict(node.document).get("section", "")
     if section:
         text += f", section {section}" if section[0].isdigit() else f", {section}"
     return texts.clip(text, 400)

@@ -81,7 +81,7 @@ class _Canvas:
         self.owner = self._owners()
         self.grid, self.rows = self._grid()
         narrow = any(len(set(row)) > 2 * self.across for _, row in self.grid)
-        self.row = (42 if narrow else 34) if self.across < 4 else 30
+        self.row = (46 if narrow else 34) if self.across < 4 else 30
 
     def _owners(self) -> list[int]:
         """Key of the field that each bit of the frame belongs to, in bytes of bits from the left; 0: reserved."""
@@ -109,7 +109,7 @@ class _Canvas:
         self._fill()
         height = TOP + self.row * len(self.grid)
         for shape in self.shapes:
-            shape.labels = fit(shape, self.message.fields[shape.key - 1].name, self.row)
+            shape.labels = fit(shape.rects, self.message.fields[shape.key - 1].name, shape.key)
         msb0 = self.node.bit_order == "msb0"
         columns = [
             (LEFT + (column + 0.5) * self.cell, str(column if msb0 else column // 8 * 8 + 7 - column % 8))

@@ -19,11 +19,20 @@ class Label(NamedTuple):
     key: bool = False
 
 
-def fit(shape, name: str, row: int) -> list[Label]:
-    """The name in the largest box of the shape, in as many lines as fit; the shape's number where it does not fit."""
-    if not shape.rects:
-        return []
-    x, y, width, height = max(shape.rects, key=lambda r: (r[2] * r[3], -r[1]))
+Box = tuple[int, int, int, int]  # x, y, width, height
+
+
+def fit(boxes: list[Box], name: str, number: int) -> list[Label]:
+    """The name in each box that it fits into, in as many lines as it takes; the number where it fits into none."""
+    found = [label for box in boxes for label in _in_box(box, name)]
+    if found or not boxes:
+        return found
+    x, y, width, height = max(boxes, key=lambda box: (box[2] * box[3], -box[1]))
+    return [Label(x + width // 2, round(y + height / 2 + 4, 1), 11, str(number), True)]
+
+
+def _in_box(box: Box, name: str) -> list[Label]:
+    x, y, width, height = box
     for size in _SIZES:
         most = max(int((height - 6) / (size * _LEADING)), 1)
         lines = _wrap(name, int((width - 8) / (size * _ADVANCE)), most)
@@ -33,7 +42,7 @@ def fit(shape, name: str, row: int) -> list[Label]:
                 Label(x + width // 2, round(top + index * size * _LEADING, 1), size, line)
                 for index, line in enumerate(lines)
             ]
-    return [Label(x + width // 2, round(y + height / 2 + 4, 1), 11, str(shape.key), True)]
+    return []
 
 
 def _wrap(text: str, width: int, most: int) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from icdgen.backends.html import texts
-from icdgen.backends.html.atlas import Atlas, Place, document
+from icdgen.backends.html.atlas import Atlas, Place, document, manual
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
 
 _KINDS = {TELECOMMAND: "Telecommands", TELEMETRY: "Telemetry", CONFIGURATION: "Configuration"}
@@ -32,7 +32,7 @@ def home(atlas: Atlas) -> dict[str, object]:
         "totals": totals,
         "cards": [_card(atlas, node) for node in icd.nodes],
         "confidence": [(level, sum(e.confidence == level for e in errata)) for level in _CONFIDENCE],
-        "documents": list(dict.fromkeys(document(node).split(", section")[0] for node in icd.nodes if node.document)),
+        "documents": list(dict.fromkeys(manual(node) for node in icd.nodes if node.document)),
         "example": atlas.place(example) if example else None,
     }
 
