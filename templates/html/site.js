@@ -108,7 +108,7 @@
   function score(entry, query, words) {
     if (!words.every((word) => entry.all.includes(word))) return null;
     let points = RANKS[entry.kind];
-    if (entry.tokens.includes(query)) points -= 60;
+    if (entry.tokens.includes(query)) points -= entry.kind === "field" ? 5 : 60;
     else if (entry.name === query) points -= 50;
     else if (entry.name.startsWith(query)) points -= 30;
     else if (words.every((word) => entry.name.includes(word))) points -= entry.name.includes(` ${query}`) ? 20 : 10;

@@ -65,6 +65,8 @@ def handler(source: Source) -> type[BaseHTTPRequestHandler]:
             if not site.ok:
                 report = reports.get("text")(site.findings, site.texts)
                 self._send(HTTPStatus.INTERNAL_SERVER_ERROR, ".html", _complaint(report))
+            elif f"{name}/index.html" in site.files:
+                self._send(HTTPStatus.MOVED_PERMANENTLY, ".txt", "", Location=f"/{name}/")
             elif name in site.files:
                 self._send(HTTPStatus.OK, os.path.splitext(name)[1], site.files[name])
             else:
@@ -72,12 +74,14 @@ def handler(source: Source) -> type[BaseHTTPRequestHandler]:
 
         do_HEAD = do_GET
 
-        def _send(self, status: HTTPStatus, suffix: str, text: str) -> None:
+        def _send(self, status: HTTPStatus, suffix: str, text: str, **headers: str) -> None:
             data = text.encode("utf-8")
             self.send_response(status)
             self.send_header("Content-Type", f"{_TYPES.get(suffix, 'text/plain')}; charset=utf-8")
             self.send_header("Content-Length", str(len(data)))
             self.send_header("Cache-Control", "no-cache")
+            for key, value in headers.items():
+                self.send_header(key, value)
             self.send_header("X-Content-Type-Options", "nosniff")
             self.end_headers()
             if self.command != "HEAD":

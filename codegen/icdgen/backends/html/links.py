@@ -89,8 +89,8 @@ class Links:
         return f"{ERRATA}#{erratum.id}"
 
     def unit(self, unit: Unit) -> str:
-        """``units.html#deg``"""
-        return f"{UNITS}#{unit.identifier}"
+        """``units.html#unit-deg``"""
+        return f"{UNITS}#unit-{unit.identifier}"
 
 
 def _free(name: str, taken: set[str]) -> str:

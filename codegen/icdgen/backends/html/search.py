@@ -7,7 +7,6 @@ from collections.abc import Iterator
 
 from icdgen.backends.html import texts
 from icdgen.backends.html.atlas import Atlas
-from icdgen.backends.html.links import UNITS
 from icdgen.icd.model import Message
 
 _MOST = 300  # characters of a name that is searched
@@ -26,7 +25,7 @@ def entries(atlas: Atlas) -> Iterator[Entry]:
         for enum in node.enums:
             yield "enumeration", enum.name, node.title, "", links.enum(enum)
     for unit, uses in atlas.units.values():
-        yield "unit", unit.symbol, unit.quantity, unit.identifier, f"{UNITS}#{unit.identifier}"
+        yield "unit", unit.symbol, unit.quantity, unit.identifier, links.unit(unit)
     for node in icd.nodes:
         for message in node.messages:
             for field in message.fields:
