@@ -178,7 +178,7 @@ def test_the_chosen_language_is_remembered(browser, served):
 def test_axe_finds_nothing(browser, site, path, scheme):
     with opened(browser, site.as_uri() + "/", path, color_scheme=scheme) as page:
         page.evaluate(tool("axe-core/axe.min.js").read_text("utf-8"))
-        found = page.evaluate("axe.run({ resultTypes: ['violations'] })")
+        found = page.evaluate("axe.run({ resultTypes: ['violations'], preload: false })")
         assert [(v["id"], [n["target"] for n in v["nodes"]][:5]) for v in found["violations"]] == []
 
 
@@ -226,7 +226,7 @@ def test_hostile_texts_are_shown_and_do_nothing(browser, strange):
     with opened(browser, top, "hostile/index_.html") as page:
         text = page.inner_text("main")
         assert "<script>document.title" in text and "{{ 7*7 }}" in text and "&lt;" in text
-        page.fill("#frame", "ff" * 26)
+        page.fill("#frame", "ff" * 25)
         assert page.input_value("#raw-1") == "18446744073709551615"
         assert page.input_value("#raw-5") == "0xFFFFFFFF" and page.input_value("#raw-6") == "FF FF"
         page.fill("#search", "endless")
