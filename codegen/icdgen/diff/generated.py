@@ -147,30 +147,26 @@ class _Cut:
 
     def names(self, icd: Icd) -> Names:
         found: dict[int, dict[Name, None]] = {}
-        stems: dict[tuple[str, int], str] = {}
+        types: dict[int, str] = {}  # Rust: id(pair) -> name of the type
         for language in LANGUAGES:
             for one in backends.get(language).identifiers(icd):
                 pair = self.marks.get(id(one.source)) if one.source is not None else None
-                if pair is None or not one.text.isidentifier():
+                if pair is None or not one.text.isidentifier() or one.scope.startswith("modules of"):
                     continue
                 owner = getattr(pair, "owner", None)
-                if owner is None:
-                    stems.setdefault((language, id(pair)), _stem(language, one.text))
-                    found.setdefault(id(pair), {})[Name(language, one.text)] = None
-                else:
-                    stem = stems.get((language, id(owner)), "")
-                    alone = language == "c" and one.text.lower().startswith(stem.lower())
-                    found.setdefault(id(pair), {})[Name(language, one.text, "" if alone else stem)] = None
+                if language == "rust" and owner is None:
+                    types.setdefault(id(pair), one.text)
+                stem = types.get(id(owner), "") if language == "rust" else _stem(language, one.scope)
+                found.setdefault(id(pair), {})[Name(language, one.text, stem)] = None
         return {key: tuple(names) for key, names in found.items()}
 
 
-def _stem(language: str, text: str) -> str:
-    """What the first name of a message or enumeration begins with: its own name without what C puts behind it."""
-    if language == "c":
-        for end in ("_H", "_LENGTH", "_t", "_name"):
-            text = text.removesuffix(end)
-        return text.lower()
-    return text
+def _stem(language: str, scope: str) -> str:
+    """What a file must mention for a member of that scope to be meant; empty for what stands for itself."""
+    if not scope.startswith("members of "):
+        return ""
+    owner = scope.removeprefix("members of ")
+    return owner.removesuffix("_t").lower() if language == "c" else owner.rpartition(".")[2]
 
 
 # Types

@@ -93,8 +93,9 @@ def _limits(field: Field) -> str:
     return " and ".join(f"{signs[key]} {number(value)}" for key, value in found if value is not None)
 
 
-def _is_wider(old: Limits, new: Limits) -> bool:
+def is_wider(old: Limits | None, new: Limits | None) -> bool:
     """Whether everything that was allowed still is."""
+    old, new = old or Limits(), new or Limits()
     for key, sign in (("min", 1), ("above", 1), ("max", -1), ("below", -1)):
         before, after = getattr(old, key), getattr(new, key)
         if after is not None and (before is None or sign * after > sign * before):
@@ -109,7 +110,7 @@ def limits_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         return
     was, now = _limits(pair.old), _limits(pair.new)
     text = f"{quote(pair.new.name)} may be {now or 'anything'}, could be {was or 'anything'}"
-    detail = "What was allowed still is." if _is_wider(old, new) else "Values that were allowed no longer are."
+    detail = "What was allowed still is." if is_wider(old, new) else "Values that were allowed no longer are."
     yield Found(text, BOUNDS, was, now, (detail,))
 
 

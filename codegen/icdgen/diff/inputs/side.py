@@ -1,0 +1,72 @@
+"""One side of a comparison: its ICDs, what it is called, and the texts that its places refer to."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from icdgen.diagnostics import Finding, Place
+from icdgen.diff.inputs.git import Spec
+from icdgen.errors import UserError
+from icdgen.icd.load import load
+from icdgen.icd.loaded import Loaded
+from icdgen.icd.model import Icd
+
+
+@dataclass
+class Side:
+    """``label`` is what a user calls it. ``folder`` is where its files lay while they were read; places are told without it."""
+
+    label: str
+    icd: Icd
+    findings: list[Finding] = field(default_factory=list)
+    texts: dict[str, str] = field(default_factory=dict)
+    folder: str = ""
+    prefix: str = ""  # what stands there instead: "v1.2:"
+
+    @property
+    def ok(self) -> bool:
+        return not any(finding.severity == "error" for finding in self.findings)
+
+    def place(self, place: Place | None) -> Place | None:
+        """The place as a user knows it."""
+        if place is None or not place.file:
+            return None
+        return place._replace(file=self.name(place.file))
+
+    def name(self, file: str) -> str:
+        """The file as a user knows it."""
+        return self.prefix + file.removeprefix(self.folder) if self.folder and file.startswith(self.folder) else file
+
+
+def from_paths(paths: list[Path], unchecked: bool = False) -> Side:
+    """ICD files and folders."""
+    return _side(", ".join(map(str, paths)), load(paths, check=not unchecked))
+
+
+def from_git(spec: Spec, unchecked: bool = False) -> Side:
+    """The ICDs of a revision, as git has them. Raises `UserError`."""
+    with tempfile.TemporaryDirectory(prefix="icdgen-diff-") as name:
+        folder = os.path.realpath(name)
+        paths = spec.extract(Path(folder))
+        if not paths:
+            what = " ".join(map(str, spec.paths)) or "the folder"
+            raise UserError(f"{spec.revision} has no ICD in {what}", "name another path: REVISION:PATH")
+        loaded = load(paths, check=not unchecked)
+    side = _side(spec.label, loaded)
+    side.folder, side.prefix = folder + os.sep, f"{spec.revision}:"
+    side.findings = [_told(side, finding) for finding in side.findings]
+    side.texts = {side.name(file): text for file, text in side.texts.items()}
+    return side
+
+
+def _side(label: str, loaded: Loaded) -> Side:
+    return Side(label, loaded.icd, loaded.findings, loaded.texts)
+
+
+def _told(side: Side, finding: Finding) -> Finding:
+    words = (text.replace(side.folder, side.prefix) for text in (finding.message, finding.help))
+    message, help = words
+    return finding._replace(place=side.place(finding.place), message=message, help=help)
