@@ -51,10 +51,11 @@ def diff(sides, form, out, asked, accepted, sources, unchecked, everything) -> N
         print_findings(error.findings, {}, "text", err=True)
         sys.exit(2)
     for side in (old, new):
-        if not side.ok:
+        if not side.is_whole():
             print_findings(side.findings, side.texts, "text", err=True)
-    if not (old.ok and new.ok):
-        raise UserError("ICDs with errors are not compared", "correct them; what only breaks a rule is passed over with --unchecked")
+    if not (old.is_whole(unchecked) and new.is_whole(unchecked)):
+        help = "correct them; --unchecked passes over what can be read and only breaks a rule"
+        raise UserError("ICDs with errors are not compared", help)
     made = report.make(old, new, _acceptances(accepted))
     if sources:
         made.uses = uses.uses(made.comparison, made.changes, sources)

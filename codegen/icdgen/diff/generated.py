@@ -51,11 +51,14 @@ class Generated:
         """Old and new name of everything that is generated for the pair, where they differ. Its parts are left out."""
         after = self.new if isinstance(pair, MessagePair | EnumPair) else self.clothed
         old, new = self.old.get(id(pair), ()), after.get(id(pair), ())
-        if len(old) == len(new):
-            return [(a, b) for a, b in zip(old, new, strict=True) if a.text != b.text]
-        gone = [a for a in old if a not in new]
-        come = [b for b in new if b not in old]
-        return [(a, None) for a in gone] + [(None, b) for b in come]
+        found: list[tuple[Name | None, Name | None]] = []
+        for key in dict.fromkeys(_sort(name) for name in (*old, *new)):
+            before, later = ([name for name in names if _sort(name) == key] for names in (old, new))
+            if len(before) == len(later):
+                found += [(a, b) for a, b in zip(before, later, strict=True) if a.text != b.text]
+            else:
+                found += [(a, None) for a in before if a not in later] + [(None, b) for b in later if b not in before]
+        return found
 
     def retyped(self, pair: FieldPair) -> list[tuple[str, str, str]]:
         """Language, old and new type of the raw value, where they differ."""
@@ -159,6 +162,11 @@ class _Cut:
                 stem = types.get(id(owner), "") if language == "rust" else _stem(language, one.scope)
                 found.setdefault(id(pair), {})[Name(language, one.text, stem)] = None
         return {key: tuple(names) for key, names in found.items()}
+
+
+def _sort(name: Name) -> tuple[str, bool]:
+    """Names of one language, and in C those at file scope, correspond in their order."""
+    return name.language, bool(name.stem)
 
 
 def _stem(language: str, scope: str) -> str:

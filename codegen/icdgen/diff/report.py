@@ -45,10 +45,19 @@ class Report:
         ]
 
 
+def _placed(change: Change, old: Side, new: Side) -> Change:
+    """With places as a user knows them; those of errata in their overlays."""
+    places = []
+    for side, place in ((old, change.old), (new, change.new)):
+        erratum = side.erratum(change.where.erratum) if change.where.erratum else None
+        places.append(erratum or side.place(place))
+    return replace(change, old=places[0], new=places[1])
+
+
 def make(old: Side, new: Side, acceptances: list[Acceptance] = ()) -> Report:
     """Compares two sides."""
     comparison = compare(old.icd, new.icd)
-    comparison.changes = [replace(c, old=old.place(c.old), new=new.place(c.new)) for c in comparison.changes]
+    comparison.changes = [_placed(change, old, new) for change in comparison.changes]
     found = sort(comparison.changes, list(acceptances))
     return Report(
         old, new, comparison, found.open, found.accepted, found.stale, directions(comparison), step(comparison.changes),

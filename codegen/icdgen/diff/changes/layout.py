@@ -35,7 +35,7 @@ def fields_shifted(pair: MessagePair, ctx: Context) -> Iterator[Found]:
 def block_moved(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     for move in ctx.moves(pair).moves:
         if len(move.fields) > 1 and not move.is_shift:
-            yield _moved(pair, move, f"{_fields(move)} moved as a block: {_by(move)}", [])
+            yield _moved(pair, move, f"{_fields(move)} moved as a block: they {_by(move)}", [])
 
 
 def _moved(pair: MessagePair, move: Move, text: str, causes: list[FieldPair]) -> Found:
@@ -110,8 +110,8 @@ def order_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
         before, after = getattr(pair.old, key), getattr(pair.new, key)
         if before != after and fields:
             text = f"the {key.replace('_', ' ')} of `{pair.new.name}` is {after}, was {before}"
-            where = f"{count(len(fields), 'field')} of {count(len(messages), 'message')} are read otherwise"
-            yield Found(text, (key,), before, after, (f"{where}: {some(fields)}.",))
+            what = f"{count(len(fields), 'field')} of {count(len(messages), 'message')}"
+            yield Found(text, (key,), before, after, (f"Read otherwise, {what}: {some(fields)}.",))
 
 
 @rule("DIF113", "field", when="gone")

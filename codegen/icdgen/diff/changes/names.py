@@ -18,10 +18,15 @@ Renamed = list[tuple[Name | None, Name | None]]
 
 
 def lines(renamed: Renamed) -> tuple[str, ...]:
-    """``C: `a` -> `b`, and 3 more``, a line a language."""
+    """``C: `a` -> `b` and 3 more``, a line a language. Where all came, or all went, just the names."""
     found: dict[str, list[str]] = {}
+    one_way = not all(old and new for old, new in renamed) and any(
+        all(pair[side] is None for pair in renamed) for side in (0, 1)
+    )
     for old, new in renamed:
         said = f"{quote(old.text) if old else '(new)'} -> {quote(new.text) if new else '(gone)'}"
+        if one_way:
+            said = quote((old or new).text)
         rows = found.setdefault((old or new).language, [])
         if said not in rows:
             rows.append(said)

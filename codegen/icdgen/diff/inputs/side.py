@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +14,9 @@ from icdgen.errors import UserError
 from icdgen.icd.load import load
 from icdgen.icd.loaded import Loaded
 from icdgen.icd.model import Icd
+
+
+_READING = ("ICD001", "ICD002", "ICD003", "ICD004", "ICD010")  # something of the ICD is not in the model
 
 
 @dataclass
@@ -26,15 +30,26 @@ class Side:
     folder: str = ""
     prefix: str = ""  # what stands there instead: "v1.2:"
 
-    @property
-    def ok(self) -> bool:
-        return not any(finding.severity == "error" for finding in self.findings)
+    def is_whole(self, unchecked: bool = False) -> bool:
+        """Whether the ICDs can be compared: without errors, or at least readable."""
+        errors = [finding for finding in self.findings if finding.severity == "error"]
+        return not any(not unchecked or finding.code in _READING for finding in errors)
 
     def place(self, place: Place | None) -> Place | None:
         """The place as a user knows it."""
         if place is None or not place.file:
             return None
         return place._replace(file=self.name(place.file))
+
+    def erratum(self, key: str) -> Place | None:
+        """Where the entry of an overlay stands that has this id."""
+        entry = re.compile(rf"^[ -]*id: *[\"']?({re.escape(key)})[\"']? *$", re.MULTILINE)
+        for file, text in self.texts.items():
+            found = entry.search(text) if text.find("errata:") >= 0 else None
+            if found:
+                start = found.start(1)
+                return Place(file, text.count("\n", 0, start) + 1, start - text.rfind("\n", 0, start), len(key))
+        return None
 
     def name(self, file: str) -> str:
         """The file as a user knows it."""

@@ -55,7 +55,8 @@ def _summary(report: Report, paint: Paint) -> Iterator[str]:
 def _direction(direction: Direction, paint: Paint, width: int | None, everything: bool) -> Iterator[str]:
     good = direction.total - len(direction.frames)
     verdict = paint(direction.verdict, direction.verdict)
-    yield f"{paint('head', direction.question)} {verdict}: {good} of {count(direction.total, 'frame')} as before"
+    total = f"{good} of {count(direction.total, 'frame')} as before" if direction.total else "there are none"
+    yield f"{paint('head', direction.question)} {verdict}: {total}"
     for line in direction.general:
         yield from _wrapped(shown(line), width, "  ! ")
     most = len(direction.frames) if everything else MOST_FRAMES
