@@ -98,7 +98,7 @@ def _change(rule: Rule, pair: Pair, found: Found) -> Change:
 
 
 def _decisions(pair: Pair, keys: tuple[str, ...]) -> tuple[str, ...]:
-    """Errata that came, went or changed, and that are about one of these keys of the pair."""
+    """Errata that came, went or changed, and that hold something else for one of these keys of the pair."""
     old, new = ({e.id: e for e in getattr(side, "errata", ())} for side in (pair.old, pair.new))
     if old == new or not hasattr(pair.any, "source") or not hasattr(pair, "owner") and not hasattr(pair, "rehomed"):
         return ()
@@ -111,4 +111,4 @@ def _decisions(pair: Pair, keys: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _holds(entry: Erratum, keys: tuple[str, ...]) -> bool:
-    return any(key in keys for key, _ in (*entry.printed, *entry.held))
+    return any(key in keys for key, _ in entry.held)

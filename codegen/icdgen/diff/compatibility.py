@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from icdgen.diff.changes.numbers import is_wider
 from icdgen.diff.compare import Comparison
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind
 from icdgen.diff.similar import same_sense
-from icdgen.diff.wording import ids, some
+from icdgen.diff.wording import some
 from icdgen.icd.formula import Scale
 from icdgen.icd.model import Field, Message
 from icdgen.icd.rules.wording import quote
@@ -130,25 +130,33 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     wrong = [(p, why) for p in pair.kept if (why := _misread(p))]
     if not absent and not wrong:
         return YES, ()
-    reasons = [f"{quote(p.any.name)}: {why}" for p, why in wrong]
+    reasons = _together((p.any.name, why) for p, why in wrong)
     if absent:
         reasons.append(f"not carried: {some([f.name for f in absent])}")
     verdict = NO if len(absent) + len(wrong) == len(reader.fields) else PARTLY
     return verdict, tuple(reasons)
 
 
+def _together(items: Iterable[tuple[str, str]]) -> list[str]:
+    """``has another unit: `a` and `b` ``: names with the same reason in one line."""
+    found: dict[str, list[str]] = {}
+    for name, why in items:
+        found.setdefault(why, []).append(name)
+    return [f"{why}: {some(names)}" for why, names in found.items()]
+
+
 def _misread(pair: FieldPair) -> str:
     """Why a value that one side wrote is another to the other side; empty if it is not."""
     old, new = pair.old, pair.new
     if not pair.same_bits:
-        return "lies on other bits"
+        return "other bits"
     if kind(old) != kind(new):
-        return f"is read as {new.type} or as {old.type}"
+        return f"read as {new.type}, or as {old.type}"
     if (old.scale or Scale(1)) != (new.scale or Scale(1)):
-        return "has another formula"
+        return "another formula"
     if (old.unit.symbol if old.unit else "") != (new.unit.symbol if new.unit else ""):
-        return "has another unit"
-    return "has values of another sense" if _senses_differ(old, new) else ""
+        return "another unit"
+    return "values of another sense" if _senses_differ(old, new) else ""
 
 
 def _senses_differ(old: Field, new: Field) -> bool:
@@ -162,35 +170,22 @@ def _new_obeys_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
     old, new = pair.old, pair.new
     if old.length != new.length:
         return NO, (f"{old.length} bytes are sent, {new.length} are expected",)
-    reasons, dead = [], False
-    for one in pair.fields:
-        why, refused = _disobeyed(one)
-        dead |= refused
-        if why:
-            reasons.append(f"{quote(one.any.name)} {why}")
-    return (NO if dead else PARTLY if reasons else YES), tuple(reasons)
+    found = [(one, *_disobeyed(one)) for one in pair.fields]
+    reasons = _together((one.any.name, why) for one, why, _ in found if why)
+    return (NO if any(refused for *_, refused in found) else PARTLY if reasons else YES), tuple(reasons)
 
 
 def _disobeyed(pair: FieldPair) -> tuple[str, bool]:
     """What goes wrong with a field of a telecommand, and whether the whole telecommand is refused for it."""
     old, new = pair.old, pair.new
     if new is None:
-        return "is ignored", False
+        return "ignored", False
     if old is None:
         refused = bool(new.const)
-        return (f"is sent as 0, must be {new.const}" if refused else "is sent as 0"), refused
+        return (f"sent as 0, must be {new.const}" if refused else "sent as 0"), refused
     if new.const is not None and old.const != new.const:
-        return f"must be {new.const}, is sent as {'anything' if old.const is None else old.const}", old.const is not None
+        return f"must be {new.const}, sent as {'anything' if old.const is None else old.const}", old.const is not None
     why = _misread(pair)
     if not why and not is_wider(old.limits, new.limits):
-        why = "may be refused: its limits are narrower"
+        why = "perhaps refused, the limits are narrower"
     return why, False
-
-
-def told(direction: Direction) -> Iterator[str]:
-    """The answer in lines: the verdict with its figures, what concerns everything, then frame by frame."""
-    good = direction.total - len(direction.frames)
-    yield f"{direction.verdict}: {good} of {direction.total} frames as before"
-    yield from direction.general
-    for frame in direction.frames:
-        yield f"{frame.verdict}: {frame.node} {quote(frame.message)} ({ids([frame.id])}): {'; '.join(frame.reasons)}"

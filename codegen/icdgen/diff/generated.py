@@ -52,7 +52,7 @@ class Generated:
         after = self.new if isinstance(pair, MessagePair | EnumPair) else self.clothed
         old, new = self.old.get(id(pair), ()), after.get(id(pair), ())
         found: list[tuple[Name | None, Name | None]] = []
-        for key in dict.fromkeys(_sort(name) for name in (*old, *new)):
+        for key in sorted({_sort(name) for name in (*old, *new)}):
             before, later = ([name for name in names if _sort(name) == key] for names in (old, new))
             if len(before) == len(later):
                 found += [(a, b) for a, b in zip(before, later, strict=True) if a.text != b.text]

@@ -130,7 +130,7 @@ def _members(pair: EnumPair) -> Iterable[MemberPair]:
             twins = [m for m in old if key(m) == key(one)]
             others = [m for m in new if key(m) == key(one)]
             if len(others) == 1 and len(twins) == 1:
-                yield MemberPair(one, others[0], 1.0 if one.name == others[0].name else 0.9, pair)
+                yield MemberPair(one, others[0], 1.0, pair)
                 old.remove(one)
                 new.remove(others[0])
     yield from (MemberPair(one, None, 1.0, pair) for one in old)

@@ -49,8 +49,8 @@ def _placed(change: Change, old: Side, new: Side) -> Change:
     """With places as a user knows them; those of errata in their overlays."""
     places = []
     for side, place in ((old, change.old), (new, change.new)):
-        erratum = side.erratum(change.where.erratum) if change.where.erratum else None
-        places.append(erratum or side.place(place))
+        erratum = change.where.erratum
+        places.append(side.erratum(erratum) if erratum else side.place(place))
     return replace(change, old=places[0], new=places[1])
 
 

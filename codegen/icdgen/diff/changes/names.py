@@ -115,12 +115,10 @@ def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         return
     renamed = ctx.generated.renamed(pair)
     if renamed:
-        gone = sum(1 for old, _ in renamed if old)
-        come = len(renamed) - gone
-        text = f"accessors or constants of {quote(pair.new.name)} {'change' if gone else 'are new'}"
+        was, now = (next((names[side].text for names in renamed if names[side]), "") for side in (0, 1))
+        text = f"accessors or constants of {quote(pair.new.name)} {'change' if was else 'are new'}"
         keys = ("unit", "formula", "special", "min", "max", "above", "below")
-        severity, addition = (None, None) if gone else ("note", True)
-        was, now = (f"{count(gone, 'name')}" if gone else ""), (f"{count(come, 'name')}" if come else "")
+        severity, addition = (None, None) if was else ("note", True)
         yield Found(text, keys, was, now, lines(renamed), severity, addition)
 
 
@@ -154,9 +152,9 @@ def declared_elsewhere(pair: MessagePair | EnumPair, ctx: Context) -> Iterator[F
         yield Found(text, ("name",), old, new, lines(ctx.generated.renamed(pair)))
 
 
-@rule("DIF311", "field", "enum", "member", when="come", severity="note", addition=True)
-def names_come(pair: FieldPair | EnumPair | MemberPair, ctx: Context) -> Iterator[Found]:
-    what = _WHAT[type(pair)]
-    text = f"{what} {quote(pair.new.name)} has generated names now"
-    come: Renamed = [(None, name) for name in ctx.generated.new.get(id(pair), ())]
-    yield Found(text, ("name",), "", pair.new.name, lines(come))
+@rule("DIF311", "message", "field", "enum", "member", "node", when="come", severity="note", addition=True)
+def names_come(pair: Pair, ctx: Context) -> Iterator[Found]:
+    names = ctx.generated.new.get(id(pair), ()) if not isinstance(pair, NodePair) else ()
+    come: Renamed = [(None, name) for name in names]
+    text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} has generated names now"
+    yield Found(text, ("name", "identifier"), "", pair.new.name, lines(come))

@@ -43,9 +43,9 @@ class Side:
 
     def erratum(self, key: str) -> Place | None:
         """Where the entry of an overlay stands that has this id."""
-        entry = re.compile(rf"^[ -]*id: *[\"']?({re.escape(key)})[\"']? *$", re.MULTILINE)
+        entry = re.compile(rf"^[ -]*[\"']?id[\"']?: *[\"']?({re.escape(key)})[\"']?,? *$", re.MULTILINE)
         for file, text in self.texts.items():
-            found = entry.search(text) if text.find("errata:") >= 0 else None
+            found = entry.search(text) if "errata" in text else None
             if found:
                 start = found.start(1)
                 return Place(file, text.count("\n", 0, start) + 1, start - text.rfind("\n", 0, start), len(key))

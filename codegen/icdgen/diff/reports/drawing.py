@@ -59,7 +59,9 @@ class Row:
 
     @property
     def is_new(self) -> bool:
-        return any(box.kind != "same" for box in self.boxes)
+        """Whether anything differs, be it only where the frame ends."""
+        ends = {box.y: box.width for box in self.frames}
+        return any(box.kind != "same" for box in self.boxes) or ends.get(OLD_Y) != ends.get(NEW_Y)
 
 
 class Rest(NamedTuple):

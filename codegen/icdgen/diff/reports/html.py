@@ -103,7 +103,7 @@ def _section(group: Group, number: int) -> Section:
 def _drawing(group: Group) -> Drawing | None:
     """The layouts, where any bit of them changed its place or its sense."""
     owner = group.owner
-    if not isinstance(owner, MessagePair) or not owner.fields:
+    if not isinstance(owner, MessagePair):
         return None
     of_fields = [change for change in group.changes if isinstance(change.pair, FieldPair)]
     made = draw(owner, of_fields)

@@ -79,20 +79,20 @@ def _layer(report: Report, layer: str, paint: Paint, width: int | None, everythi
         yield ""
         yield f"  {paint('head', shown(group.title))} ({group.about}, {printable(group.node)})"
         for change in group.changes:
-            yield from _change(change, paint, width)
+            yield from _change(change, paint, width, everything or not change.addition)
     if len(changes) > most:
         yield ""
         yield f"  ... and {len(changes) - most} more changes of words, which --all lists"
 
 
-def _change(change: Change, paint: Paint, width: int | None) -> Iterator[str]:
+def _change(change: Change, paint: Paint, width: int | None, explained: bool) -> Iterator[str]:
     kind = "addition" if change.addition else change.severity
     head = paint("note" if change.addition else change.severity, f"{kind}[{change.code}]")
     lead = len(f"{kind}[{change.code}] ")
     first, *rest = _wrapped(shown(change.message), width, _INDENT + " " * lead)
     yield f"{_INDENT}{head} {first.lstrip()}"
     yield from rest
-    for note in notes(change):
+    for note in notes(change) if explained else ():
         yield from _wrapped(shown(note), width, _INDENT * 2)
     yield f"{_INDENT * 2}{paint('place', printable(_places(change)))}"
 
