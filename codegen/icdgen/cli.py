@@ -22,6 +22,7 @@ _COMMANDS = {
     "docs": "docs",
     "decode": "codec",
     "encode": "codec",
+    "diff": "diff",
 }
 _DEFAULT = "generate"
 
