@@ -35,9 +35,13 @@ def tool(path: str) -> Path:
 
 @pytest.fixture(scope="session")
 def site(tmp_path_factory) -> Path:
-    """A folder with the site of the shipped ICDs, compared with themselves."""
+    """A folder with the site of the shipped ICDs, compared with an older release."""
     out = tmp_path_factory.mktemp("site")
-    write(make([ROOT / "icd"]), out)
+    old = tmp_path_factory.mktemp("old")
+    shutil.copytree(ROOT / "icd", old / "icd")
+    acp = old / "icd" / "cubeacp.yaml"
+    acp.write_text(acp.read_text("utf-8").replace("name: Estimated Roll Angle,", "name: Roll Angle,").replace("name: Emulation", "name: Simulation"), "utf-8")
+    write(make([ROOT / "icd"], str(old / "icd")), out)
     return out
 
 

@@ -11,5 +11,6 @@ KINDS = {
     "enumeration": "cubeacp/enum-con_mode_select.html",
     "units": "units.html",
     "errata": "errata.html",
+    "changes": "changes.html",
     "print": "cubewheel/all-messages.html",
 }

@@ -13,7 +13,9 @@ from icdgen.commands.common import PATH, chosen, icd_arguments, print_findings, 
 @click.command()
 @icd_arguments
 @click.option("--out", "-o", type=PATH, help="Folder to write to (default: site).")
-@click.option("--previous", type=PATH, help="ICDs of an older release, for a page that says what changed.")
+@click.option(
+    "--previous", metavar="OLD", help="Older release, for a page that says what changed: a file, a folder, a git revision."
+)
 @click.option("--serve", is_flag=True, help="Write nothing; serve the site, made anew whenever an ICD changes.")
 @click.option("--port", type=click.IntRange(0, 65535), default=8000, show_default=True, help="For --serve; 0: any.")
 @click.option("--check", is_flag=True, help="Write nothing; exit 1 if the site is not current.")

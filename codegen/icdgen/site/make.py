@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
 
 from icdgen.backends.html import HtmlBackend
 from icdgen.checked import load_checked
 from icdgen.diagnostics import Finding
 from icdgen.generation.write import Plan, apply, plan
 from icdgen.render import Renderer
+
+if TYPE_CHECKING:
+    from icdgen.diff.inputs.side import Side
 
 
 @dataclass
@@ -23,23 +27,31 @@ class Site:
     inputs: dict[Path, str] = field(default_factory=dict)  # what decides the site -> its `memo.fingerprint` when read
 
 
-def make(icds: list[Path], previous: Path | None = None, templates: Path | None = None) -> Site:
-    """Loads, checks and renders. Raises `UserError` where a file can't be read or a template is bad."""
+def make(icds: list[Path], previous: str | None = None, templates: Path | None = None) -> Site:
+    """Loads, checks and renders. ``previous`` is an older release, as `icdgen.diff.inputs` takes it.
+
+    Raises `UserError` where a file can't be read or a template is bad.
+    """
     loaded = load_checked(icds)
-    older = load_checked([previous]) if loaded.ok and previous is not None else None
-    sources = [loaded] if older is None else [loaded, older]
-    made = Site(
-        ok=all(source.ok for source in sources),
-        findings=[finding for source in sources for finding in source.findings],
-        texts={name: text for source in sources for name, text in source.texts.items()},
-        inputs={path: seen for source in sources for path, seen in source.inputs.items()},
-    )
+    made = Site(loaded.ok, list(loaded.findings), dict(loaded.texts), inputs=dict(loaded.inputs))
+    older = _older(made, previous, icds) if made.ok and previous is not None else None
     if made.ok:
         render = Renderer(HtmlBackend.name, templates)
-        backend = HtmlBackend(older.icd if older else None)
+        backend = HtmlBackend(older)
         made.files = {str(path): text for path, text in backend.files(loaded.icd, render)}
         made.inputs |= render.looked_at
     return made
+
+
+def _older(site: Site, previous: str, icds: list[Path]) -> Side:
+    from icdgen.diff import inputs
+
+    side = inputs.one_side(previous, icds)
+    if not side.is_whole():
+        site.ok = False
+        site.findings += side.findings
+        site.texts.update(side.texts)
+    return side
 
 
 def write(site: Site, out: Path, check: bool = False) -> Plan:

@@ -26,7 +26,7 @@ _TYPES = {
 class Source:
     """Keeps the site current: what is asked for is made of the files as they are then."""
 
-    def __init__(self, icds: list[Path], previous: Path | None = None, templates: Path | None = None) -> None:
+    def __init__(self, icds: list[Path], previous: str | None = None, templates: Path | None = None) -> None:
         self._arguments = (icds, previous, templates)
         self._lock = Lock()
         self._site: Site | None = None
@@ -100,7 +100,7 @@ def _complaint(text: str) -> str:
     )
 
 
-def serve(icds: list[Path], previous: Path | None, templates: Path | None, port: int, say: Callable[[str], None]) -> None:
+def serve(icds: list[Path], previous: str | None, templates: Path | None, port: int, say: Callable[[str], None]) -> None:
     """Serves until interrupted. Raises `UserError` if the port is taken."""
     source = Source(icds, previous, templates)
     try:

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
 
 from icdgen.backends import Identifier
 from icdgen.icd.model import Icd
+
+if TYPE_CHECKING:
+    from icdgen.diff.inputs.side import Side
 
 
 class HtmlBackend:
@@ -15,7 +19,7 @@ class HtmlBackend:
     name = "html"
     reserved: frozenset[str] = frozenset()
 
-    def __init__(self, previous: Icd | None = None) -> None:
+    def __init__(self, previous: Side | None = None) -> None:
         self.previous = previous
 
     def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:

@@ -5,18 +5,22 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
 
 from icdgen import __version__, show
-from icdgen.backends.html import changes, drawing, enums, errata, llms, messages, nodes, search, units
+from icdgen.backends.html import drawing, enums, errata, llms, messages, nodes, search, units
 from icdgen.backends.html.atlas import Atlas
 from icdgen.backends.html.links import CHANGES, ERRATA, HOME, UNITS
 from icdgen.icd.model import Icd
+
+if TYPE_CHECKING:
+    from icdgen.diff.inputs.side import Side
 
 # Written by hand; the pages load them.
 _LOADED = ("style.css", "print.css", "theme.js", "site.js", "codec.js", "frames.js", "try.js", "icon.svg")
 
 
-def files(icd: Icd, render, previous: Icd | None = None) -> Iterator[tuple[PurePosixPath, str]]:
+def files(icd: Icd, render, previous: Side | None = None) -> Iterator[tuple[PurePosixPath, str]]:
     """Path and text of each file; ``previous`` is an older release that ``changes.html`` compares with."""
     atlas = Atlas(icd)
     compared = previous is not None
@@ -38,6 +42,8 @@ def files(icd: Icd, render, previous: Icd | None = None) -> Iterator[tuple[PureP
     yield page(ERRATA, "errata.html.j2", **errata.values(atlas))
     yield page(UNITS, "units.html.j2", **units.values(atlas))
     if previous is not None:
+        from icdgen.backends.html import changes
+
         yield page(CHANGES, "changes.html.j2", **changes.values(atlas, previous))
     usage = messages.usage(icd)
     for node in icd.nodes:
