@@ -40,7 +40,12 @@ def site(tmp_path_factory) -> Path:
     old = tmp_path_factory.mktemp("old")
     shutil.copytree(ROOT / "icd", old / "icd")
     acp = old / "icd" / "cubeacp.yaml"
-    acp.write_text(acp.read_text("utf-8").replace("name: Estimated Roll Angle,", "name: Roll Angle,").replace("name: Emulation", "name: Simulation"), "utf-8")
+    acp.write_text(
+        acp.read_text("utf-8")
+        .replace("name: Estimated Roll Angle,", "name: Roll Angle,")
+        .replace("name: Emulation", "name: Simulation"),
+        "utf-8",
+    )
     write(make([ROOT / "icd"], str(old / "icd")), out)
     return out
 

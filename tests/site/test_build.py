@@ -81,7 +81,9 @@ def test_every_link_and_anchor_resolves_whatever_the_names(strange):
 
 
 def test_the_checker_notices_what_is_broken(tmp_path):
-    (tmp_path / "a.html").write_text('<p id="x"></p><p id="x"></p><a href="b.html">b</a><a href="#y">y</a><img src="//x.org/">')
+    (tmp_path / "a.html").write_text(
+        '<p id="x"></p><p id="x"></p><a href="b.html">b</a><a href="#y">y</a><img src="//x.org/">'
+    )
     assert [line.split(": ")[1] for line in broken(tmp_path)] == [
         "id x stands 2 times", "b.html is no file", "#y has no anchor", "//x.org/ leaves the site",
     ]  # fmt: skip

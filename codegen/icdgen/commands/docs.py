@@ -14,7 +14,9 @@ from icdgen.commands.common import PATH, chosen, icd_arguments, print_findings, 
 @icd_arguments
 @click.option("--out", "-o", type=PATH, help="Folder to write to (default: site).")
 @click.option(
-    "--previous", metavar="OLD", help="Older release, for a page that says what changed: a file, a folder, a git revision."
+    "--previous",
+    metavar="OLD",
+    help="Older release, for a page that says what changed: a file, a folder, a git revision.",
 )
 @click.option("--serve", is_flag=True, help="Write nothing; serve the site, made anew whenever an ICD changes.")
 @click.option("--port", type=click.IntRange(0, 65535), default=8000, show_default=True, help="For --serve; 0: any.")

@@ -100,7 +100,9 @@ def _complaint(text: str) -> str:
     )
 
 
-def serve(icds: list[Path], previous: str | None, templates: Path | None, port: int, say: Callable[[str], None]) -> None:
+def serve(
+    icds: list[Path], previous: str | None, templates: Path | None, port: int, say: Callable[[str], None]
+) -> None:
     """Serves until interrupted. Raises `UserError` if the port is taken."""
     source = Source(icds, previous, templates)
     try:

@@ -79,5 +79,8 @@ def _notes(field: Field) -> list[str]:
         notes.append(f"Below {texts.number(limits.below)}")
     notes += [f"{texts.number(special.value)}: {special.meaning}" for special in field.special]
     for part in field.bitfields:
-        notes.append(f"{texts.bits(part.at, part.bits).capitalize()}: {part.name}" + (f". {part.summary}" if part.summary else ""))
+        notes.append(
+            f"{texts.bits(part.at, part.bits).capitalize()}: {part.name}"
+            + (f". {part.summary}" if part.summary else "")
+        )
     return notes

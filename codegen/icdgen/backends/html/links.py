@@ -76,9 +76,7 @@ class Links:
         taken: set[str] = set()
         if isinstance(owner, Message):
             return {f.name: _free("field-" + slug(f.identifier or f.name, vocabulary), taken) for f in owner.fields}
-        return {
-            str(m.value): _free("member-" + slug(m.identifier or m.name, vocabulary), taken) for m in owner.members
-        }
+        return {str(m.value): _free("member-" + slug(m.identifier or m.name, vocabulary), taken) for m in owner.members}
 
     def field(self, message: Message, field: Field) -> str:
         """``demo/estimated_roll.html#field-roll_angle``"""

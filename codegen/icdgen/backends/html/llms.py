@@ -13,10 +13,21 @@ def text(atlas: Atlas, compared: bool) -> str:
     """Nodes, then every message with ids, length and the link to its page."""
     icd, links = atlas.icd, atlas.links
     lines = ["# Interface control documents", ""]
-    lines += [f"> {_line(', '.join(node.title for node in icd.nodes))}: telecommands, telemetry and enumerations, bit by bit.", ""]
-    lines += ["`icd.json` holds everything that these pages show, in one file. Offsets count bits from the start of a frame.", ""]
+    lines += [
+        f"> {_line(', '.join(node.title for node in icd.nodes))}: telecommands, telemetry and enumerations, bit by bit.",
+        "",
+    ]
+    lines += [
+        "`icd.json` holds everything that these pages show, in one file. Offsets count bits from the start of a frame.",
+        "",
+    ]
     for node in icd.nodes:
-        lines += [f"## {_line(node.title)}", "", _line(" ".join(filter(None, (node.summary, document(node) + "." if node.document else "")))), ""]
+        lines += [
+            f"## {_line(node.title)}",
+            "",
+            _line(" ".join(filter(None, (node.summary, document(node) + "." if node.document else "")))),
+            "",
+        ]
         lines += [f"- [Overview]({links.node(node.name)})"]
         for message in node.messages:
             ids = "/".join(str(id) for _, id in texts.ids(message))

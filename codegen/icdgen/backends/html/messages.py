@@ -85,5 +85,3 @@ def _script_json(value: object) -> str:
     """JSON that may stand in a script element, whatever is in it."""
     text = json.dumps(value, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
-
-

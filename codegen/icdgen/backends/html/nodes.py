@@ -78,11 +78,11 @@ def values(atlas: Atlas, node: Node) -> dict[str, object]:
         ],
         "groups": sorted({row["group"] for row in rows if row["group"]}),
         "loggable": [_loggable(atlas, node, row) for row in node.loggable],
-        "enums": [
-            (Place(enum.name, atlas.links.enum(enum)), len(enum.members), enum.summary) for enum in node.enums
-        ],
+        "enums": [(Place(enum.name, atlas.links.enum(enum)), len(enum.members), enum.summary) for enum in node.enums],
         "included": [Place(one.title, atlas.links.node(one.name)) for one in atlas.icd.included(node)],
-        "speakers": [Place(one.title, atlas.links.node(one.name)) for one in atlas.speakers[node.name] if one is not node],
+        "speakers": [
+            Place(one.title, atlas.links.node(one.name)) for one in atlas.speakers[node.name] if one is not node
+        ],
         "printed": atlas.links.printed(node.name),
         "errata_count": len(node.errata),
         "own": len(node.messages),
@@ -102,7 +102,9 @@ def _row(atlas: Atlas, node: Node, message: Message) -> dict[str, object]:
         "message": message,
         "url": atlas.links.message(message),
         "ids": ids,
-        "anchors": [f"{'telemetry' if way == 'get' or message.kind == TELEMETRY else 'telecommand'}-{id}" for way, id in ids],
+        "anchors": [
+            f"{'telemetry' if way == 'get' or message.kind == TELEMETRY else 'telecommand'}-{id}" for way, id in ids
+        ],
         "kind": message.kind,
         "group": message.group,
         "length": message.length,

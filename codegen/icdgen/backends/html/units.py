@@ -34,9 +34,7 @@ def values(atlas: Atlas) -> dict[str, object]:
     return {
         "quantities": sorted(quantities.items()),
         "types": [(name, text, counts[name], _widths(name, widths[name])) for name, text in _TYPES.items()],
-        "numberings": [
-            (node.title, f"{node.byte_order}-endian", node.bit_order) for node in atlas.icd.nodes
-        ],
+        "numberings": [(node.title, f"{node.byte_order}-endian", node.bit_order) for node in atlas.icd.nodes],
     }
 
 
@@ -44,5 +42,3 @@ def _widths(kind: str, found: set[int]) -> str:
     if kind == "bytes":
         return texts.span(str(min(found)), str(max(found))) if len(found) > 6 else ", ".join(map(str, sorted(found)))
     return ", ".join(map(str, sorted(found)))
-
-

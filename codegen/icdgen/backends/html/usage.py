@@ -66,7 +66,9 @@ class Usage:
     def _c_setting(self, message: Message, name: str, shown: Field, variable: str) -> str:
         field = self.c.field(message, shown)
         if shown.scale is not None:
-            return f"{name}_set_{field}_{accessor_unit(shown)}(&{variable}, 0.0);   /* ICD_OK, unless it does not fit */"
+            return (
+                f"{name}_set_{field}_{accessor_unit(shown)}(&{variable}, 0.0);   /* ICD_OK, unless it does not fit */"
+            )
         if shown.enum is not None and shown.enum.members:
             return f"{variable}.{field} = {self.c.member(shown.enum, shown.enum.members[-1])};"
         return f"{variable}.{field} = {'true' if shown.type == 'bool' else '0'};"
@@ -89,9 +91,13 @@ class Usage:
             if shown and physical:
                 lines.append(f"command.{physical} = 0.0   # RangeError, if it does not fit")
             elif shown and enum is not None:
-                lines.append(f"command.{field} = {imported[1]}.{python.member(enum.members[-1], self.icd.node(enum.node))}")
+                lines.append(
+                    f"command.{field} = {imported[1]}.{python.member(enum.members[-1], self.icd.node(enum.node))}"
+                )
             elif shown:
-                lines.append(f"command.{field} = {'True' if shown.type == 'bool' else '0.0' if shown.type == 'float' else '0'}")
+                lines.append(
+                    f"command.{field} = {'True' if shown.type == 'bool' else '0.0' if shown.type == 'float' else '0'}"
+                )
             lines.append(f"send({name}.{'SET_ID' if receive else 'ID'}, command.to_bytes())")
         return "\n".join(lines)
 
@@ -118,9 +124,13 @@ class Usage:
                 variant = rust.variant_name(enum.members[-1], owner)
                 lines.append(f"command.{field} = {rust.type_name(enum, owner)}::{variant}.into();")
             elif shown and shown.enum is None:
-                lines.append(f"command.{field} = {'true' if shown.type == 'bool' else '0.0' if shown.type == 'float' else '0'};")
+                lines.append(
+                    f"command.{field} = {'true' if shown.type == 'bool' else '0.0' if shown.type == 'float' else '0'};"
+                )
             narrow = any(fields.is_narrow(one, self.enums) for one in message.fields)
-            lines.append(f"send({name}::{'SET_ID' if receive else 'ID'}, &command.{'try_to_bytes()?' if narrow else 'to_bytes()'});")
+            lines.append(
+                f"send({name}::{'SET_ID' if receive else 'ID'}, &command.{'try_to_bytes()?' if narrow else 'to_bytes()'});"
+            )
         return "\n".join(lines)
 
 

@@ -38,7 +38,11 @@ class Bus:
 def buses(message: Message, protocol: dict, checks: list[dict], data: bytes) -> list[Bus]:
     """The bytes of the message on each bus. ``data`` is the frame shown, ``checks`` are the CRC-8 facts of the nodes
     that speak the message."""
-    found = [_uart(message, protocol, checks, data), _i2c(message, protocol, checks, data), _can(message, protocol, data)]
+    found = [
+        _uart(message, protocol, checks, data),
+        _i2c(message, protocol, checks, data),
+        _can(message, protocol, data),
+    ]
     return [bus for bus in found if bus is not None]
 
 
@@ -118,7 +122,9 @@ def _uart_note(facts: dict) -> str:
         parity = facts["parity"]
         parts.append(f"{facts['data_bits']}{'N' if parity == 'none' else parity[0].upper()}{facts['stop_bits']}")
     framing = facts["framing"]
-    doubled = f"{framing['escape']:02X} within id and data is sent as {framing['escape']:02X} {framing['escaped_data']:02X}"
+    doubled = (
+        f"{framing['escape']:02X} within id and data is sent as {framing['escape']:02X} {framing['escaped_data']:02X}"
+    )
     return ", ".join(parts) + (". " if parts else "") + doubled + "."
 
 
@@ -173,7 +179,9 @@ def _can(message: Message, protocol: dict, data: bytes) -> Bus | None:
         if direction == "telecommand":
             lines += _packets(facts, types, rules, "request", parts, (id, 0, node), data, "Telecommand")
         else:
-            lines.append(Line("Request", [_identifier(rules["request"], types[rules["request"]], parts, (id, 0, node))]))
+            lines.append(
+                Line("Request", [_identifier(rules["request"], types[rules["request"]], parts, (id, 0, node))])
+            )
             lines += _packets(facts, types, rules, "response", parts, (id, node, 0), data, "Answer")
     note = f"{sum(parts)}-bit identifiers. Your own address stands as 0: put it in its place."
     return Bus("CAN", note, lines) if lines else None
@@ -188,7 +196,14 @@ def _identifier(name: str, kind: int, parts: list[int], rest: tuple[int, int, in
 
 
 def _packets(
-    facts: dict, types: dict, rules: dict, way: str, parts: list[int], rest: tuple[int, int, int], data: bytes, label: str
+    facts: dict,
+    types: dict,
+    rules: dict,
+    way: str,
+    parts: list[int],
+    rest: tuple[int, int, int],
+    data: bytes,
+    label: str,
 ) -> Iterator[Line]:
     """One packet, or as many extended ones as it takes; of many the first two and the last."""
     most, name = facts["max_data_bytes"], rules.get(way)

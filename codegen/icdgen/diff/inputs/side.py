@@ -15,7 +15,6 @@ from icdgen.icd.load import load
 from icdgen.icd.loaded import Loaded
 from icdgen.icd.model import Icd
 
-
 _READING = ("ICD001", "ICD002", "ICD003", "ICD004", "ICD010")  # something of the ICD is not in the model
 
 
