@@ -34,18 +34,25 @@ ICD = {
         ]},
     ],
     "messages": [
-        {"name": MARKUP, "identifier": "index", "id": 1, "kind": "telemetry", "length": 25, "group": QUOTES, "summary": TEMPLATE, "fields": [
-            {"at": 3, "bits": 64, "name": MARKUP, "identifier": "con", "type": "enum", "enum": MARKUP, "summary": QUOTES},
-            {"at": 67, "bits": 13, "name": QUOTES, "identifier": "quotes", "type": "int", "unit": "<b>", "formula": "raw*5/9"},
-            {"at": 80, "bits": 8, "name": TEMPLATE, "identifier": "jinja", "type": "uint", "special": [{"value": 3, "meaning": MARKUP}]},
-            {"at": 88, "bits": 64, "name": ENDLESS, "identifier": "endless", "type": "float"},
-            {"at": 152, "bits": 32, "name": "__proto__", "type": "float"},
-            {"at": 184, "bits": 16, "name": "constructor", "type": "bytes"},
-        ]},
+        {
+            "name": MARKUP, "identifier": "index", "id": 1, "kind": "telemetry", "length": 25, "group": QUOTES, "summary": TEMPLATE,
+            "fields": [
+                {"at": 3, "bits": 64, "name": MARKUP, "identifier": "con", "type": "enum", "enum": MARKUP, "summary": QUOTES},
+                {"at": 67, "bits": 13, "name": QUOTES, "identifier": "quotes", "type": "int", "unit": "<b>", "formula": "raw*5/9"},
+                {
+                    "at": 80, "bits": 8, "name": TEMPLATE, "identifier": "jinja", "type": "uint",
+                    "special": [{"value": 3, "meaning": MARKUP}],
+                },
+                {"at": 88, "bits": 64, "name": ENDLESS, "identifier": "endless", "type": "float"},
+                {"at": 152, "bits": 32, "name": "__proto__", "type": "float"},
+                {"at": 184, "bits": 16, "name": "constructor", "type": "bytes"},
+            ],
+        },
         {"name": "aux", "id": 7, "kind": "telecommand", "length": 0, "summary": MARKUP},
-        {"name": ENDLESS, "identifier": "endless " + "y" * 300, "set_id": 60, "get_id": 61, "kind": "configuration", "length": 4096, "fields": [
-            {"at": 0, "bits": 32768, "name": "A whole page", "type": "bytes"},
-        ]},
+        {
+            "name": ENDLESS, "identifier": "endless " + "y" * 300, "set_id": 60, "get_id": 61, "kind": "configuration",
+            "length": 4096, "fields": [{"at": 0, "bits": 32768, "name": "A whole page", "type": "bytes"}],
+        },
     ],
     "missing": [{"kind": "telemetry", "id": 9, "name": MARKUP, "why": QUOTES}],
 }  # fmt: skip

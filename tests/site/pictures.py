@@ -1,4 +1,4 @@
-"""``python -m tests.site.pictures FOLDER``: pictures of each kind of page, light, dark, on a phone and on paper, to be looked at."""
+"""``python -m tests.site.pictures FOLDER``: each kind of page light, dark, on a phone and on paper, to be looked at."""
 
 from __future__ import annotations
 

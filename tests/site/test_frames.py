@@ -32,7 +32,10 @@ def node(script: str, argument: object) -> object:
 
 def spellings() -> list[str]:
     source = random.Random(1)
-    words = ["2e", "FB", "0x2e", "0x5", "\\x1f", "$7f", "#aa", "x1", ", ", " ", "\n", ":", "-", "{", "}", "b'", "'", '"', "g", "é", "2", "٣", "0x", "_", "(", ");", "xz"]  # fmt: skip
+    words = [
+        "2e", "FB", "0x2e", "0x5", "\\x1f", "$7f", "#aa", "x1", ", ", " ", "\n", ":", "-", "{", "}", "b'", "'", '"', "g", "é", "2",
+        "٣", "0x", "_", "(", ")", ";", "xz",
+    ]  # fmt: skip
     made = ["".join(source.choices(words, k=source.randint(0, 6))) for _ in range(3000)]
     return [
         "", " ", "2efb 0a00", "0x2e,0xfb", "2E:FB", "{0x2e, 0xfb}", r"\x2e\xfb", 'b"\\x2e"', "'2e'", "0x5, 0x6", "0x", "abc",

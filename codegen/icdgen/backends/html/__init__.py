@@ -1,4 +1,7 @@
-"""The documentation site: plain pages that work from a folder, without network and, but for search and decoder, without JavaScript."""
+"""The documentation site: plain pages that work from a folder, without network.
+
+But for search and decoder they do without JavaScript.
+"""
 
 from __future__ import annotations
 

@@ -36,6 +36,21 @@ class FieldRow:
     errata: tuple[Erratum, ...] = ()
 
 
+# Columns of the table that are left out where no field has anything in them.
+_COLUMNS = (
+    ("raw", "Raw"),
+    ("physical", "Physical"),
+    ("resolution", "Resolution"),
+    ("unit", "Unit"),
+    ("formula", "Formula"),
+)
+
+
+def columns_of(rows: list[FieldRow]) -> list[tuple[str, str]]:
+    """Attribute and title of each further column that says something about at least one field."""
+    return [(name, title) for name, title in _COLUMNS if any(getattr(row, name) for row in rows)]
+
+
 def rows(message: Message, node: Node, links: Links, anchors: list[str]) -> list[FieldRow]:
     """Fields and reserved bits in the order of the frame."""
     found = [_row(key, field, links, anchors[key - 1]) for key, field in enumerate(message.fields, 1)]

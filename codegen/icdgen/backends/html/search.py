@@ -24,7 +24,7 @@ def entries(atlas: Atlas) -> Iterator[Entry]:
             yield "message", message.name, _about(node.title, message), _numbers(message), links.message(message)
         for enum in node.enums:
             yield "enumeration", enum.name, node.title, "", links.enum(enum)
-    for unit, uses in atlas.units.values():
+    for unit, _ in atlas.units.values():
         yield "unit", unit.symbol, unit.quantity, unit.identifier, links.unit(unit)
     for node in icd.nodes:
         for message in node.messages:

@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from icdgen import __version__, show
-from icdgen.backends.html import drawing, enums, errata, llms, messages, nodes, search, units
+from icdgen.backends.html import drawing, enums, errata, fields, llms, messages, nodes, search, units
 from icdgen.backends.html.atlas import Atlas
 from icdgen.backends.html.links import CHANGES, ERRATA, HOME, UNITS
 from icdgen.icd.model import Icd
@@ -30,6 +30,7 @@ def files(icd: Icd, render, previous: Side | None = None) -> Iterator[tuple[Pure
         "compared": compared,
         "changed": errata.changed,
         "hatch": drawing.hatch,
+        "columns_of": fields.columns_of,
         "mask_of": nodes.mask_of,
         "policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'",
     }

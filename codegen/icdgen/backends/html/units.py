@@ -34,8 +34,16 @@ def values(atlas: Atlas) -> dict[str, object]:
     return {
         "quantities": sorted(quantities.items()),
         "types": [(name, text, counts[name], _widths(name, widths[name])) for name, text in _TYPES.items()],
-        "numberings": [(node.title, f"{node.byte_order}-endian", node.bit_order) for node in atlas.icd.nodes],
+        "numberings": _numberings(atlas),
     }
+
+
+def _numberings(atlas: Atlas) -> list[tuple[str, str, str]]:
+    """Titles of the nodes of each combination of byte order and bit numbering."""
+    found: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for node in atlas.icd.nodes:
+        found[f"{node.byte_order}-endian", node.bit_order].append(node.title)
+    return [("all nodes" if len(found) == 1 else ", ".join(titles), *order) for order, titles in found.items()]
 
 
 def _widths(kind: str, found: set[int]) -> str:
