@@ -45,14 +45,14 @@
     const apply = () => {
       const { text, kind, group, bytes, mask } = filter.elements;
       const wanted = text.value.toLowerCase().split(/\s+/).filter(Boolean);
-      const fits = lengths(bytes.value);
-      bytes.setAttribute("aria-invalid", String(fits === null));
+      const fits = numbers(bytes);
+      const logged = mask && numbers(mask);
       let shown = 0;
       rows.forEach((row, index) => {
         const { kind: k, group: g, length: n, mask: m } = row.dataset;
         row.hidden = !(
           (!kind.value || k === kind.value) && (!group?.value || g === group.value) && (!fits || fits(Number(n))) &&
-          (!mask?.checked || m !== "") && wanted.every((word) => matches(row, words[index], word))
+          (!logged || m.split(" ").filter(Boolean).some((bit) => logged(Number(bit)))) && wanted.every((word) => matches(row, words[index], word))
         );
         shown += row.hidden ? 0 : 1;
       });
@@ -69,11 +69,12 @@
     return text.includes(word);
   }
 
-  /** What `6`, `1-8`, `>20` or `<=4` accept; undefined for nothing, null for what cannot be read. */
-  function lengths(text) {
-    const word = text.replace(/\s+/g, "");
-    if (!word) return undefined;
+  /** What `6`, `1-8`, `>20`, `<=4` or `any` accept; null for nothing, and for what cannot be read, which is marked. */
+  function numbers(box) {
+    const word = box.value.replace(/\s+/g, "").toLowerCase();
     const found = /^(?:(\d+)[-–…](\d+)|(<=?|>=?)?(\d+))$/.exec(word);
+    box.setAttribute("aria-invalid", String(!found && word !== "" && word !== "any"));
+    if (word === "any") return () => true;
     if (!found) return null;
     if (found[1]) return (n) => n >= Number(found[1]) && n <= Number(found[2]);
     const bound = Number(found[4]);

@@ -159,8 +159,12 @@ def test_a_node_s_messages_are_filtered(browser, site):
         assert 0 < rows.count() < commands < everything
         page.select_option("[name=kind]", "")
         page.fill("[name=bytes]", "")
-        page.check("[name=mask]")
-        assert 0 < rows.count() < everything
+        page.fill("[name=mask]", "any")
+        loggable = rows.count()
+        page.fill("[name=mask]", "28")
+        assert rows.count() == 1 < loggable < everything
+        page.fill("[name=mask]", "nonsense")
+        assert rows.count() == everything and page.get_attribute("[name=mask]", "aria-invalid") == "true"
 
 
 def test_the_chosen_language_is_remembered(browser, served):

@@ -13,6 +13,7 @@ from urllib.parse import unquote, urlsplit
 import pytest
 
 from icdgen.site import make
+from tests.conformance.icds import COMMITTED
 from tests.conftest import ROOT
 from tests.site.conftest import program, tool
 from tests.site.pages import KINDS
@@ -132,3 +133,16 @@ def test_pages_load_scripts_and_styles_only_from_their_folder(site):
         text = (site / name).read_text("utf-8")
         assert "script-src 'self';" in unescape(text) and "default-src 'none'" in unescape(text)
         assert " style=" not in text and " onclick=" not in text and "<style" not in text
+
+
+def test_a_page_lists_the_frames_of_the_golden_vectors(site, shipped):
+    from icdgen.backends.html.links import Links
+
+    links = Links(shipped)
+    for node in shipped.nodes:
+        vectors = json.loads((COMMITTED / f"{node.name}.json").read_text("utf-8"))
+        for message, data in zip(node.messages, vectors["messages"], strict=True):
+            text = (site / links.message(message)).read_text("utf-8")
+            listed = text.partition('<dl class="frames">')[2].partition("</dl>")[0]
+            shown = [part.partition('"')[0] for part in listed.split('href="#try=')[1:]]
+            assert shown == [vector["bytes"] for vector in data["vectors"] if message.length], message.name

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from icdgen import codec
+from icdgen import codec, layout
 from icdgen.backends.html.texts import MINUS, number
 from icdgen.icd.model import Field, Message, Node
 from icdgen.values.numbers import float_text
@@ -25,6 +25,41 @@ class Example(NamedTuple):
     hex: str
     frame: bytes
     cells: list[Cell]
+
+
+class Frame(NamedTuple):
+    """A vector's bytes, spaced for people and packed for a link."""
+
+    why: str
+    hex: str
+    packed: str
+
+
+def frames(message: Message, node: Node) -> list[Frame]:
+    """Every frame of the message's golden vectors, in their order."""
+    if not message.length:
+        return []
+    found = {frame: why for why, frame in reversed(list(patterns.frames(message)))}
+    ordered = dict.fromkeys(frame for _, frame in patterns.frames(message))
+    for index, raw in enumerate(patterns.raw_columns(message)):
+        frame = _encoded(message, node, raw)
+        if frame not in ordered:
+            ordered[frame] = None
+            found[frame] = f"chosen values {index}"
+    return [Frame(found[frame], frame.hex(" ").upper(), frame.hex()) for frame in ordered]
+
+
+def _encoded(message: Message, node: Node, raw: dict[str, int | bytes]) -> bytes:
+    """What the codec makes of raw values that fit, sooner."""
+    frame = bytearray(message.length)
+    for field in message.fields:
+        value = raw[field.name]
+        if isinstance(value, bytes):
+            frame[field.at // 8 : field.at // 8 + len(value)] = value
+            continue
+        for piece in layout.pieces(field, node):
+            frame[piece.byte] |= (value >> piece.at & (1 << piece.bits) - 1) << piece.shift
+    return bytes(frame)
 
 
 def examples(message: Message, node: Node) -> list[Example]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from icdgen.backends.html import drawing, fields, plan, texts, wire
 from icdgen.backends.html.atlas import Atlas
-from icdgen.backends.html.examples import examples
+from icdgen.backends.html.examples import examples, frames
 from icdgen.backends.html.usage import Usage
 from icdgen.icd.model import Icd, Message, Node
 
@@ -36,6 +36,7 @@ def values(atlas: Atlas, node: Node, message: Message, snippets: Usage) -> dict[
         "buses": wire.buses(message, protocol, checks, data),
         "example_data": message.telemetry_id is not None and bool(data),
         "examples": shown,
+        "frames": frames(message, node),
         "snippets": snippets.snippets(message),
         "contains": atlas.contains.get((message.node, message.name), []),
         "contained_in": atlas.contained_in.get((message.node, message.name), []),

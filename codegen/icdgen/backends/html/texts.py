@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from icdgen.icd.model import CONFIGURATION, Field, Message
+from icdgen.show.fields import bounds, factor_text
 from icdgen.values.numbers import exact_text
 
 MINUS = "\N{MINUS SIGN}"
@@ -17,8 +18,7 @@ def number(value: Fraction | int) -> str:
 
 def factor(value: Fraction) -> str:
     """``0.01``; ``5/9`` where the decimal would not end."""
-    text = exact_text(value)
-    return (text if Fraction(text) == value else str(value)).replace("-", MINUS)
+    return factor_text(value).replace("-", MINUS)
 
 
 def span(low: str, high: str) -> str:
@@ -34,17 +34,10 @@ def raw_range(field: Field) -> str:
 
 
 def physical_range(field: Field) -> str:
-    """Physical values from the smallest to the largest, as far as type and limits tell."""
-    limits = field.limits
-    low = limits.min if limits else None
-    high = limits.max if limits else None
-    if field.type in ("uint", "int"):
-        ends = (Fraction(field.raw_min), Fraction(field.raw_max))
-        least, most = sorted(field.scale.physical(end) for end in ends) if field.scale else ends
-        if not field.scale and limits is None:
-            return raw_range(field) if field.unit else ""
-        low, high = least if low is None else low, most if high is None else high
-    return span(*("" if bound is None else number(bound) for bound in (low, high)))
+    """Physical values from the smallest to the largest, as far as type and limits tell; empty where they are the raw ones."""
+    if field.type in ("uint", "int") and not (field.scale or field.limits or field.unit):
+        return ""
+    return span(*("" if bound is None else number(bound) for bound in bounds(field)))
 
 
 def type_name(field: Field) -> str:
