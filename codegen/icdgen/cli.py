@@ -19,8 +19,10 @@ _COMMANDS = {
     "fmt": "fmt",
     "rule": "rule",
     "show": "show",
+    "docs": "docs",
     "decode": "codec",
     "encode": "codec",
+    "diff": "diff",
 }
 _DEFAULT = "generate"
 

@@ -89,7 +89,7 @@ def _files(top: str) -> list[str]:
             if entry.is_dir():
                 if entry.name not in ("__pycache__", "data"):
                     found += _files(entry.path)
-            elif entry.name.endswith((".py", ".json", ".j2")):
+            elif entry.name.endswith((".py", ".json", ".j2", ".js", ".css")):
                 found.append(entry.path)
     return found
 

@@ -24,6 +24,7 @@ class Renderer:
             loader=_loader(own, places.templates() / backend, self.looked_at),
             bytecode_cache=_bytecode(),
             undefined=jinja2.StrictUndefined,
+            autoescape=lambda template: template is not None and template.endswith(".html.j2"),
             trim_blocks=True,
             lstrip_blocks=True,
             keep_trailing_newline=True,

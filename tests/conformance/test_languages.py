@@ -12,7 +12,7 @@ from tests.conformance.run import run
 
 LANGUAGES = [language for language in all_languages().values() if language.kind in (TESTEE, SELFTEST)]
 # Built for the shipped ICDs too; the others, variants of these, for the odd ones only.
-SHIPPED = ("c", "c-clang", "c-s390x", "c-cortex-m", "c-cortex-m-no-double", "python", "rust")
+SHIPPED = ("c", "c-clang", "c-s390x", "c-cortex-m", "c-cortex-m-no-double", "javascript", "python", "rust")
 OPTIONAL = {"python3.9"}  # not every machine has an interpreter that old
 
 
@@ -45,7 +45,7 @@ def test_a_language_agrees_with_the_reference_codec_on_the_shipped_icds(shipped,
     agree(all_languages()[name], *shipped, 2, tmp_path)
 
 
-@pytest.mark.parametrize("name", ["c", "python", "rust"])
+@pytest.mark.parametrize("name", ["c", "javascript", "python", "rust"])
 def test_physical_values_are_the_same_to_the_last_bit(strange, name, tmp_path):
     totals, notes = physical.run([name], strange[0], 2000, tmp_path)
     assert notes == []
@@ -53,5 +53,5 @@ def test_physical_values_are_the_same_to_the_last_bit(strange, name, tmp_path):
 
 
 def test_random_icds_agree_in_all_languages():
-    totals = check(10, ["c", "python", "rust-debug"], start=1)
+    totals = check(10, ["c", "javascript", "python", "rust-debug"], start=1)
     assert all(total.vectors > 100 and total.differences == 0 for total in totals.values())

@@ -23,6 +23,8 @@ _BUILT_IN = {
     "c-selftest": "icdgen.backends.c_conformance:CSelftestBackend",
     "c-testee": "icdgen.backends.c_conformance:CTesteeBackend",
     "rust-testee": "icdgen.backends.rust_testee:RustTesteeBackend",
+    "html": "icdgen.backends.html:HtmlBackend",
+    "js-testee": "icdgen.backends.js_testee:JsTesteeBackend",
 }
 
 

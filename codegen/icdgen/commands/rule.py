@@ -10,13 +10,22 @@ from icdgen.errors import UserError
 @click.command()
 @click.argument("code", required=False)
 def rule(code) -> None:
-    """Explain a rule with a wrong and a right example; without CODE, list all rules."""
+    """Explain a rule with examples; without CODE, list all rules: of ICDs (ICD...) and of their changes (DIF...)."""
     from icdgen.icd import rules
 
     if code is None:
-        for one in rules.ALL.values():
+        from icdgen.diff.compare import RULES
+
+        for one in (*rules.ALL.values(), *RULES.values()):
             click.echo(f"{one.code}  {one.title}")
         return
-    if code.upper() not in rules.ALL:
+    code = code.upper()
+    if code in rules.ALL:
+        click.echo(rules.explain(code))
+        return
+    from icdgen.diff import rule
+    from icdgen.diff.compare import RULES
+
+    if code not in RULES:
         raise UserError(f"there is no rule {code}", "`icdgen rule` lists them all")
-    click.echo(rules.explain(code.upper()))
+    click.echo(rule.explain(code))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import PurePath
 from urllib.parse import quote
 
 from icdgen import __version__
-from icdgen.diagnostics import Finding
+from icdgen.diagnostics import Finding, Place
 from icdgen.icd import rules
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
@@ -17,23 +17,29 @@ SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:
     """One run of the tool, with the rules that were broken."""
-    findings = list(findings)
+    return json.dumps(document(list(findings), _rule), indent=2) + "\n"
+
+
+def document(findings: list[Finding], about: Callable[[str], dict]) -> dict:
+    """A tree for `json.dumps`. ``about`` describes a rule."""
     codes = sorted({f.code for f in findings})
     index = {code: number for number, code in enumerate(codes)}
-    driver = {"name": "icdgen", "semanticVersion": __version__, "rules": [_rule(code) for code in codes]}
+    driver = {"name": "icdgen", "semanticVersion": __version__, "rules": [about(code) for code in codes]}
     run = {
         "tool": {"driver": driver},
         "columnKind": "unicodeCodePoints",
         "results": [_result(f, index[f.code]) for f in findings],
     }
-    return json.dumps({"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2) + "\n"
+    return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
 
 
 def _rule(code: str) -> dict:
     rule = rules.ALL.get(code)
-    if rule is None:
-        return {"id": code}
-    text = rules.explain(code)
+    return {"id": code} if rule is None else described(code, rule, rules.explain(code))
+
+
+def described(code: str, rule, text: str) -> dict:
+    """A rule that has a ``title``, a ``page`` and a ``severity``; ``text`` explains it."""
     return {
         "id": code,
         "shortDescription": {"text": rule.title},
@@ -44,17 +50,20 @@ def _rule(code: str) -> dict:
 
 
 def _result(finding: Finding, index: int) -> dict:
-    place = finding.place
     text = finding.message + (f"\n{finding.help}" if finding.help else "")
-    region = {"startLine": place.line, "startColumn": place.column, "endColumn": place.column + place.length}
-    where = {"artifactLocation": {"uri": _uri(place.file)}, "region": region}
     return {
         "ruleId": finding.code,
         "ruleIndex": index,
         "level": finding.severity,
         "message": {"text": text},
-        "locations": [{"physicalLocation": where}],
+        "locations": [{"physicalLocation": physical(finding.place)}],
     }
+
+
+def physical(place: Place) -> dict:
+    """A stretch of a line."""
+    region = {"startLine": place.line, "startColumn": place.column, "endColumn": place.column + place.length}
+    return {"artifactLocation": {"uri": _uri(place.file)}, "region": region}
 
 
 def _uri(file: str) -> str:

@@ -31,20 +31,20 @@ def field_table(message: Message, width: int | None = None) -> str:
 
 
 def _row(field: Field) -> tuple[str, ...]:
-    low, high = _range(field)
-    resolution = _factor(field.scale.factor) if field.scale else ""
+    low, high = ("" if bound is None else exact_text(bound) for bound in bounds(field))
+    resolution = factor_text(field.scale.factor) if field.scale else ""
     unit = field.unit.symbol if field.unit else ""
     kind = field.enum.name if field.enum else field.type
     return (str(field.at), str(field.bits), kind, field.name, unit, resolution, low, high, "; ".join(_notes(field)))
 
 
-def _factor(factor: Fraction) -> str:
+def factor_text(factor: Fraction) -> str:
     """``0.01``; ``5/9`` where the decimal would not end."""
     text = exact_text(factor)
     return text if Fraction(text) == factor else str(factor)
 
 
-def _range(field: Field) -> tuple[str, str]:
+def bounds(field: Field) -> tuple[Fraction | None, Fraction | None]:
     """Smallest and largest physical value, as far as the type and inclusive limits tell."""
     limits = field.limits
     low = limits.min if limits else None
@@ -53,7 +53,7 @@ def _range(field: Field) -> tuple[str, str]:
         ends = (Fraction(field.raw_min), Fraction(field.raw_max))
         least, most = sorted(field.scale.physical(end) for end in ends) if field.scale else ends
         low, high = least if low is None else low, most if high is None else high
-    return tuple("" if bound is None else exact_text(bound) for bound in (low, high))
+    return low, high
 
 
 def _notes(field: Field) -> list[str]:

@@ -9,14 +9,19 @@ from typing import NamedTuple
 
 FOLDER = Path(__file__).parent
 
-_SECTION = re.compile(r"^## (ICD[0-9]{3}): (.+)\n", re.MULTILINE)
+_SECTION = re.compile(r"^## ([A-Z]{3}[0-9]{3}): (.+)\n", re.MULTILINE)
 _EXAMPLES = re.compile(
-    r"(?P<why>.+?)\n\nWrong:\n\n```yaml\n(?P<wrong>.*?)```\n\nRight:\n\n```yaml\n(?P<right>.*?)```\n", re.DOTALL
+    r"(?P<why>.+?)\n\n(?:Wrong|Before):\n\n```yaml\n(?P<wrong>.*?)```\n\n"
+    r"(?:Right|After):\n\n```yaml\n(?P<right>.*?)```\n",
+    re.DOTALL,
 )
 
 
 class Page(NamedTuple):
-    """``wrong`` breaks the rule and no other, ``right`` none; both leave out the head of the file."""
+    """``wrong`` breaks the rule and no other, ``right`` none; both leave out the head of the file.
+
+    For a rule of the diff they are the ICD before and after the change.
+    """
 
     title: str
     why: str
@@ -25,10 +30,10 @@ class Page(NamedTuple):
 
 
 @cache
-def of(theme: str) -> dict[str, Page]:
+def of(theme: str, folder: Path = FOLDER) -> dict[str, Page]:
     """The pages of a theme by code. Raises `ValueError` where one does not have the usual form."""
     pages = {}
-    _, *parts = _SECTION.split((FOLDER / f"{theme}.md").read_text(encoding="utf-8"))
+    _, *parts = _SECTION.split((folder / f"{theme}.md").read_text(encoding="utf-8"))
     for code, title, text in zip(parts[0::3], parts[1::3], parts[2::3], strict=True):
         match = _EXAMPLES.match(text.strip("\n") + "\n")
         if match is None:
@@ -37,9 +42,10 @@ def of(theme: str) -> dict[str, Page]:
     return pages
 
 
-def text(code: str, severity: str, page: Page) -> str:
+def text(code: str, severity: str, page: Page, labels: tuple[str, str] = ("Wrong", "Right")) -> str:
     """A page as Markdown, for people."""
+    wrong, right = labels
     return (
         f"# {code}: {page.title} ({severity})\n\n{page.why}\n\n"
-        f"Wrong:\n\n```yaml\n{page.wrong}```\n\nRight:\n\n```yaml\n{page.right}```\n"
+        f"{wrong}:\n\n```yaml\n{page.wrong}```\n\n{right}:\n\n```yaml\n{page.right}```\n"
     )

@@ -1,0 +1,36 @@
+"""The documentation site: plain pages that work from a folder, without network.
+
+But for search and decoder they do without JavaScript.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
+
+from icdgen.backends import Identifier
+from icdgen.icd.model import Icd
+
+if TYPE_CHECKING:
+    from icdgen.diff.inputs.side import Side
+
+
+class HtmlBackend:
+    """``icdgen --lang html``. ``previous`` is an older release to compare with, for the page that says what changed."""
+
+    name = "html"
+    reserved: frozenset[str] = frozenset()
+
+    def __init__(self, previous: Side | None = None) -> None:
+        self.previous = previous
+
+    def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
+        """Every page, and what the pages load."""
+        from icdgen.backends.html.site import files
+
+        return files(icd, render, self.previous)
+
+    def identifiers(self, icd: Icd) -> Iterator[Identifier]:
+        """None: file names and anchors are made unique as they are given out."""
+        return iter(())

@@ -1,0 +1,68 @@
+"""The page that says what changed since an older release: `icdgen diff`, with links to the pages of the site."""
+
+from __future__ import annotations
+
+import re
+
+from icdgen.backends.html.atlas import Atlas
+from icdgen.diff import report
+from icdgen.diff.change import ABOUT, LAYERS, Change
+from icdgen.diff.inputs.side import Side
+from icdgen.diff.reports.groups import Group, groups, notes
+from icdgen.icd.model import Enum, Message, Node
+
+_CODE = re.compile(r"`([^`]*)`")
+
+Words = list[tuple[str, bool]]  # parts of a sentence, and whether each is code
+
+
+def values(atlas: Atlas, previous: Side) -> dict[str, object]:
+    """Values of the page."""
+    made = report.make(previous, Side("this release", atlas.icd))
+    counts = made.counts()
+    return {
+        "old": previous.label,
+        "step": made.step.step,
+        "reason": coded(made.step.reason),
+        "layers": [(layer, counts[layer], ABOUT[layer]) for layer in LAYERS],
+        "directions": [
+            (one.question, one.verdict, [coded(line) for line in one.general], len(one.frames), one.total)
+            for one in made.directions
+        ],
+        "sections": [_section(atlas, group) for group in groups(made.changes)],
+    }
+
+
+def coded(text: str) -> Words:
+    """The text split at its back-ticks."""
+    return [(part, bool(number % 2)) for number, part in enumerate(_CODE.split(text)) if part]
+
+
+def _section(atlas: Atlas, group: Group) -> dict[str, object]:
+    return {
+        "title": group.title,
+        "about": group.about if group.about == "node" else f"{group.about} · {group.node}",
+        "url": _url(atlas, group.owner.new),
+        "lines": [_line(change) for change in group.changes],
+    }
+
+
+def _url(atlas: Atlas, thing: object) -> str:
+    """Where it stands; empty for what is gone."""
+    if isinstance(thing, Message):
+        return atlas.links.message(thing)
+    if isinstance(thing, Enum):
+        return atlas.links.enum(thing)
+    return atlas.links.node(thing.name) if isinstance(thing, Node) else ""
+
+
+def _line(change: Change) -> dict[str, object]:
+    return {
+        "layer": change.layer,
+        "kind": "addition" if change.addition else change.severity,
+        "code": change.code,
+        "words": coded(change.message),
+        "was": change.was,
+        "now": change.now,
+        "notes": [coded(note) for note in notes(change)],
+    }

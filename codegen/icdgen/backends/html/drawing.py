@@ -1,0 +1,197 @@
+"""The bit layout of a frame as a picture: one row for one, two or four bytes, each bit where the ICD numbers it.
+
+Within a byte the most significant bit stands on the left, whichever way bits are numbered, so that a byte reads as its
+hexadecimal digits do.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import groupby
+
+from icdgen import layout
+from icdgen.backends.html.labels import Label, fit
+from icdgen.backends.html.texts import bits, clip
+from icdgen.icd.model import Message, Node
+
+WIDTH, LEFT, TOP = 1000, 64, 24
+_FEW = 3  # rows of one field that are drawn; of more only the first and the last
+
+
+@dataclass
+class Shape:
+    """A field, or the reserved bits. ``key`` is the field's number, from 1."""
+
+    key: int
+    kind: str
+    title: str
+    anchor: str = ""
+    rects: list[tuple[int, int, int, int]] = field(default_factory=list)  # x, y, width, height
+    labels: list[Label] = field(default_factory=list)
+
+
+@dataclass
+class Drawing:
+    """All coordinates are in units of the view box."""
+
+    height: int
+    columns: list[tuple[float, str]]  # x, bit number
+    rows: list[tuple[int, str, str]]  # y, byte, bit
+    shapes: list[Shape]
+    reserved: list[Shape]
+    lines: str  # path of all boundaries
+    keyed: bool  # whether some fields show only their number
+    skips: list[tuple[int, str]]
+    plan: dict[str, object]
+    width: int = WIDTH
+
+
+def draw(message: Message, node: Node, anchors: list[str]) -> Drawing | None:
+    """The picture; None for a message without bytes. ``anchors`` are those of the fields."""
+    return _Canvas(message, node, anchors).drawing() if message.length else None
+
+
+def hatch(x: int, y: int, width: int, height: int) -> str:
+    """Slanted lines across a box, as a path; a pattern fill would need an id that is unique in its page."""
+    path, step = [], 9
+    for start in range(x - height, x + width, step):
+        left, right = max(start, x), min(start + height, x + width)
+        if right > left:
+            path.append(f"M{left} {y + height - (left - start)}L{right} {y + height - (right - start)}")
+    return "".join(path)
+
+
+def bytes_a_row(message: Message) -> int:
+    """1 for short frames of small fields, 4 for long frames."""
+    small = any(f.bits < 8 for f in message.fields)
+    if message.length == 1 or (small and message.length <= 12):
+        return 1
+    return 2 if message.length <= 48 else 4
+
+
+class _Canvas:
+    def __init__(self, message: Message, node: Node, anchors: list[str]) -> None:
+        self.message, self.node = message, node
+        self.across = bytes_a_row(message)
+        self.cell = (WIDTH - LEFT) / (8 * self.across)
+        self.shapes = [
+            Shape(key, one.type, f"{clip(one.name, 200)}: {bits(one.at, one.bits)}", anchors[key - 1])
+            for key, one in enumerate(message.fields, 1)
+        ]
+        self.owner = self._owners()
+        self.grid, self.rows = self._grid()
+        narrow = any(len(set(row)) > 2 * self.across for _, row in self.grid)
+        self.row = (46 if narrow else 34) if self.across < 4 else 30
+
+    def _owners(self) -> list[int]:
+        """Key of the field that each bit of the frame belongs to, in bytes of bits from the left; 0: reserved."""
+        owner = [0] * (8 * self.message.length)
+        for shape, one in zip(self.shapes, self.message.fields, strict=True):
+            if one.type == "bytes":
+                owner[one.at : one.at + one.bits] = [shape.key] * one.bits
+                continue
+            for piece in layout.pieces(one, self.node):
+                right = 8 * piece.byte + 8 - piece.shift
+                owner[right - piece.bits : right] = [shape.key] * piece.bits
+        return owner
+
+    def _grid(self) -> tuple[list[tuple[int, list[int]]], list[int]]:
+        """First byte of each row that is drawn, with the owners of its bits; where rows are left out, -1."""
+        step = 8 * self.across
+        every = [(at // 8, self.owner[at : at + step]) for at in range(0, len(self.owner), step)]
+        grid: list[tuple[int, list[int]]] = []
+        for _, group in groupby(every, key=lambda row: row[1][0] if len(set(row[1])) == 1 else -1 - row[0]):
+            run = list(group)
+            grid += run if len(run) <= _FEW else [run[0], (-1, run[0][1]), run[-1]]
+        return grid, [first for first, _ in grid]
+
+    def drawing(self) -> Drawing:
+        self._fill()
+        height = TOP + self.row * len(self.grid)
+        for shape in self.shapes:
+            shape.labels = fit(shape.rects, self.message.fields[shape.key - 1].name, shape.key)
+        msb0 = self.node.bit_order == "msb0"
+        columns = [
+            (LEFT + (column + 0.5) * self.cell, str(column if msb0 else column // 8 * 8 + 7 - column % 8))
+            for column in range(8 * min(self.across, self.message.length))
+        ]
+        gaps = layout.gaps(self.message)
+        reserved = Shape(0, "reserved", "Reserved: " + ", ".join(bits(g.at, g.bits) for g in gaps[:20]))
+        reserved.rects = self._rects(0)
+        rows = [(self._y(i), str(first), str(8 * first)) for i, first in enumerate(self.rows) if first >= 0]
+        plan = {
+            "across": self.across, "cell": self.cell, "left": LEFT, "top": TOP, "row": self.row, "rows": self.rows,
+        }  # fmt: skip
+        return Drawing(
+            height=height + 2,
+            columns=columns,
+            rows=rows,
+            shapes=self.shapes,
+            reserved=[reserved] if reserved.rects else [],
+            lines=self._lines(),
+            keyed=any(label.key for shape in self.shapes for label in shape.labels),
+            skips=self._skips(),
+            plan=plan,
+        )
+
+    def _y(self, index: int) -> int:
+        return TOP + index * self.row
+
+    def _x(self, column: int) -> int:
+        return round(LEFT + column * self.cell)
+
+    def _fill(self) -> None:
+        for shape in self.shapes:
+            shape.rects = self._rects(shape.key)
+
+    def _rects(self, key: int) -> list[tuple[int, int, int, int]]:
+        """Runs of cells of one owner; runs below each other that are equally wide are one rectangle."""
+        found: list[list[int]] = []
+        for index, (_, owners) in enumerate(self.grid):
+            column = 0
+            for owner, group in groupby(owners):
+                end = column + len(list(group))
+                if owner == key:
+                    x, y, width = self._x(column), self._y(index), self._x(end) - self._x(column)
+                    above = next((r for r in found if r[0] == x and r[2] == width and r[1] + r[3] == y), None)
+                    if above:
+                        above[3] += self.row
+                    else:
+                        found.append([x, y, width, self.row])
+                column = end
+        return [(r[0], r[1], r[2], r[3]) for r in found]
+
+    def _lines(self) -> str:
+        """Boundaries between what belongs to different owners, and around everything."""
+        path = []
+        for index, (_, owners) in enumerate(self.grid):
+            above = self.grid[index - 1][1] if index else []
+            y = self._y(index)
+            for column in range(1, len(owners)):
+                if owners[column] != owners[column - 1]:
+                    path.append(f"M{self._x(column)} {y}v{self.row}")
+            path.append(f"M{LEFT} {y}v{self.row}M{self._x(len(owners))} {y}v{self.row}")
+            differs = [column >= len(above) or owner != above[column] for column, owner in enumerate(owners)]
+            differs += [True] * (len(above) - len(owners))
+            path += self._runs(differs, y)
+        last = self.grid[-1][1]
+        path += self._runs([True] * len(last), self._y(len(self.grid)))
+        return "".join(path)
+
+    def _runs(self, marks: list[bool], y: int) -> list[str]:
+        path, column = [], 0
+        for mark, group in groupby(marks):
+            end = column + len(list(group))
+            if mark:
+                path.append(f"M{self._x(column)} {y}H{self._x(end)}")
+            column = end
+        return path
+
+    def _skips(self) -> list[tuple[int, str]]:
+        """Where rows are left out, and what is said there."""
+        found = []
+        for index, first in enumerate(self.rows):
+            if first < 0:
+                left_out = self.rows[index + 1] - self.rows[index - 1] - self.across
+                found.append((self._y(index), f"{left_out} more bytes"))
+        return found

@@ -1,0 +1,35 @@
+"""The page of all errata."""
+
+from __future__ import annotations
+
+from icdgen.backends.html.atlas import Atlas
+from icdgen.icd.model import Erratum
+
+_FEW = 6
+
+
+def values(atlas: Atlas) -> dict[str, object]:
+    """Values of the page: of each node that has some, its errata in their order."""
+    return {
+        "groups": [
+            (node, [_entry(atlas, erratum) for erratum in node.errata]) for node in atlas.icd.nodes if node.errata
+        ],
+    }
+
+
+def _entry(atlas: Atlas, erratum: Erratum) -> dict[str, object]:
+    places = atlas.places_of(erratum)
+    return {"erratum": erratum, "places": places[:_FEW], "more": places[_FEW:]}
+
+
+def changed(erratum: Erratum) -> list[tuple[str, str, str]]:
+    """Key, as printed, as held; for errata that change something."""
+    printed = dict(erratum.printed)
+    return [(key, shown(printed.get(key)), shown(held)) for key, held in erratum.held] if erratum.changes else []
+
+
+def shown(value: object) -> str:
+    """A value of the ICD file as text."""
+    if value is None:
+        return "absent"
+    return str(value).lower() if isinstance(value, bool) else str(value)

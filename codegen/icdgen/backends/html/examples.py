@@ -1,0 +1,91 @@
+"""Golden vectors that a page shows: few, and such that each says something."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from icdgen import codec, layout
+from icdgen.backends.html.texts import MINUS, number
+from icdgen.icd.model import Field, Message, Node
+from icdgen.values.numbers import float_text
+from icdgen.vectors import patterns
+
+_MOST = 60  # fields of a message whose values are written out for each example
+
+
+class Cell(NamedTuple):
+    raw: str
+    value: str
+
+
+class Example(NamedTuple):
+    """A frame and what it holds, field by field."""
+
+    why: str
+    hex: str
+    frame: bytes
+    cells: list[Cell]
+
+
+class Frame(NamedTuple):
+    """A vector's bytes, spaced for people and packed for a link."""
+
+    why: str
+    hex: str
+    packed: str
+
+
+def frames(message: Message, node: Node) -> list[Frame]:
+    """Every frame of the message's golden vectors, in their order."""
+    if not message.length:
+        return []
+    found = {frame: why for why, frame in reversed(list(patterns.frames(message)))}
+    ordered = dict.fromkeys(frame for _, frame in patterns.frames(message))
+    for index, raw in enumerate(patterns.raw_columns(message)):
+        frame = _encoded(message, node, raw)
+        if frame not in ordered:
+            ordered[frame] = None
+            found[frame] = f"chosen values {index}"
+    return [Frame(found[frame], frame.hex(" ").upper(), frame.hex()) for frame in ordered]
+
+
+def _encoded(message: Message, node: Node, raw: dict[str, int | bytes]) -> bytes:
+    """What the codec makes of raw values that fit, sooner."""
+    frame = bytearray(message.length)
+    for field in message.fields:
+        value = raw[field.name]
+        if isinstance(value, bytes):
+            frame[field.at // 8 : field.at // 8 + len(value)] = value
+            continue
+        for piece in layout.pieces(field, node):
+            frame[piece.byte] |= (value >> piece.at & (1 << piece.bits) - 1) << piece.shift
+    return bytes(frame)
+
+
+def examples(message: Message, node: Node) -> list[Example]:
+    """The pseudo-random frame and all ones, which the golden vectors hold too; none for a message without bytes."""
+    if not message.length:
+        return []
+    rows = [("random 0", patterns.random_frame(message, "vector 0")), ("all ones", b"\xff" * message.length)]
+    found = []
+    for why, frame in rows:
+        raw = codec.decode(node, message, frame) if len(message.fields) <= _MOST else {}
+        cells = [_cell(field, raw[field.name]) for field in message.fields] if raw else []
+        found.append(Example(why, frame.hex(" ").upper(), frame, cells))
+    return found
+
+
+def _cell(field: Field, raw: int | bytes) -> Cell:
+    if isinstance(raw, bytes):
+        text = raw.hex(" ").upper()
+        return Cell(text if len(raw) <= 16 else f"{text[:47]} …", "")
+    if field.type == "float":
+        value = float_text(codec.float_value(field, raw), field.bits)
+        return Cell(f"0x{raw:0{field.bits // 4}X}", value.replace("-", MINUS))
+    if field.enum is not None:
+        name = next((member.name for member in field.enum.members if member.value == raw), "no member")
+        return Cell(number(raw), name)
+    if field.type == "bool":
+        return Cell(str(raw), "true" if raw else "false")
+    exact = codec.physical(field, raw)
+    return Cell(number(raw), "" if exact is None else number(exact))

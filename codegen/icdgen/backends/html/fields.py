@@ -1,0 +1,101 @@
+"""The rows of a message's field table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from icdgen import layout
+from icdgen.backends.html import texts
+from icdgen.backends.html.links import Links
+from icdgen.icd.model import Enum, Erratum, Field, Member, Message, Node
+
+
+@dataclass
+class FieldRow:
+    """A field, or (``key`` 0) a run of reserved bits."""
+
+    key: int
+    at: int
+    bits: int
+    name: str = "reserved"
+    anchor: str = ""
+    kind: str = "reserved"
+    type: str = ""
+    enum: Enum | None = None
+    enum_url: str = ""
+    members: tuple[Member, ...] = ()
+    raw: str = ""
+    physical: str = ""
+    resolution: str = ""
+    unit: str = ""
+    unit_url: str = ""
+    unit_title: str = ""
+    formula: str = ""
+    summary: str = ""
+    notes: tuple[str, ...] = ()
+    errata: tuple[Erratum, ...] = ()
+
+
+# Columns of the table that are left out where no field has anything in them.
+_COLUMNS = (
+    ("raw", "Raw"),
+    ("physical", "Physical"),
+    ("resolution", "Resolution"),
+    ("unit", "Unit"),
+    ("formula", "Formula"),
+)
+
+
+def columns_of(rows: list[FieldRow]) -> list[tuple[str, str]]:
+    """Attribute and title of each further column that says something about at least one field."""
+    return [(name, title) for name, title in _COLUMNS if any(getattr(row, name) for row in rows)]
+
+
+def rows(message: Message, node: Node, links: Links, anchors: list[str]) -> list[FieldRow]:
+    """Fields and reserved bits in the order of the frame."""
+    found = [_row(key, field, links, anchors[key - 1]) for key, field in enumerate(message.fields, 1)]
+    found += [FieldRow(0, gap.at, gap.bits) for gap in layout.gaps(message)]
+    return sorted(found, key=lambda row: row.at)
+
+
+def _row(key: int, field: Field, links: Links, anchor: str) -> FieldRow:
+    return FieldRow(
+        key=key,
+        at=field.at,
+        bits=field.bits,
+        name=field.name,
+        anchor=anchor,
+        kind=field.type,
+        type=texts.type_name(field),
+        enum=field.enum,
+        enum_url=links.enum(field.enum) if field.enum else "",
+        members=field.enum.members if field.enum else (),
+        raw=texts.raw_range(field),
+        physical=texts.physical_range(field),
+        resolution=texts.factor(abs(field.scale.factor)) if field.scale else "",
+        unit=field.unit.symbol if field.unit else "",
+        unit_url=links.unit(field.unit) if field.unit else "",
+        unit_title=field.unit.quantity if field.unit else "",
+        formula=field.formula if field.scale else "",
+        summary=field.summary,
+        notes=tuple(_notes(field)),
+        errata=field.errata,
+    )
+
+
+def _notes(field: Field) -> list[str]:
+    notes = []
+    if field.const is not None:
+        notes.append(f"Always {field.const}" + (f" (0x{field.const:X})" if field.const > 9 else ""))
+    limits = field.limits
+    if limits and limits.above is not None:
+        notes.append(f"Above {texts.number(limits.above)}")
+    if limits and limits.below is not None:
+        notes.append(f"Below {texts.number(limits.below)}")
+    notes += [f"{texts.number(special.value)}: {special.meaning}" for special in field.special]
+    for part in field.bitfields:
+        notes.append(
+            f"{texts.bits(part.at, part.bits).capitalize()}: {part.name}"
+            + (f". {part.summary}" if part.summary else "")
+        )
+    return notes

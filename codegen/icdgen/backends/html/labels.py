@@ -1,0 +1,58 @@
+"""Names that fit into the boxes of a drawing."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+_SIZES = (13, 11)  # font sizes that are tried, in units of the view box
+_ADVANCE = 0.54  # width of an average letter, by font size
+_LEADING = 1.18
+
+
+class Label(NamedTuple):
+    """A line of text around ``x``, its baseline at ``y``; ``key``: it is only the field's number."""
+
+    x: int
+    y: float
+    size: int
+    text: str
+    key: bool = False
+
+
+Box = tuple[int, int, int, int]  # x, y, width, height
+
+
+def fit(boxes: list[Box], name: str, number: int) -> list[Label]:
+    """The name in each box that it fits into, in as many lines as it takes; the number where it fits into none."""
+    found = [label for box in boxes for label in _in_box(box, name)]
+    if found or not boxes:
+        return found
+    x, y, width, height = max(boxes, key=lambda box: (box[2] * box[3], -box[1]))
+    return [Label(x + width // 2, round(y + height / 2 + 4, 1), 11, str(number), True)]
+
+
+def _in_box(box: Box, name: str) -> list[Label]:
+    x, y, width, height = box
+    for size in _SIZES:
+        most = max(int((height - 6) / (size * _LEADING)), 1)
+        lines = _wrap(name, int((width - 8) / (size * _ADVANCE)), most)
+        if lines:
+            top = y + height / 2 - (len(lines) - 1) * size * _LEADING / 2 + size * 0.36
+            return [
+                Label(x + width // 2, round(top + index * size * _LEADING, 1), size, line)
+                for index, line in enumerate(lines)
+            ]
+    return []
+
+
+def _wrap(text: str, width: int, most: int) -> list[str]:
+    """At most ``most`` lines of at most ``width`` characters; empty where that cannot be."""
+    lines: list[str] = []
+    for word in text[:400].split():
+        if len(word) > width:
+            return []
+        if lines and len(lines[-1]) + 1 + len(word) <= width:
+            lines[-1] += f" {word}"
+        else:
+            lines.append(word)
+    return lines if len(lines) <= most else []

@@ -1,0 +1,45 @@
+"""``llms.txt``: the site in a page of Markdown, for programs that read text."""
+
+from __future__ import annotations
+
+import re
+
+from icdgen.backends.html import texts
+from icdgen.backends.html.atlas import Atlas, document
+from icdgen.backends.html.links import CHANGES, ERRATA, UNITS
+
+
+def text(atlas: Atlas, compared: bool) -> str:
+    """Nodes, then every message with ids, length and the link to its page."""
+    icd, links = atlas.icd, atlas.links
+    lines = ["# Interface control documents", ""]
+    lines += [
+        f"> {_line(', '.join(node.title for node in icd.nodes))}: telecommands, telemetry and enumerations, bit by bit.",
+        "",
+    ]
+    lines += [
+        "`icd.json` holds everything that these pages show, in one file. Offsets count bits from the start of a frame.",
+        "",
+    ]
+    for node in icd.nodes:
+        lines += [
+            f"## {_line(node.title)}",
+            "",
+            _line(" ".join(filter(None, (node.summary, document(node) + "." if node.document else "")))),
+            "",
+        ]
+        lines += [f"- [Overview]({links.node(node.name)})"]
+        for message in node.messages:
+            ids = "/".join(str(id) for _, id in texts.ids(message))
+            about = f"{message.kind} {ids}, {texts.count(message.length, 'byte')}. {message.summary}".rstrip()
+            lines.append(f"- [{_line(message.name)}]({links.message(message)}): {_line(about)}")
+        lines += [f"- [{_line(enum.name)}]({links.enum(enum)}): enumeration" for enum in node.enums]
+        lines.append("")
+    lines += ["## Further", "", f"- [Errata]({ERRATA})", f"- [Units and types]({UNITS})"]
+    lines += [f"- [What changed]({CHANGES})"] if compared else []
+    return "\n".join([*lines, "- [Everything as JSON](icd.json)", ""])
+
+
+def _line(text: str) -> str:
+    """One line of Markdown that says exactly this."""
+    return re.sub(r"([\\`*_\[\]<>])", r"\\\1", " ".join(texts.clip(text, 400).split()))

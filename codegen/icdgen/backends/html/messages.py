@@ -1,0 +1,88 @@
+"""The page of a message."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from icdgen.backends.html import drawing, fields, plan, texts, wire
+from icdgen.backends.html.atlas import Atlas
+from icdgen.backends.html.examples import examples, frames
+from icdgen.backends.html.usage import Usage
+from icdgen.icd.model import Icd, Message, Node
+
+
+def usage(icd: Icd) -> Usage:
+    """What makes the snippets; once for all messages."""
+    return Usage(icd)
+
+
+def values(atlas: Atlas, node: Node, message: Message, snippets: Usage) -> dict[str, Any]:
+    """Values of the page of a message that ``node`` declares."""
+    anchors = atlas.anchors(message)
+    picture = drawing.draw(message, node, anchors)
+    protocol = atlas.icd.protocol_of(node)
+    checks = atlas.checks(message)
+    shown = examples(message, node)
+    data = shown[0].frame if shown and message.telemetry_id is not None else _fresh(message, node)
+    return {
+        "message": message,
+        "node": node,
+        "url": atlas.links.message(message),
+        "ids": texts.ids(message),
+        "facts": _facts(atlas, node, message),
+        "drawing": picture,
+        "rows": fields.rows(message, node, atlas.links, anchors),
+        "buses": wire.buses(message, protocol, checks, data),
+        "example_data": message.telemetry_id is not None and bool(data),
+        "examples": shown,
+        "frames": frames(message, node),
+        "snippets": snippets.snippets(message),
+        "contains": atlas.contains.get((message.node, message.name), []),
+        "contained_in": atlas.contained_in.get((message.node, message.name), []),
+        "errata": atlas.about(message),
+        "plan": _script_json(_plan(atlas, node, message, picture, protocol, checks)),
+    }
+
+
+def _facts(atlas: Atlas, node: Node, message: Message) -> list[tuple[str, str, str]]:
+    """Label, text, and where a link leads."""
+    facts = [("Length", texts.count(message.length, "byte"), ""), ("Fields", str(len(message.fields)), "")]
+    if message.group:
+        facts.append(("Group", message.group, ""))
+    if message.telecommand_id is not None:
+        facts.append(("Acknowledged", "yes" if message.acknowledge else "no", ""))
+    for owner, row in atlas.logged.get((message.node, message.name), []):
+        facts.append(("Log mask", f"bit {row.bit}", atlas.links.node(owner.name) + "#log-mask"))
+    source = [f"table {message.table}"] if message.table else []
+    source += [f"page {message.page}"] if message.page else []
+    if source:
+        facts.append(("Manual", ", ".join(source), ""))
+    others = [one.title for one in atlas.speakers[node.name] if one is not node]
+    if others:
+        facts.append(("Spoken by", ", ".join(others), ""))
+    return facts
+
+
+def _fresh(message: Message, node: Node) -> bytes:
+    """The frame of a new message: zeros, and what is constant."""
+    from icdgen import codec
+
+    raw = {f.name: bytes(f.bits // 8) if f.type == "bytes" else f.const or 0 for f in message.fields}
+    return codec.encode(node, message, raw)
+
+
+def _plan(atlas: Atlas, node: Node, message: Message, picture, protocol: dict, checks: list[dict]) -> dict[str, object]:
+    enums = {field.enum.name: plan.enum_plan(field.enum) for field in message.fields if field.enum is not None}
+    return {
+        **plan.message_plan(message, node),
+        "enums": enums,
+        "drawing": picture.plan if picture else None,
+        "wire": wire.page_facts(message, protocol, checks),
+    }
+
+
+def _script_json(value: object) -> str:
+    """JSON that may stand in a script element, whatever is in it."""
+    text = json.dumps(value, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")

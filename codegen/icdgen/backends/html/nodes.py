@@ -1,0 +1,125 @@
+"""The home page and the page of a node."""
+
+from __future__ import annotations
+
+from icdgen.backends.html import texts
+from icdgen.backends.html.atlas import Atlas, Place, document, manual
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
+
+_KINDS = {TELECOMMAND: "Telecommands", TELEMETRY: "Telemetry", CONFIGURATION: "Configuration"}
+_CONFIDENCE = ("certain", "likely", "open")
+
+
+def brief(atlas: Atlas, node: Node) -> dict[str, object]:
+    """What every page says about a node."""
+    return {"name": node.name, "title": texts.clip(node.title, 80), "url": atlas.links.node(node.name)}
+
+
+def home(atlas: Atlas) -> dict[str, object]:
+    """Values of the home page."""
+    icd = atlas.icd
+    messages = [message for node in icd.nodes for message in node.messages]
+    errata = [erratum for node in icd.nodes for erratum in node.errata]
+    totals = [
+        (texts.count(len(icd.nodes), "node").split()[0], "nodes"),
+        (f"{len(messages):,}", "messages"),
+        (f"{sum(len(m.fields) for m in messages):,}", "fields"),
+        (f"{sum(len(n.enums) for n in icd.nodes):,}", "enumerations"),
+        (f"{len(errata):,}", "known errata"),
+    ]
+    example = next((m for m in messages if m.telemetry_id is not None and any(f.scale for f in m.fields)), None)
+    return {
+        "totals": totals,
+        "cards": [_card(atlas, node) for node in icd.nodes],
+        "confidence": [(level, sum(e.confidence == level for e in errata)) for level in _CONFIDENCE],
+        "documents": list(dict.fromkeys(manual(node) for node in icd.nodes if node.document)),
+        "example": atlas.place(example) if example else None,
+    }
+
+
+def _card(atlas: Atlas, node: Node) -> dict[str, object]:
+    return {
+        **brief(atlas, node),
+        "summary": node.summary,
+        "document": document(node),
+        "facts": _facts(node),
+        "includes": [atlas.icd.node(name).title for name in node.includes],
+        "counts": [
+            (sum(m.kind == kind for m in node.messages), title.lower() if kind != CONFIGURATION else "configuration")
+            for kind, title in _KINDS.items()
+        ],
+        "errata": len(node.errata),
+    }
+
+
+def _facts(node: Node) -> list[tuple[str, str]]:
+    facts = []
+    if node.node_type is not None:
+        facts.append(("Node type", str(node.node_type)))
+    if node.interface_version is not None:
+        facts.append(("Interface version", str(node.interface_version)))
+    firmware = dict(node.document).get("version")
+    if firmware:
+        facts.append(("Firmware", firmware))
+    return facts
+
+
+def values(atlas: Atlas, node: Node) -> dict[str, object]:
+    """Values of a node's page, and of the page that holds all its messages."""
+    spoken = sorted(atlas.icd.messages_of(node), key=lambda m: m.node != node.name)
+    rows = [_row(atlas, node, message) for message in spoken]
+    return {
+        "node": node,
+        "document": document(node),
+        "facts": [*_facts(node), ("Byte order", f"{node.byte_order}-endian"), ("Bit numbering", _numbering(node))],
+        "rows": rows,
+        "kinds": [
+            (kind, title, count) for kind, title in _KINDS.items() if (count := sum(m.kind == kind for m in spoken))
+        ],
+        "groups": sorted({row["group"] for row in rows if row["group"]}),
+        "loggable": [_loggable(atlas, node, row) for row in node.loggable],
+        "enums": [(Place(enum.name, atlas.links.enum(enum)), len(enum.members), enum.summary) for enum in node.enums],
+        "included": [Place(one.title, atlas.links.node(one.name)) for one in atlas.icd.included(node)],
+        "speakers": [
+            Place(one.title, atlas.links.node(one.name)) for one in atlas.speakers[node.name] if one is not node
+        ],
+        "printed": atlas.links.printed(node.name),
+        "errata_count": len(node.errata),
+        "own": len(node.messages),
+        "fields_count": sum(len(m.fields) for m in node.messages),
+    }
+
+
+def _numbering(node: Node) -> str:
+    return f"bit 0 is the {'least' if node.bit_order == 'lsb0' else 'most'} significant"
+
+
+def _row(atlas: Atlas, node: Node, message: Message) -> dict[str, object]:
+    own = message.node == node.name
+    ids = texts.ids(message)
+    mask = [row.bit for owner, row in atlas.logged.get((message.node, message.name), []) if owner is node]
+    return {
+        "message": message,
+        "url": atlas.links.message(message),
+        "ids": ids,
+        "anchors": [
+            f"{'telemetry' if way == 'get' or message.kind == TELEMETRY else 'telecommand'}-{id}" for way, id in ids
+        ],
+        "kind": message.kind,
+        "group": message.group,
+        "length": message.length,
+        "fields": len(message.fields),
+        "mask": mask,
+        "of": "" if own else atlas.icd.node(message.node).title,
+        "errata": len(atlas.about(message)),
+    }
+
+
+def _loggable(atlas: Atlas, node: Node, row) -> tuple[int, int, Place | None, str, tuple]:
+    found = next((m for m in atlas.icd.messages_of(node) if m.telemetry_id == row.id), None)
+    return row.bit, row.id, atlas.place(found) if found else None, row.name, row.errata
+
+
+def mask_of(bit: int) -> int:
+    """The mask, within its byte, of a bit of the log mask."""
+    return 1 << bit % 8

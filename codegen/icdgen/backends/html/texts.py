@@ -1,0 +1,67 @@
+"""Numbers and phrases as the pages show them."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from icdgen.icd.model import CONFIGURATION, Field, Message
+from icdgen.show.fields import bounds, factor_text
+from icdgen.values.numbers import exact_text
+
+MINUS = "\N{MINUS SIGN}"
+
+
+def number(value: Fraction | int) -> str:
+    """An exact number, with a real minus sign."""
+    return exact_text(Fraction(value)).replace("-", MINUS)
+
+
+def factor(value: Fraction) -> str:
+    """``0.01``; ``5/9`` where the decimal would not end."""
+    return factor_text(value).replace("-", MINUS)
+
+
+def span(low: str, high: str) -> str:
+    """``0 … 255``"""
+    return f"{low} … {high}" if low or high else ""
+
+
+def raw_range(field: Field) -> str:
+    """Raw values that the field can hold; empty where that says nothing."""
+    if field.type in ("uint", "int"):
+        return span(number(field.raw_min), number(field.raw_max))
+    return ""
+
+
+def physical_range(field: Field) -> str:
+    """Physical values from the smallest to the largest, as far as type and limits tell; empty where they are the raw ones."""
+    if field.type in ("uint", "int") and not (field.scale or field.limits or field.unit):
+        return ""
+    return span(*("" if bound is None else number(bound) for bound in bounds(field)))
+
+
+def type_name(field: Field) -> str:
+    """``uint16``, ``float32``, ``bytes``"""
+    return f"{field.type}{field.bits}" if field.type in ("uint", "int", "float") else field.type
+
+
+def bits(at: int, count: int) -> str:
+    """``bit 3``, ``bits 4 to 7``"""
+    return f"bit {at}" if count == 1 else f"bits {at} to {at + count - 1}"
+
+
+def count(number: int, noun: str, plural: str = "") -> str:
+    """``1 byte``, ``2 bytes``"""
+    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
+
+
+def ids(message: Message) -> list[tuple[str, int]]:
+    """The ids of a message and what each is for."""
+    if message.kind == CONFIGURATION:
+        return [("set", message.set_id or 0), ("get", message.get_id or 0)]
+    return [("id", message.id or 0)]
+
+
+def clip(text: str, most: int) -> str:
+    """The text, or its beginning and an ellipsis."""
+    return text if len(text) <= most else text[: most - 1].rstrip() + "…"

@@ -1,0 +1,52 @@
+"""The reference of units and types."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+from icdgen.backends.html import texts
+from icdgen.backends.html.atlas import Atlas, Place
+
+_FEW = 8
+_TYPES = {
+    "uint": "Unsigned integer of 1 to 64 bits.",
+    "int": "Signed integer in two's complement.",
+    "bool": "One bit: 1 is true.",
+    "enum": "Unsigned integer whose values have names. Values without a name are kept.",
+    "float": "IEEE 754 number of 32 or 64 bits. Every NaN is kept as it is.",
+    "bytes": "Whole bytes, in order.",
+}
+
+
+def values(atlas: Atlas) -> dict[str, object]:
+    """Values of the page: units in use by quantity, types with their number of fields."""
+    quantities: dict[str, list[dict[str, object]]] = defaultdict(list)
+    for unit, uses in atlas.units.values():
+        places = [Place(f"{m.name}: {f.name}", atlas.links.field(m, f)) for m, f in uses]
+        quantities[unit.quantity].append({"unit": unit, "uses": places[:_FEW], "more": places[_FEW:]})
+    counts: dict[str, int] = defaultdict(int)
+    widths: dict[str, set[int]] = defaultdict(set)
+    for node in atlas.icd.nodes:
+        for message in node.messages:
+            for field in message.fields:
+                counts[field.type] += 1
+                widths[field.type].add(field.bits)
+    return {
+        "quantities": sorted(quantities.items()),
+        "types": [(name, text, counts[name], _widths(name, widths[name])) for name, text in _TYPES.items()],
+        "numberings": _numberings(atlas),
+    }
+
+
+def _numberings(atlas: Atlas) -> list[tuple[str, str, str]]:
+    """Titles of the nodes of each combination of byte order and bit numbering."""
+    found: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for node in atlas.icd.nodes:
+        found[f"{node.byte_order}-endian", node.bit_order].append(node.title)
+    return [("all nodes" if len(found) == 1 else ", ".join(titles), *order) for order, titles in found.items()]
+
+
+def _widths(kind: str, found: set[int]) -> str:
+    if kind == "bytes":
+        return texts.span(str(min(found)), str(max(found))) if len(found) > 6 else ", ".join(map(str, sorted(found)))
+    return ", ".join(map(str, sorted(found)))

@@ -1,0 +1,99 @@
+"""``icdgen diff``"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import click
+
+from icdgen.commands.common import PATH, chosen, print_findings
+from icdgen.diagnostics import Findings
+from icdgen.errors import UserError
+
+_FORMATS = ("text", "markdown", "json", "sarif", "github", "html")
+_LAYERS = ("wire", "meaning", "source", "text", "additions")
+
+
+def _asked(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -> tuple[str, ...]:
+    words = tuple(word.strip() for item in value for word in item.split(",") if word.strip())
+    for word in words:
+        if word not in _LAYERS:
+            raise click.BadParameter(f"'{word}' is not one of {', '.join(_LAYERS)}", ctx, param)
+    return words
+
+
+@click.command()
+@click.argument("sides", nargs=-1, required=True, metavar="OLD [NEW]")
+@click.option("--format", "form", type=click.Choice(_FORMATS), default="text", show_default=True)
+@click.option("--out", "-o", type=PATH, help="File to write the report to (default: standard output).")
+@click.option(
+    "--fail-on", "asked", multiple=True, callback=_asked, metavar="LAYERS",
+    help="Exit with 1 for changes of these layers: wire, meaning, source, text. What is merely added counts only with `additions`.",
+)  # fmt: skip
+@click.option("--accepted", type=PATH, help="List of accepted changes (default: the nearest .icdgen-accepted.yaml).")
+@click.option("--uses", "sources", multiple=True, type=PATH, help="Also name the lines of these C, Python or Rust sources that use what changed.")  # fmt: skip
+@click.option("--unchecked", is_flag=True, help="Compare although `icdgen check` finds fault with an ICD.")
+@click.option("--all", "everything", is_flag=True, help="Leave nothing out of the text report.")
+def diff(sides, form, out, asked, accepted, sources, unchecked, everything) -> None:
+    """Say what changed from OLD to NEW: on the wire, in meaning, in generated names, in words only.
+
+    A side is an ICD file or folder, a git revision (HEAD~1, or HEAD~1:icd/a.yaml), or the output of `icdgen show --format json`
+    (a file, or - for standard input). A..B compares two revisions, a single revision the working tree with it. Exit status: 0 nothing
+    at a level of --fail-on, 1 found, 2 misuse or an ICD that cannot be compared.
+    """
+    from icdgen.diff import inputs, report, uses
+
+    try:
+        old, new = inputs.sides(list(sides), chosen(())[0], unchecked)
+    except Findings as error:
+        print_findings(error.findings, {}, "text", err=True)
+        sys.exit(2)
+    for side in (old, new):
+        if not side.is_whole():
+            print_findings(side.findings, side.texts, "text", err=True)
+    if not (old.is_whole(unchecked) and new.is_whole(unchecked)):
+        help = "correct them; --unchecked passes over what can be read and only breaks a rule"
+        raise UserError("ICDs with errors are not compared", help)
+    made = report.make(old, new, _acceptances(accepted))
+    if sources:
+        made.uses = uses.uses(made.comparison, made.changes, sources)
+    _write(made, form, out, everything)
+    sys.exit(1 if made.fails(asked) else 0)
+
+
+def _acceptances(path: Path | None) -> list:
+    from icdgen.diff import accepted
+
+    found = path or accepted.find(Path.cwd())
+    if found is None:
+        return []
+    name = os.path.relpath(found) if path is None else str(found)
+    try:
+        return accepted.read(found, name)[0]
+    except Findings as error:
+        try:
+            texts = {name: found.read_text(encoding="utf-8", errors="replace")}
+        except OSError:
+            texts = {}
+        print_findings(error.findings, texts, "text", err=True)
+        sys.exit(2)
+
+
+def _write(made, form: str, out: Path | None, everything: bool) -> None:
+    from icdgen import tables
+    from icdgen.diff import reports
+
+    stream = sys.stdout if out is None else None
+    colour = form == "text" and stream is not None and stream.isatty() and "NO_COLOR" not in os.environ
+    text = reports.get(form)(made, colour, tables.width_of(stream), everything)
+    if out is None:
+        click.echo(text, nl=False, color=colour or None)
+        return
+    from icdgen.generation.write import replace
+
+    try:
+        replace(out, text.encode("utf-8"))
+    except OSError as error:
+        raise UserError(f"cannot write {out}: {error.strerror}", "name a file in a folder that is there") from None

@@ -1,0 +1,48 @@
+"""``icdgen docs``"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from icdgen.commands.common import PATH, chosen, icd_arguments, print_findings, say
+
+
+@click.command()
+@icd_arguments
+@click.option("--out", "-o", type=PATH, help="Folder to write to (default: site).")
+@click.option(
+    "--previous",
+    metavar="OLD",
+    help="Older release, for a page that says what changed: a file, a folder, a git revision.",
+)
+@click.option("--serve", is_flag=True, help="Write nothing; serve the site, made anew whenever an ICD changes.")
+@click.option("--port", type=click.IntRange(0, 65535), default=8000, show_default=True, help="For --serve; 0: any.")
+@click.option("--check", is_flag=True, help="Write nothing; exit 1 if the site is not current.")
+def docs(icds, out, previous, serve, port, check) -> None:
+    """Make the documentation site of ICDs: static pages that open from the folder, without a server."""
+    from icdgen import site
+
+    paths, config = chosen(icds)
+    if serve:
+        if out is not None or check:
+            raise click.UsageError("--serve writes nothing: leave --out and --check out")
+        site.serve(paths, previous, config.templates, port, say)
+        return
+    made = site.make(paths, previous, config.templates)
+    if made.findings:
+        print_findings(made.findings, made.texts, "text", err=True)
+    if not made.ok:
+        sys.exit(1)
+    out = out or Path("site")
+    plan = site.write(made, out, check)
+    if check and plan.changes:
+        say(f"{out}: {len(plan.write)} files are not current, {len(plan.remove)} are stale")
+        sys.exit(1)
+    if plan.changes:
+        removed = f", {len(plan.remove)} removed" if plan.remove else ""
+        say(f"{out}: {len(plan.write)} of {len(plan.files)} files written{removed}. Open {out / 'index.html'}")
+    else:
+        say(f"{out}: all {len(plan.files)} files are current")

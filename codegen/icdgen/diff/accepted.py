@@ -1,0 +1,99 @@
+"""``.icdgen-accepted.yaml``: changes that someone accepted, each with a reason, so that they do not fail again."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import NamedTuple
+
+from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.diff.change import Change, Where
+from icdgen.diff.compare import RULES
+from icdgen.icd import schema, source
+from icdgen.icd.rules.wording import close_to, quote
+from icdgen.icd.tree import Map
+
+NAME = ".icdgen-accepted.yaml"
+STALE = "DIF901"
+_VALUES = ("was", "now")
+
+
+class Acceptance(NamedTuple):
+    """One entry. ``where``, ``was`` and ``now`` hold only what the entry says."""
+
+    code: str
+    where: dict[str, str]
+    values: dict[str, str]
+    reason: str
+    place: Place
+
+    def covers(self, change: Change) -> bool:
+        """Whether the entry is about this change."""
+        return (
+            self.code == change.code
+            and all(getattr(change.where, key) == value for key, value in self.where.items())
+            and all(getattr(change, key) == value for key, value in self.values.items())
+        )
+
+
+class Sorted(NamedTuple):
+    """The changes that nobody accepted, those that somebody did, and the entries that are about nothing."""
+
+    open: list[Change]
+    accepted: list[tuple[Change, Acceptance]]
+    stale: list[Acceptance]
+
+
+def find(start: Path) -> Path | None:
+    """The file in the nearest folder upwards that has one, within the repository."""
+    for folder in (start, *start.parents):
+        if os.path.isfile(folder / NAME):
+            return folder / NAME
+        if os.path.exists(folder / ".git"):
+            break
+    return None
+
+
+def read(path: Path, name: str) -> tuple[list[Acceptance], str]:
+    """The entries, and the text of the file for excerpts. Raises `Findings`."""
+    data = source.contents(path, name)
+    tree = source.parse(data, name)
+    findings, _ = schema.check(tree, "accepted")
+    entries = [_entry(item) for item in tree.get("changes") or () if isinstance(item, Map)] if not findings else []
+    findings += [_unknown(entry) for entry in entries if entry.code not in RULES]
+    if findings:
+        raise Findings(findings)
+    return entries, data.decode("utf-8", "replace")
+
+
+def _entry(item: Map) -> Acceptance:
+    where = {key: str(item[key]) for key in Where._fields if key in item}
+    values = {key: str(item[key]) for key in _VALUES if key in item}
+    return Acceptance(item["code"].upper(), where, values, item["reason"], item.at("code"))
+
+
+def _unknown(entry: Acceptance) -> Finding:
+    close = close_to(entry.code, RULES)
+    help = f"did you mean {close}?" if close else "`icdgen rule` lists them all"
+    return Finding("ICD010", f"there is no rule {quote(entry.code)}", entry.place, help)
+
+
+def sort(changes: list[Change], entries: list[Acceptance]) -> Sorted:
+    """Each change goes to the first entry that covers it."""
+    result, used = Sorted([], [], []), set()
+    for change in changes:
+        found = [(number, entry) for number, entry in enumerate(entries) if entry.covers(change)]
+        used.update(number for number, _ in found)
+        if found:
+            result.accepted.append((change, found[0][1]))
+        else:
+            result.open.append(change)
+    result.stale.extend(entry for number, entry in enumerate(entries) if number not in used)
+    return result
+
+
+def about_stale(entry: Acceptance) -> Finding:
+    """What is said of an entry that no longer applies."""
+    where = ", ".join(f"{key} {quote(value)}" for key, value in (entry.where | entry.values).items())
+    text = f"this accepted change does not happen: {entry.code} at {where}"
+    return Finding(STALE, text, entry.place, "take the entry out, or correct it", "warning")

@@ -1,0 +1,102 @@
+"""What a change is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+from icdgen.diagnostics import Place
+
+if TYPE_CHECKING:
+    from icdgen.diff.pairs import Pair
+    from icdgen.diff.rule import Rule
+
+WIRE, MEANING, SOURCE, TEXT = "wire", "meaning", "source", "text"
+LAYERS = (WIRE, MEANING, SOURCE, TEXT)  # the worst first
+ABOUT = {
+    WIRE: "bytes mean something else",
+    MEANING: "same bytes, another sense",
+    SOURCE: "generated names and types change",
+    TEXT: "words only",
+}
+CERTAIN, LIKELY = 0.95, 0.7  # from here on a match is called certain, likely; else uncertain
+
+
+class Where(NamedTuple):
+    """What a change is about, by the names that the new ICD has for it, else the old."""
+
+    node: str = ""
+    message: str = ""
+    field: str = ""
+    enum: str = ""
+    member: str = ""
+    section: str = ""  # "protocol.uart.framing.escape"
+    erratum: str = ""
+
+    def __str__(self) -> str:
+        owner, part = self.message or self.enum, self.field or self.member
+        words = [self.node, *(f"`{name}`" for name in (owner, part) if name)]
+        return " ".join([*words, *(word for word in (self.section, self.erratum) if word)])
+
+
+class Found(NamedTuple):
+    """What a rule has to say about a pair. ``keys`` are those of the ICD that differ, the most telling first."""
+
+    message: str
+    keys: tuple[str, ...] = ()
+    was: str = ""
+    now: str = ""
+    details: tuple[str, ...] = ()
+    severity: str | None = None  # where it differs from the rule's
+    addition: bool | None = None
+    where: Where | None = None  # where it is not the pair's
+    places: tuple[Place | None, Place | None] | None = None  # where they are not those of the keys
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One change. ``sure`` tells how sure it is that old and new are the same thing, 1 where the name says so."""
+
+    rule: Rule
+    message: str
+    where: Where
+    was: str
+    now: str
+    old: Place | None
+    new: Place | None
+    details: tuple[str, ...]
+    severity: str  # "error" | "warning" | "note"
+    addition: bool  # something came that nobody relied upon
+    sure: float
+    errata: tuple[str, ...]  # decisions about the manual that make the difference: "ACP-007 is new"
+    pair: Pair = field(compare=False, repr=False)
+
+    @property
+    def code(self) -> str:
+        return self.rule.code
+
+    @property
+    def layer(self) -> str:
+        return self.rule.layer
+
+    @property
+    def breaks(self) -> bool:
+        """Whether it can harm what relied upon the old ICD."""
+        return self.severity != "note" and not self.addition
+
+    @property
+    def place(self) -> Place | None:
+        """Where to look: in the new ICD if it is there."""
+        return self.new or self.old
+
+    @property
+    def certainty(self) -> str:
+        """How sure the match is, in a word; empty where there is nothing to doubt."""
+        return certainty(self.sure)
+
+
+def certainty(sure: float) -> str:
+    """``certain``, ``likely`` or ``uncertain``; empty for a match by name."""
+    if sure >= 1:
+        return ""
+    return "certain" if sure >= CERTAIN else "likely" if sure >= LIKELY else "uncertain"

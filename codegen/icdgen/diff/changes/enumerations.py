@@ -1,0 +1,77 @@
+"""Enumerations: what the values of a field stand for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.diff.change import Found
+from icdgen.diff.context import Context
+from icdgen.diff.pairs import EnumPair, FieldPair, MemberPair
+from icdgen.diff.rule import rule
+from icdgen.diff.similar import same_sense
+from icdgen.diff.wording import some
+from icdgen.icd.rules.wording import quote
+
+
+@rule("DIF204", "field")
+def other_enumeration(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old.enum, pair.new.enum
+    if (pair.old.type == "enum") == (pair.new.type == "enum") and ctx.match.same_enum(old, new):
+        return
+    was, now = old.name if old else "", new.name if new else ""
+    values = [{m.value: m.name for m in enum.members} if enum else {} for enum in (old, new)]
+    details = _differences(*values) if old and new else ()
+    if now and was:
+        text = f"the values of {quote(pair.new.name)} are those of {quote(now)}, were those of {quote(was)}"
+    elif now:
+        text = f"the values of {quote(pair.new.name)} have names now, those of {quote(now)}"
+    else:
+        text = f"the values of {quote(pair.new.name)} no longer have names; they were those of {quote(was)}"
+    yield Found(text, ("enum", "type"), was, now, details, None if was and now else "warning")
+
+
+def _differences(old: dict[int, str], new: dict[int, str]) -> tuple[str, ...]:
+    other = [str(v) for v in sorted(old.keys() & new.keys()) if not same_sense(old[v], new[v])]
+    gone = [old[v] for v in sorted(old.keys() - new.keys())]
+    lines = [f"Another sense: {', '.join(other)}."] if other else []
+    return (*lines, *([f"Without a name now: {some(gone)}."] if gone else []))
+
+
+def _used(owner: EnumPair, ctx: Context) -> tuple[str, ...]:
+    """Fields that hold the enumeration's values."""
+    users = [
+        f"{m.name}: {f.name}"
+        for node in ctx.match.new.nodes
+        for m in node.messages
+        for f in m.fields
+        if f.enum is owner.new
+    ]
+    return (f"Used by {some(users)}.",) if users else ()
+
+
+@rule("DIF205", "member")
+def other_sense(pair: MemberPair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old, pair.new
+    if old.value == new.value and old.name != new.name and not same_sense(old.name, new.name):
+        text = f"{new.value} of {quote(pair.owner.new.name)} is {quote(new.name)}, was {quote(old.name)}"
+        yield Found(text, ("name",), old.name, new.name, _used(pair.owner, ctx))
+
+
+@rule("DIF206", "member")
+def renumbered(pair: MemberPair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old, pair.new
+    if old.value != new.value:
+        text = f"{quote(new.name)} of {quote(pair.owner.new.name)} is {new.value}, was {old.value}"
+        yield Found(text, ("value",), str(old.value), str(new.value), _used(pair.owner, ctx))
+
+
+@rule("DIF207", "member", severity="warning", when="gone")
+def member_removed(pair: MemberPair, ctx: Context) -> Iterator[Found]:
+    text = f"{pair.old.value} of {quote(pair.owner.any.name)} has no name now, was {quote(pair.old.name)}"
+    yield Found(text, ("name",), f"{pair.old.value} = {pair.old.name}", "", _used(pair.owner, ctx))
+
+
+@rule("DIF208", "member", severity="note", when="come", addition=True)
+def member_added(pair: MemberPair, ctx: Context) -> Iterator[Found]:
+    text = f"{pair.new.value} of {quote(pair.owner.any.name)} is {quote(pair.new.name)}; it had no name"
+    yield Found(text, ("name",), "", f"{pair.new.value} = {pair.new.name}", _used(pair.owner, ctx))

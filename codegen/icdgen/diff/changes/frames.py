@@ -1,0 +1,140 @@
+"""Messages: there or not, their ids, kinds and lengths."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.diff.change import Found
+from icdgen.diff.context import Context
+from icdgen.diff.pairs import MessagePair, NodePair
+from icdgen.diff.rule import rule
+from icdgen.diff.wording import ids, some
+from icdgen.icd.model import Message
+from icdgen.icd.rules.wording import count, quote
+
+DIRECTIONS = {"telecommand": "telecommand_id", "telemetry": "telemetry_id"}
+
+
+def _said(message: Message) -> str:
+    return f"{message.kind} {ids(message.ids)}, {count(message.length, 'byte')}"
+
+
+@rule("DIF101", "message", when="gone")
+def removed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    text = f"{quote(pair.old.name)} is gone: {pair.old.kind} {ids(pair.old.ids)} is no longer spoken"
+    yield Found(text, ("name",), _said(pair.old), "")
+
+
+@rule("DIF102", "message", when="come", severity="note", addition=True)
+def added(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    yield Found(f"{quote(pair.new.name)} is new: {_said(pair.new)}", ("name",), "", _said(pair.new))
+
+
+@rule("DIF103", "message")
+def id_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old, pair.new
+    for kind, key in DIRECTIONS.items():
+        before, after = getattr(old, key), getattr(new, key)
+        if before is not None and after is not None and before != after:
+            keys = ("id", "set_id") if kind == "telecommand" else ("id", "get_id")
+            if new.kind == old.kind == "configuration":
+                keys = keys[1:]
+            text = f"the {kind} id of {quote(new.name)} is {after}, was {before}"
+            yield Found(text, keys, str(before), str(after))
+
+
+@rule("DIF104", "icd")
+def id_taken_over(ctx: Context) -> Iterator[Found]:
+    seen = set()
+    for node in ctx.match.nodes:
+        if not node.both:
+            continue
+        for kind, key in DIRECTIONS.items():
+            before, after = (_spoken(icd.messages_of(side), key) for icd, side in ctx.sides(node))
+            for number in sorted(before.keys() & after.keys()):
+                old, new = before[number], after[number]
+                gone, come = ctx.pair(old), ctx.pair(new)
+                if gone is come or (id(old), id(new), kind) in seen:
+                    continue
+                seen.add((id(old), id(new), kind))
+                same = " Both have the same length, so nobody will notice." if old.length == new.length else ""
+                yield Found(
+                    f"{kind} {number} was {quote(old.name)} and is {quote(new.name)} now",
+                    was=old.name,
+                    now=new.name,
+                    details=(f"Old software takes one for the other.{same}",),
+                    where=come.where(),
+                    places=(gone.places(_ID)[0], come.places(_ID)[1]),
+                )
+
+
+_ID = ("id", "set_id", "get_id")
+
+
+def _spoken(messages: tuple[Message, ...], key: str) -> dict[int, Message]:
+    return {getattr(m, key): m for m in messages if getattr(m, key) is not None}
+
+
+@rule("DIF105", "message")
+def kind_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old, pair.new
+    if old.kind == new.kind:
+        return
+    lost = [kind for kind, key in DIRECTIONS.items() if getattr(old, key) is not None and getattr(new, key) is None]
+    details = tuple(f"It can no longer be {_verb(kind)}." for kind in lost)
+    text = f"{quote(new.name)} is a {new.kind} now, was a {old.kind}"
+    only_more = not lost
+    yield Found(text, ("kind",), old.kind, new.kind, details, "note" if only_more else None, only_more)
+
+
+def _verb(kind: str) -> str:
+    return "sent" if kind == "telecommand" else "requested"
+
+
+@rule("DIF106", "message")
+def length_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old, pair.new
+    if old.length == new.length:
+        return
+    shorter, longer = sorted((old.length, new.length))
+    tail = [p.any.name for p in ctx.at_the_end(pair)]
+    if new.length > old.length:
+        what = f"gained {some(tail, 'field')} at its end" if tail else "grew"
+    else:
+        what = f"lost {some(tail, 'field')} at its end" if tail else "shrank"
+    text = f"{quote(new.name)} has {count(new.length, 'byte')}, had {old.length}: it {what}"
+    details = [f"Decoders of the other release refuse the frame: they take exactly {old.length} bytes."]
+    if tail and not ctx.is_touched_before(pair, shorter * 8):
+        details.append(f"The first {shorter} bytes are as they were.")
+    yield Found(text, ("length",), f"{old.length} bytes", f"{new.length} bytes", tuple(details))
+
+
+@rule("DIF130", "node", when="gone")
+def node_removed(pair: NodePair, ctx: Context) -> Iterator[Found]:
+    text = f"node `{pair.old.name}` is gone, with {count(len(pair.old.messages), 'message')}"
+    yield Found(text, ("name",), pair.old.name, "")
+
+
+@rule("DIF131", "node", when="come", severity="note", addition=True)
+def node_added(pair: NodePair, ctx: Context) -> Iterator[Found]:
+    text = f"node `{pair.new.name}` is new, with {count(len(pair.new.messages), 'message')}"
+    yield Found(text, ("name",), "", pair.new.name)
+
+
+@rule("DIF132", "node")
+def speaks_less(pair: NodePair, ctx: Context) -> Iterator[Found]:
+    names = [m.name for m in ctx.unspoken(pair, 0)]
+    if names:
+        text = f"`{pair.new.name}` no longer speaks {some(names, 'message')}"
+        yield Found(text, ("include",), count(len(names), "message"), "", _INCLUDES)
+
+
+@rule("DIF133", "node", severity="note", addition=True)
+def speaks_more(pair: NodePair, ctx: Context) -> Iterator[Found]:
+    names = [m.name for m in ctx.unspoken(pair, 1)]
+    if names:
+        text = f"`{pair.new.name}` speaks {some(names, 'message')} too"
+        yield Found(text, ("include",), "", count(len(names), "message"), _INCLUDES)
+
+
+_INCLUDES = ("They are still there, and declared or included elsewhere.",)

@@ -1,0 +1,131 @@
+"""Fields: which bits they lie on, and how these are read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.diff.change import Found
+from icdgen.diff.context import Context, free_before
+from icdgen.diff.moves import Move
+from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind, orders
+from icdgen.diff.rule import rule
+from icdgen.diff.wording import bits, some, span, type_of
+from icdgen.icd.rules.wording import count, listing, quote
+
+
+@rule("DIF107", "message")
+def field_moved(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    for move in ctx.moves(pair).moves:
+        if len(move.fields) == 1 and not move.is_shift:
+            one = move.fields[0]
+            text = f"{quote(one.new.name)} is at bit {one.new.at:,}, was at bit {one.old.at:,}"
+            yield Found(
+                text, (), f"bit {one.old.at}", f"bit {one.new.at}", where=one.where(), places=one.places(("at",))
+            )
+
+
+@rule("DIF108", "message")
+def fields_shifted(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    for move in ctx.moves(pair).moves:
+        if move.is_shift:
+            yield _moved(
+                pair, move, f"{_cause(move)}: {_fields(move)} {_by(move)}", move.gained + move.lost + move.resized
+            )
+
+
+@rule("DIF109", "message")
+def block_moved(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    for move in ctx.moves(pair).moves:
+        if len(move.fields) > 1 and not move.is_shift:
+            yield _moved(pair, move, f"{_fields(move)} moved as a block: they {_by(move)}", [])
+
+
+def _moved(pair: MessagePair, move: Move, text: str, causes: list[FieldPair]) -> Found:
+    first = move.fields[0]
+    old, new = first.places(("at",))
+    for cause in causes:
+        one, other = cause.places(("at", "bits"))
+        old, new = (one if cause.old is not None else old), (other if cause.new is not None else new)
+    names = [p.new.name for p in move.fields]
+    details = (f"From {quote(names[0])} to {quote(names[-1])}.",) if len(names) > 1 else ()
+    where = causes[0].where() if causes else first.where() if len(names) == 1 else pair.where()
+    return Found(text, (), f"bit {first.old.at}", f"bit {first.new.at}", details, where=where, places=(old, new))
+
+
+def _fields(move: Move) -> str:
+    return quote(move.fields[0].new.name) if len(move.fields) == 1 else count(len(move.fields), "field")
+
+
+def _by(move: Move) -> str:
+    side = "towards the end" if move.by > 0 else "towards the beginning"
+    verb = "lies" if len(move.fields) == 1 else "lie"
+    first = move.fields[0]
+    return f"{verb} {bits(abs(move.by))} further {side} (bit {first.old.at:,} -> {first.new.at:,})"
+
+
+def _cause(move: Move) -> str:
+    said = []
+    if move.gained:
+        said.append(f"{some([p.new.name for p in move.gained])} inserted at bit {move.gained[0].new.at:,}")
+    if move.lost:
+        said.append(f"{some([p.old.name for p in move.lost])} taken out at bit {move.lost[0].old.at:,}")
+    for one in move.resized:
+        said.append(f"{quote(one.new.name)} has {count(one.new.bits, 'bit')}, had {one.old.bits}")
+    if move.reserved:
+        said.append(f"{bits(abs(move.by))} without a field {'inserted' if move.by > 0 else 'taken out'}")
+    return listing(said)
+
+
+@rule("DIF110", "field")
+def width_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old, pair.new
+    if old.bits != new.bits:
+        text = f"{quote(new.name)} has {count(new.bits, 'bit')}, had {old.bits}"
+        yield Found(text, ("bits",), f"{old.bits} bits", f"{new.bits} bits")
+
+
+@rule("DIF111", "field")
+def read_otherwise(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old, pair.new
+    if kind(old) == kind(new):
+        return
+    details = ()
+    if {kind(old), kind(new)} == {"unsigned", "int"} and old.bits == new.bits:
+        half = 1 << (new.bits - 1)
+        first, last = (str(half), str(-half)) if new.type == "int" else (str(-half), str(half))
+        details = (f"What was read as {first} is read as {last}.",)
+    text = f"{quote(new.name)} is a {type_of(new)}, was a {type_of(old)}"
+    yield Found(text, ("type",), old.type, new.type, details)
+
+
+@rule("DIF112", "node")
+def order_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
+    if orders(pair.old) == orders(pair.new):
+        return
+    fields, messages = [], set()
+    for message in pair.messages:
+        for one in message.kept:
+            if one.old.at == one.new.at and one.old.bits == one.new.bits and not one.same_bits:
+                fields.append(one.new.name)
+                messages.add(message.new.name)
+    for key in ("byte_order", "bit_order"):
+        before, after = getattr(pair.old, key), getattr(pair.new, key)
+        if before != after and fields:
+            text = f"the {key.replace('_', ' ')} of `{pair.new.name}` is {after}, was {before}"
+            what = f"{count(len(fields), 'field')} of {count(len(messages), 'message')}"
+            yield Found(text, (key,), before, after, (f"Read otherwise, {what}: {some(fields)}.",))
+
+
+@rule("DIF113", "field", when="gone")
+def field_removed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    if not ctx.told(pair):
+        text = f"{quote(pair.old.name)} is gone: {span(pair.old)} no longer carry it"
+        yield Found(text, ("at",), f"{span(pair.old)}, {type_of(pair.old)}", "")
+
+
+@rule("DIF114", "field", when="come", severity="note", addition=True)
+def field_added(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    if not ctx.told(pair):
+        where = "bits that were reserved" if free_before(pair) else "bits that carried something else"
+        text = f"{quote(pair.new.name)} is new, in {where}: {span(pair.new)}"
+        yield Found(text, ("at",), "", f"{span(pair.new)}, {type_of(pair.new)}")

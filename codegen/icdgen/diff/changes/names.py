@@ -1,0 +1,160 @@
+"""Names and types of the generated code, in each language."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.diff.change import Found
+from icdgen.diff.context import Context
+from icdgen.diff.generated import Name
+from icdgen.diff.pairs import EnumPair, FieldPair, MemberPair, MessagePair, NodePair, Pair
+from icdgen.diff.rule import rule
+from icdgen.icd.rules.wording import count, listing, quote
+
+MOST = 3  # names that are shown of one language
+
+_WHAT = {MessagePair: "message", FieldPair: "field", EnumPair: "enumeration", MemberPair: "value", NodePair: "node"}
+Renamed = list[tuple[Name | None, Name | None]]
+
+
+def lines(renamed: Renamed) -> tuple[str, ...]:
+    """``C: `a` -> `b` and 3 more``, a line a language. Where all came, or all went, just the names."""
+    found: dict[str, list[str]] = {}
+    one_way = not all(old and new for old, new in renamed) and any(
+        all(pair[side] is None for pair in renamed) for side in (0, 1)
+    )
+    for old, new in renamed:
+        said = f"{quote(old.text) if old else '(new)'} -> {quote(new.text) if new else '(gone)'}"
+        if one_way:
+            said = quote((old or new).text)
+        rows = found.setdefault((old or new).language, [])
+        if said not in rows:
+            rows.append(said)
+    result = []
+    for language, rows in found.items():
+        rest = [f"{len(rows) - MOST} more"] if len(rows) > MOST else []
+        result.append(f"{TITLES.get(language, language)}: {listing(rows[:MOST] + rest)}")
+    return tuple(result)
+
+
+TITLES = {"c": "C", "python": "Python", "rust": "Rust"}
+
+
+def _is_called_otherwise(pair: Pair) -> bool:
+    return (pair.old.name, pair.old.identifier) != (pair.new.name, pair.new.identifier)
+
+
+def _renamed(pair: Pair, ctx: Context) -> Iterator[Found]:
+    if not _is_called_otherwise(pair) or getattr(pair, "rehomed", False):
+        return
+    renamed = ctx.generated.renamed(pair)
+    if renamed:
+        old, new = pair.old, pair.new
+        if old.name != new.name:
+            text = f"{_WHAT[type(pair)]} {quote(new.name)} was called {quote(old.name)}"
+            was, now = old.name, new.name
+        else:
+            was, now = old.identifier or old.name, new.identifier or new.name
+            text = f"{_WHAT[type(pair)]} {quote(new.name)} has other identifiers, from {quote(now)}, were from {quote(was)}"
+        yield Found(text, ("name", "identifier"), was, now, lines(renamed))
+
+
+@rule("DIF301", "message")
+def message_renamed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    yield from _renamed(pair, ctx)
+
+
+@rule("DIF302", "field")
+def field_renamed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    yield from _renamed(pair, ctx)
+
+
+@rule("DIF303", "enum")
+def enum_renamed(pair: EnumPair, ctx: Context) -> Iterator[Found]:
+    yield from _renamed(pair, ctx)
+
+
+@rule("DIF304", "member")
+def member_renamed(pair: MemberPair, ctx: Context) -> Iterator[Found]:
+    yield from _renamed(pair, ctx)
+
+
+@rule("DIF305", "node")
+def node_renamed(pair: NodePair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old.name, pair.new.name
+    if old != new:
+        text = f"node `{new}` was called `{old}`: every generated name of it changes"
+        what = f"{count(len(pair.new.messages), 'message')} and {count(len(pair.new.enums), 'enumeration')}"
+        yield Found(text, ("name",), old, new, (f"It declares {what}.",))
+
+
+@rule("DIF306", "message", "field", "enum", "member", "node", when="gone")
+def names_gone(pair: Pair, ctx: Context) -> Iterator[Found]:
+    names = ctx.generated.old.get(id(pair), ()) if not isinstance(pair, NodePair) else ()
+    gone: Renamed = [(name, None) for name in names]
+    text = f"the generated names of {_WHAT[type(pair)]} {quote(pair.old.name)} are gone"
+    yield Found(text, ("name", "identifier"), pair.old.name, "", lines(gone))
+
+
+@rule("DIF307", "field")
+def retyped(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old, pair.new
+    if (old.type, old.bits) == (new.type, new.bits) and ctx.match.same_enum(old.enum, new.enum):
+        return
+    changed = ctx.generated.retyped(pair)
+    if changed:
+        said = tuple(f"{TITLES.get(language, language)}: `{a}` -> `{b}`" for language, a, b in changed)
+        words = listing([TITLES.get(language, language) for language, _, _ in changed])
+        text = f"{quote(new.name)} has another type in {words}"
+        yield Found(text, ("type", "bits", "enum"), changed[0][1], changed[0][2], said)
+
+
+@rule("DIF308", "field")
+def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    if _is_called_otherwise(pair) or pair.owner.rehomed or pair.owner.revoiced:
+        return
+    renamed = ctx.generated.renamed(pair)
+    if renamed:
+        was, now = (next((names[side].text for names in renamed if names[side]), "") for side in (0, 1))
+        text = f"accessors or constants of {quote(pair.new.name)} {'change' if was else 'are new'}"
+        keys = ("unit", "formula", "special", "min", "max", "above", "below")
+        severity, addition = (None, None) if was else ("note", True)
+        yield Found(text, keys, was, now, lines(renamed), severity, addition)
+
+
+@rule("DIF309", "node")
+def words_split_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old.vocabulary, pair.new.vocabulary
+    if frozenset(old) == frozenset(new):
+        return
+    renamed: Renamed = []
+    for owner in (*pair.messages, *pair.enums):
+        for one in (owner, *getattr(owner, "fields", ()), *getattr(owner, "members", ())):
+            if one.both and not _is_called_otherwise(one) and not owner.rehomed:
+                renamed += ctx.generated.renamed(one)
+    if renamed:
+        text = f"words are split in another way: {count(len(renamed), 'generated name')} of `{pair.new.name}` change"
+        was, now = (", ".join(sorted(set(a) - set(b))) for a, b in ((old, new), (new, old)))
+        yield Found(text, ("vocabulary",), was, now, lines(renamed), places=_vocabulary(pair))
+
+
+def _vocabulary(pair: NodePair):
+    return tuple(
+        None if side is None or side.source is None else side.source.at("vocabulary") for side in (pair.old, pair.new)
+    )
+
+
+@rule("DIF310", "message", "enum")
+def declared_elsewhere(pair: MessagePair | EnumPair, ctx: Context) -> Iterator[Found]:
+    if pair.rehomed:
+        old, new = pair.old_node.name, pair.new_node.name
+        text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} is declared by `{new}`, was by `{old}`"
+        yield Found(text, ("name",), old, new, lines(ctx.generated.renamed(pair)))
+
+
+@rule("DIF311", "message", "field", "enum", "member", "node", when="come", severity="note", addition=True)
+def names_come(pair: Pair, ctx: Context) -> Iterator[Found]:
+    names = ctx.generated.new.get(id(pair), ()) if not isinstance(pair, NodePair) else ()
+    come: Renamed = [(None, name) for name in names]
+    text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} has generated names now"
+    yield Found(text, ("name", "identifier"), "", pair.new.name, lines(come))

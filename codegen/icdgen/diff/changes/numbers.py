@@ -1,0 +1,125 @@
+"""What the raw value stands for: factor, offset, sign, unit, limits, constants, special values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.diff.change import Found
+from icdgen.diff.context import Context
+from icdgen.diff.pairs import FieldPair
+from icdgen.diff.rule import rule
+from icdgen.diff.similar import same_sense
+from icdgen.diff.wording import formula, number
+from icdgen.icd.formula import Scale
+from icdgen.icd.model import Field, Limits
+from icdgen.icd.rules.wording import quote
+
+BOUNDS = ("min", "max", "above", "below")
+_RAW = Scale(1)
+
+
+def _scales(pair: FieldPair) -> tuple[Scale, Scale]:
+    return tuple(field.scale or _RAW for field in (pair.old, pair.new))
+
+
+def _is_turned(old: Scale, new: Scale) -> bool:
+    return old.factor == -new.factor
+
+
+@rule("DIF201", "field")
+def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    old, new = _scales(pair)
+    if old == new or _is_turned(old, new):
+        return
+    details = []
+    if old.offset == new.offset:
+        ratio = new.factor / old.factor
+        details.append(f"The same bits give {number(ratio)} times the value.")
+    text = f"the value of {quote(pair.new.name)} is {formula(new)}, was {formula(old)}"
+    yield Found(text, ("formula", "unit"), formula(old), formula(new), tuple(details))
+
+
+@rule("DIF203", "field")
+def sign_turned(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    old, new = _scales(pair)
+    if _is_turned(old, new):
+        text = f"the sign of {quote(pair.new.name)} is turned: {formula(new)}, was {formula(old)}"
+        yield Found(text, ("formula",), formula(old), formula(new))
+
+
+@rule("DIF202", "field")
+def unit_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    old, new = (field.unit.symbol if field.unit else "" for field in (pair.old, pair.new))
+    if old != new:
+        text = f"the unit of {quote(pair.new.name)} is {new or 'no longer stated'}, was {old or 'not stated'}"
+        severity = None if old and new else "warning"
+        yield Found(text, ("unit",), old, new, severity=severity)
+
+
+@rule("DIF209", "field")
+def const_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old.const, pair.new.const
+    if old == new:
+        return
+    was, now = ("" if value is None else f"{value} (0x{value:02X})" for value in (old, new))
+    if new is None:
+        text, severity = f"{quote(pair.new.name)} need no longer be {was}", "warning"
+    else:
+        text, severity = f"{quote(pair.new.name)} must be {now}, was {was or 'free'}", None
+    yield Found(text, ("const",), was, now, severity=severity)
+
+
+@rule("DIF210", "field", severity="warning")
+def special_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    old, new = ({s.value: s.meaning for s in field.special} for field in (pair.old, pair.new))
+    for value in sorted(old.keys() | new.keys()):
+        was, now = old.get(value, ""), new.get(value, "")
+        if was == now or (was and now and same_sense(was, now)):
+            continue
+        said = f"the raw value {value} of {quote(pair.new.name)}"
+        if not was:
+            text = f"{said} stands for {quote(now)} now"
+        elif not now:
+            text = f"{said} no longer stands for {quote(was)}"
+        else:
+            text = f"{said} stands for {quote(now)}, stood for {quote(was)}"
+        yield Found(text, ("special",), was, now)
+
+
+def _limits(field: Field) -> str:
+    bounds = field.limits or Limits()
+    signs = {"min": ">=", "above": ">", "max": "<=", "below": "<"}
+    found = ((key, getattr(bounds, key)) for key in ("min", "above", "max", "below"))
+    return " and ".join(f"{signs[key]} {number(value)}" for key, value in found if value is not None)
+
+
+def is_wider(old: Limits | None, new: Limits | None) -> bool:
+    """Whether everything that was allowed still is."""
+    old, new = old or Limits(), new or Limits()
+    for key, sign in (("min", 1), ("above", 1), ("max", -1), ("below", -1)):
+        before, after = getattr(old, key), getattr(new, key)
+        if after is not None and (before is None or sign * after > sign * before):
+            return False
+    return True
+
+
+@rule("DIF211", "field", severity="warning")
+def limits_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old.limits or Limits(), pair.new.limits or Limits()
+    if old == new:
+        return
+    was, now = _limits(pair.old), _limits(pair.new)
+    text = f"{quote(pair.new.name)} may be {now or 'anything'}, could be {was or 'anything'}"
+    detail = "What was allowed still is." if is_wider(old, new) else "Values that were allowed no longer are."
+    yield Found(text, BOUNDS, was, now, (detail,))
+
+
+@rule("DIF214", "field", severity="warning")
+def parts_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    old, new = ({(p.at, p.bits): p.name for p in field.bitfields} for field in (pair.old, pair.new))
+    for at, size in sorted(old.keys() | new.keys()):
+        was, now = old.get((at, size), ""), new.get((at, size), "")
+        if was != now:
+            bits = f"bit {at}" if size == 1 else f"bits {at} to {at + size - 1}"
+            text = f"{bits} of {quote(pair.new.name)} are {quote(now) if now else 'no part'}, were {quote(was) if was else 'none'}"
+            yield Found(text, ("bitfields",), was, now)

@@ -1,0 +1,42 @@
+"""Names that say something else, answers, and what a node says of itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.diff.change import Found
+from icdgen.diff.context import Context
+from icdgen.diff.pairs import FieldPair, MessagePair, NodePair
+from icdgen.diff.rule import rule
+from icdgen.diff.similar import extends, same_sense
+from icdgen.icd.rules.wording import quote
+
+
+@rule("DIF212", "message")
+def answer_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old.acknowledge, pair.new.acknowledge
+    if old != new:
+        said = {True: "acknowledged", False: "not acknowledged"}
+        detail = "Who waits for the answer waits in vain." if old else "An answer comes that nobody expects."
+        text = f"{quote(pair.new.name)} is {said[new]} now"
+        yield Found(text, ("acknowledge", "name"), said[old], said[new], (detail,))
+
+
+@rule("DIF213", "field", "message", severity="warning")
+def name_says_otherwise(pair: FieldPair | MessagePair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old.name, pair.new.name
+    if old != new and not same_sense(old, new) and not extends(old, new):
+        text = f"what was called {quote(old)} is called {quote(new)}: make sure that it is the same thing"
+        yield Found(text, ("name",), old, new)
+
+
+@rule("DIF215", "node", severity="warning")
+def node_says_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
+    for key in ("node_type", "interface_version"):
+        old, new = getattr(pair.old, key), getattr(pair.new, key)
+        if old != new:
+            was, now = ("" if value is None else str(value) for value in (old, new))
+            text = (
+                f"the {key.replace('_', ' ')} of `{pair.new.name}` is {now or 'not stated'}, was {was or 'not stated'}"
+            )
+            yield Found(text, (key,), was, now)

@@ -1,0 +1,114 @@
+"""Two sets of ICDs -> all changes between them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from icdgen.diff.change import LAYERS, Change, Found
+from icdgen.diff.changes import (  # noqa: F401  (importing a theme registers its rules)
+    enumerations,
+    errata,
+    frames,
+    framing,
+    layout,
+    names,
+    numbers,
+    sense,
+    text,
+)
+from icdgen.diff.context import Context
+from icdgen.diff.match import match
+from icdgen.diff.pairs import Match, Pair
+from icdgen.diff.rule import REGISTERED, Rule
+from icdgen.icd.model import Erratum, Icd
+
+RULES: dict[str, Rule] = dict(sorted(REGISTERED.items()))
+_OF: dict[tuple[str, str], list[Rule]] = {}
+for _rule in RULES.values():
+    for _of in _rule.of:
+        _OF.setdefault((_of, _rule.when), []).append(_rule)
+
+
+@dataclass
+class Comparison:
+    """What changed, in the order of the new ICD, and what was compared with what."""
+
+    match: Match
+    changes: list[Change]
+    context: Context
+
+    def of_layer(self, layer: str) -> list[Change]:
+        return [change for change in self.changes if change.layer == layer]
+
+
+def compare(old: Icd, new: Icd) -> Comparison:
+    """Everything that differs between two sound sets of ICDs. Order, formatting and spelling of formulas are no difference."""
+    context = Context(match(old, new))
+    changes = sorted(_all(context), key=lambda c: LAYERS.index(c.layer))
+    return Comparison(context.match, changes, context)
+
+
+def _all(context: Context) -> Iterator[Change]:
+    for one in _OF["icd", "both"]:
+        for found in one.check(context):
+            yield _change(one, _pair(context, found), found)
+    for node in context.match.nodes:
+        yield from _run("node", node, context)
+        for owners, of, parts in ((node.messages, "message", "field"), (node.enums, "enum", "member")):
+            for owner in owners:
+                if not owner.changed or (not node.both and not owner.both):
+                    continue  # what comes or goes with its node is not said again
+                yield from _run(of, owner, context)
+                for part in getattr(owner, f"{parts}s") if owner.both else ():
+                    if part.changed:
+                        yield from _run(parts, part, context)
+
+
+def _pair(context: Context, found: Found) -> Pair:
+    """The message that a finding about the whole ICD is about."""
+    messages = (pair for node in context.match.nodes for pair in node.messages)
+    return next(pair for pair in messages if pair.where() == found.where)
+
+
+def _run(of: str, pair: Pair, context: Context) -> Iterator[Change]:
+    when = "both" if pair.both else "gone" if pair.new is None else "come"
+    for one in _OF.get((of, when), ()):
+        for found in one.check(pair, context):
+            yield _change(one, pair, found)
+
+
+def _change(rule: Rule, pair: Pair, found: Found) -> Change:
+    old, new = found.places or pair.places(found.keys)
+    return Change(
+        rule=rule,
+        message=found.message,
+        where=found.where or pair.where(),
+        was=found.was,
+        now=found.now,
+        old=None if pair.old is None and not found.places else old,
+        new=None if pair.new is None and not found.places else new,
+        details=found.details,
+        severity=found.severity or rule.severity,
+        addition=rule.addition if found.addition is None else found.addition,
+        sure=pair.sure,
+        errata=_decisions(pair, found.keys),
+        pair=pair,
+    )
+
+
+def _decisions(pair: Pair, keys: tuple[str, ...]) -> tuple[str, ...]:
+    """Errata that came, went or changed, and that hold something else for one of these keys of the pair."""
+    old, new = ({e.id: e for e in getattr(side, "errata", ())} for side in (pair.old, pair.new))
+    if old == new or not hasattr(pair.any, "source") or not hasattr(pair, "owner") and not hasattr(pair, "rehomed"):
+        return ()
+    said = []
+    for key in sorted(old.keys() | new.keys()):
+        before, after = old.get(key), new.get(key)
+        if before != after and any(_holds(entry, keys) for entry in (before, after) if entry is not None):
+            said.append(f"{key} {'is new' if before is None else 'is gone' if after is None else 'says otherwise'}")
+    return tuple(said)
+
+
+def _holds(entry: Erratum, keys: tuple[str, ...]) -> bool:
+    return any(key in keys for key, _ in entry.held)

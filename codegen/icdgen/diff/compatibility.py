@@ -1,0 +1,191 @@
+"""Who still understands whom: old ground stations, old telecommands, old log files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+from icdgen.diff.changes.numbers import is_wider
+from icdgen.diff.compare import Comparison
+from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind
+from icdgen.diff.similar import same_sense
+from icdgen.diff.wording import some
+from icdgen.icd.formula import Scale
+from icdgen.icd.model import Field, Message
+from icdgen.icd.rules.wording import quote
+
+YES, PARTLY, NO = "yes", "partly", "no"
+
+
+class Frame(NamedTuple):
+    """What becomes of one frame that is not simply understood."""
+
+    node: str
+    message: str
+    id: int
+    verdict: str
+    reasons: tuple[str, ...]
+
+
+class Direction(NamedTuple):
+    """The answer to one question. ``frames`` are those that are not simply understood; ``general`` concerns all."""
+
+    key: str
+    question: str
+    verdict: str
+    frames: tuple[Frame, ...]
+    total: int
+    general: tuple[str, ...]
+
+
+Judge = Callable[[MessagePair], tuple[str, tuple[str, ...]]]
+
+
+def directions(comparison: Comparison) -> tuple[Direction, ...]:
+    """The answers to the three questions that a team asks."""
+    wires, logs = _facts(comparison)
+    return (
+        _answer("telemetry", "Can an old ground station read the new device's telemetry?",
+                _frames(comparison, "telemetry_id", _old_reads_new), wires),
+        _answer("telecommands", "Can old telecommands still be sent?",
+                _frames(comparison, "telecommand_id", _new_obeys_old), wires),
+        _answer("logs", "Can new software read old log files?",
+                _frames(comparison, "telemetry_id", _new_reads_old, logged=True), logs),
+    )  # fmt: skip
+
+
+def _answer(key: str, question: str, frames: list[Frame | None], general: tuple[str, ...]) -> Direction:
+    odd = tuple(frame for frame in frames if frame is not None)
+    if odd and len(odd) == len(frames) and all(frame.verdict == NO for frame in odd):
+        verdict = NO
+    else:
+        verdict = PARTLY if odd or general else YES
+    return Direction(key, question, verdict, odd, len(frames), general)
+
+
+def _facts(comparison: Comparison) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Changed facts of the protocol that concern every frame on the wire, and every frame in a log."""
+    wires, logs = [], []
+    for change in comparison.changes:
+        if change.code in ("DIF120", "DIF121") and change.breaks:
+            steps = change.where.section.split(".")
+            (logs if any("log" in step for step in steps[1:2]) else wires).append(change.message)
+        elif change.code in ("DIF122", "DIF123"):
+            logs.append(change.message)
+    return tuple(wires), tuple(logs)
+
+
+def _frames(comparison: Comparison, key: str, judge: Judge, logged: bool = False) -> list[Frame | None]:
+    """One entry a frame of the old ICD, None where it is simply understood. A frame of a shared ICD counts once."""
+    match, seen, found = comparison.match, set(), []
+    for node in match.nodes:
+        if node.old is None:
+            continue
+        old = {getattr(m, key): m for m in match.old.messages_of(node.old) if getattr(m, key) is not None}
+        new = {getattr(m, key): m for m in match.new.messages_of(node.new)} if node.both else {}
+        wanted = _loggable(node) if logged else None
+        for number, message in old.items():
+            if wanted is not None and number not in wanted:
+                continue
+            verdict, reasons = _verdict(comparison, key, message, new.get(number), judge)
+            if (id(message), verdict) in seen:
+                continue
+            seen.add((id(message), verdict))
+            found.append(None if verdict == YES else Frame(node.old.name, message.name, number, verdict, reasons))
+    return found
+
+
+def _loggable(node: NodePair) -> set[int] | None:
+    """Ids of the frames that the node can log; None where the ICD does not say."""
+    return {row.id for row in node.old.loggable} or None
+
+
+def _verdict(
+    comparison: Comparison, key: str, old: Message, new: Message | None, judge: Judge
+) -> tuple[str, tuple[str, ...]]:
+    pair = comparison.match.pair_of[id(old)]
+    if new is None:
+        after = getattr(pair.new, key, None) if pair.new is not None else None
+        return NO, (f"its id is {after} now" if after is not None else "it is gone",)
+    if comparison.match.pair_of.get(id(new)) is not pair:
+        return NO, (f"the id means {quote(new.name)} now",)
+    if not pair.changed:
+        return YES, ()
+    return judge(pair)
+
+
+def _old_reads_new(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
+    return _read(pair, pair.new, pair.old)
+
+
+def _new_reads_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
+    return _read(pair, pair.old, pair.new)
+
+
+def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple[str, ...]]:
+    """How much of what is sent the reader understands."""
+    if sent.length != reader.length:
+        return NO, (f"{sent.length} bytes come, {reader.length} are expected",)
+    absent = [p.any for p in pair.fields if not p.both and (p.old if reader is pair.old else p.new) is not None]
+    wrong = [(p, why) for p in pair.kept if (why := _misread(p))]
+    if not absent and not wrong:
+        return YES, ()
+    reasons = _together((p.any.name, why) for p, why in wrong)
+    if absent:
+        reasons.append(f"not carried: {some([f.name for f in absent])}")
+    verdict = NO if len(absent) + len(wrong) == len(reader.fields) else PARTLY
+    return verdict, tuple(reasons)
+
+
+def _together(items: Iterable[tuple[str, str]]) -> list[str]:
+    """``has another unit: `a` and `b` ``: names with the same reason in one line."""
+    found: dict[str, list[str]] = {}
+    for name, why in items:
+        found.setdefault(why, []).append(name)
+    return [f"{why}: {some(names)}" for why, names in found.items()]
+
+
+def _misread(pair: FieldPair) -> str:
+    """Why a value that one side wrote is another to the other side; empty if it is not."""
+    old, new = pair.old, pair.new
+    if not pair.same_bits:
+        return "other bits"
+    if kind(old) != kind(new):
+        return f"read as {new.type}, or as {old.type}"
+    if (old.scale or Scale(1)) != (new.scale or Scale(1)):
+        return "another formula"
+    if (old.unit.symbol if old.unit else "") != (new.unit.symbol if new.unit else ""):
+        return "another unit"
+    return "values of another sense" if _senses_differ(old, new) else ""
+
+
+def _senses_differ(old: Field, new: Field) -> bool:
+    if old.enum is None or new.enum is None or old.enum is new.enum:
+        return False
+    before, after = ({m.value: m.name for m in field.enum.members} for field in (old, new))
+    return any(not same_sense(before[value], after[value]) for value in before.keys() & after.keys())
+
+
+def _new_obeys_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
+    old, new = pair.old, pair.new
+    if old.length != new.length:
+        return NO, (f"{old.length} bytes are sent, {new.length} are expected",)
+    found = [(one, *_disobeyed(one)) for one in pair.fields]
+    reasons = _together((one.any.name, why) for one, why, _ in found if why)
+    return (NO if any(refused for *_, refused in found) else PARTLY if reasons else YES), tuple(reasons)
+
+
+def _disobeyed(pair: FieldPair) -> tuple[str, bool]:
+    """What goes wrong with a field of a telecommand, and whether the whole telecommand is refused for it."""
+    old, new = pair.old, pair.new
+    if new is None:
+        return "ignored", False
+    if old is None:
+        refused = bool(new.const)
+        return (f"sent as 0, must be {new.const}" if refused else "sent as 0"), refused
+    if new.const is not None and old.const != new.const:
+        return f"must be {new.const}, sent as {'anything' if old.const is None else old.const}", old.const is not None
+    why = _misread(pair)
+    if not why and not is_wider(old.limits, new.limits):
+        why = "perhaps refused, the limits are narrower"
+    return why, False

@@ -1,0 +1,86 @@
+"""What the rules of the diff look at, worked out once."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from icdgen.diff.generated import Generated
+from icdgen.diff.moves import Moves, moves
+from icdgen.diff.pairs import FieldPair, Match, MessagePair, NodePair, Pair, position
+from icdgen.icd.model import Icd, Message, Node
+
+
+class Context:
+    """Both ICDs side by side."""
+
+    def __init__(self, match: Match) -> None:
+        self.match = match
+        self._moves: dict[int, Moves] = {}
+
+    @cached_property
+    def generated(self) -> Generated:
+        """Names and types of everything that changed."""
+        return Generated(self.match, self.changed)
+
+    @cached_property
+    def changed(self) -> list[Pair]:
+        """Messages and enumerations in which anything differs."""
+        return [p for node in self.match.nodes for p in (*node.messages, *node.enums) if p.changed]
+
+    def sides(self, node: NodePair) -> tuple[tuple[Icd, Node], tuple[Icd, Node]]:
+        return (self.match.old, node.old), (self.match.new, node.new)
+
+    def pair(self, thing: object) -> Pair:
+        """The pair of a message or an enumeration."""
+        return self.match.pair_of[id(thing)]
+
+    def moves(self, pair: MessagePair) -> Moves:
+        """What moved within the message."""
+        found = self._moves.get(id(pair))
+        if found is None:
+            found = self._moves[id(pair)] = moves(pair)
+        return found
+
+    def at_the_end(self, pair: MessagePair) -> list[FieldPair]:
+        """Fields that came with the bytes by which the frame grew, or went with those that it lost."""
+        if pair.old.length == pair.new.length:
+            return []
+        end = min(pair.old.length, pair.new.length) * 8
+        told = self.moves(pair).told
+        rows = pair.gained if pair.new.length > pair.old.length else pair.lost
+        return [p for p in rows if p.any.at >= end and id(p) not in told]
+
+    def told(self, pair: FieldPair) -> bool:
+        """Whether another change already says that the field came or went."""
+        return id(pair) in self.moves(pair.owner).told or any(p is pair for p in self.at_the_end(pair.owner))
+
+    def is_touched_before(self, pair: MessagePair, bit: int) -> bool:
+        """Whether any field of the first ``bit`` bits came, went or lies elsewhere."""
+        alone = (*pair.lost, *pair.gained)
+        return any(p.any.at < bit for p in alone) or any(not p.same_bits for p in pair.kept)
+
+    def unspoken(self, node: NodePair, side: int) -> list[Message]:
+        """Messages of one side that the node does not speak on the other, where they are still declared."""
+        mine, other = (icd.messages_of(one) for icd, one in self.sides(node))
+        if side:
+            mine, other = other, mine
+        spoken = {id(self.pair(m)) for m in other}
+        pairs = ((m, self.pair(m)) for m in mine)
+        return [m for m, pair in pairs if pair.both and id(pair) not in spoken]
+
+
+def free_before(pair: FieldPair) -> bool:
+    """Whether no field of the old frame lies on bits of the field that came."""
+    message = pair.owner
+    mine = _bits(position(message.new_node, pair.new))
+    return not any(mine & _bits(position(message.old_node, f)) for f in message.old.fields)
+
+
+def _bits(position: tuple) -> set[tuple[int, int]]:
+    found = set()
+    for one in position:
+        if isinstance(one, range):
+            found |= {(byte, bit) for byte in one for bit in range(8)}
+        else:
+            found |= {(one.byte, one.shift + bit) for bit in range(one.bits)}
+    return found

@@ -1,0 +1,205 @@
+"""The names and types that generated code has for things, in each language, and how they differ between two ICDs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import NamedTuple
+
+from icdgen import backends
+from icdgen.diagnostics import Place
+from icdgen.diff.pairs import EnumPair, FieldPair, Match, MemberPair, MessagePair, Pair
+from icdgen.icd.model import Enum, Field, Icd, Message, Node
+from icdgen.icd.tree import Map
+
+LANGUAGES = ("c", "python", "rust")
+
+
+class Name(NamedTuple):
+    """A generated name. ``stem`` is what a file must mention too where the name means nothing alone: a struct's member."""
+
+    language: str
+    text: str
+    stem: str = ""
+
+
+NOTHING, NODES, OWNERS = range(3)  # what is called by its old name
+Names = dict[int, tuple[Name, ...]]  # id(pair) -> names
+
+
+class Generated:
+    """Names of the pairs that changed.
+
+    ``new`` are those of the new things if their node kept its old name, ``clothed`` if the message or enumeration that holds them
+    did too: a field's names are not said to change only because its message has another name.
+    """
+
+    def __init__(self, match: Match, changed: Iterable[Pair]) -> None:
+        self.match = match
+        changed = list(changed)
+        wanted = {id(pair) for pair in changed}
+        old = _Cut(match, 0, wanted)
+        self.old = old.names(old.icd)
+        new = _Cut(match, 1, wanted, NODES)
+        self.new = new.names(new.icd)
+        dressed = _Cut(match, 1, wanted, OWNERS)
+        self.clothed = dressed.names(dressed.icd)
+        self._types = (_types(old.icd), _types(dressed.icd))
+        self._dressed = dressed
+
+    def renamed(self, pair: Pair) -> list[tuple[Name | None, Name | None]]:
+        """Old and new name of everything that is generated for the pair, where they differ. Its parts are left out."""
+        after = self.new if isinstance(pair, MessagePair | EnumPair) else self.clothed
+        old, new = self.old.get(id(pair), ()), after.get(id(pair), ())
+        found: list[tuple[Name | None, Name | None]] = []
+        for key in sorted({_sort(name) for name in (*old, *new)}):
+            before, later = ([name for name in names if _sort(name) == key] for names in (old, new))
+            if len(before) == len(later):
+                found += [(a, b) for a, b in zip(before, later, strict=True) if a.text != b.text]
+            else:
+                found += [(a, None) for a in before if a not in later] + [(None, b) for b in later if b not in before]
+        return found
+
+    def retyped(self, pair: FieldPair) -> list[tuple[str, str, str]]:
+        """Language, old and new type of the raw value, where they differ."""
+        message_old, message_new = pair.owner.old, self._dressed.message_of(pair.owner)
+        field_new = self._dressed.field_of(pair)
+        found = []
+        for language in LANGUAGES:
+            before = self._types[0](language, pair.owner.old_node, message_old, pair.old)
+            after = self._types[1](language, pair.owner.new_node, message_new, field_new)
+            if before != after:
+                found.append((language, before, after))
+        return found
+
+
+class _Cut:
+    """One of both ICDs, with the changed messages only; every part has a mark of its own, by which its names are found."""
+
+    def __init__(self, match: Match, side: int, wanted: set[int], clothed: int = NOTHING) -> None:
+        self.match, self.side, self.clothed = match, side, clothed
+        self.marks: dict[int, Pair] = {}
+        self.kept: list[Map] = []
+        self.enums: dict[int, Enum] = {}
+        self.messages: dict[int, Message] = {}
+        self.fields: dict[int, Field] = {}
+        icd = match.new if side else match.old
+        names = {self.side_of(pair).name: self.name_of(pair) for pair in match.nodes if self.side_of(pair) is not None}
+        nodes = []
+        for node in icd.nodes:
+            enums = tuple(self.enum(enum, names) for enum in node.enums)
+            nodes.append((node, enums))
+        self.icd = Icd(
+            tuple(
+                replace(
+                    node,
+                    name=names.get(node.name, node.name),
+                    includes=tuple(names.get(name, name) for name in node.includes),
+                    enums=enums,
+                    messages=tuple(
+                        self.message(m, names) for m in node.messages if id(match.pair_of.get(id(m))) in wanted
+                    ),
+                )
+                for node, enums in nodes
+            )
+        )
+
+    def side_of(self, pair: Pair):
+        return pair.new if self.side else pair.old
+
+    def name_of(self, pair: Pair) -> str:
+        return pair.old.name if self.clothed and pair.old is not None else self.side_of(pair).name
+
+    def dress(self, one, pair: Pair | None, **more: object):
+        """The thing with a mark, and under its old name where that is asked for."""
+        if pair is not None:
+            mark = Map(Place(""))
+            self.marks[id(mark)] = pair
+            self.kept.append(mark)
+            more["source"] = mark
+            if self.clothed == OWNERS and pair.old is not None and isinstance(pair, MessagePair | EnumPair):
+                more.update(name=pair.old.name, identifier=pair.old.identifier)
+        return replace(one, **more)
+
+    def enum(self, enum: Enum, names: dict[str, str]) -> Enum:
+        pair = self.match.pair_of.get(id(enum))
+        members = {id(self.side_of(p)): p for p in getattr(pair, "members", ())}
+        own = tuple(self.dress(m, members[id(m)]) if id(m) in members else m for m in enum.members)
+        made = self.dress(enum, pair, members=own, node=names.get(enum.node, enum.node))
+        self.enums[id(enum)] = made
+        return made
+
+    def message(self, message: Message, names: dict[str, str]) -> Message:
+        pair = self.match.pair_of[id(message)]
+        fields = {id(self.side_of(p)): p for p in pair.fields}
+        own = []
+        for one in message.fields:
+            enum = self.enums.get(id(one.enum), one.enum)
+            made = self.dress(one, fields.get(id(one)), enum=enum)
+            self.fields[id(fields.get(id(one)))] = made
+            own.append(made)
+        made = self.dress(message, pair, fields=tuple(own), node=names.get(message.node, message.node))
+        self.messages[id(pair)] = made
+        return made
+
+    def message_of(self, pair: MessagePair) -> Message:
+        return self.messages[id(pair)]
+
+    def field_of(self, pair: FieldPair) -> Field:
+        return self.fields[id(pair)]
+
+    def names(self, icd: Icd) -> Names:
+        found: dict[int, dict[Name, None]] = {}
+        types: dict[int, str] = {}  # Rust: id(pair) -> name of the type
+        for language in LANGUAGES:
+            for one in backends.get(language).identifiers(icd):
+                pair = self.marks.get(id(one.source)) if one.source is not None else None
+                if pair is None or not one.text.isidentifier() or one.scope.startswith("modules of"):
+                    continue
+                owner = getattr(pair, "owner", None)
+                if language == "rust" and owner is None:
+                    types.setdefault(id(pair), one.text)
+                stem = types.get(id(owner), "") if language == "rust" else _stem(language, one.scope)
+                found.setdefault(id(pair), {})[Name(language, one.text, stem)] = None
+        return {key: tuple(names) for key, names in found.items()}
+
+
+def _sort(name: Name) -> tuple[str, bool]:
+    """Names of one language, and in C those at file scope, correspond in their order."""
+    return name.language, bool(name.stem)
+
+
+def _stem(language: str, scope: str) -> str:
+    """What a file must mention for a member of that scope to be meant; empty for what stands for itself."""
+    if not scope.startswith("members of "):
+        return ""
+    owner = scope.removeprefix("members of ")
+    return owner.removesuffix("_t").lower() if language == "c" else owner.rpartition(".")[2]
+
+
+# Types
+
+
+def _types(cut: Icd) -> Callable[[str, Node, Message, Field], str]:
+    """A function that tells the type of a field's raw value in a language."""
+    from icdgen.backends.c.names import Names as CNames
+    from icdgen.backends.c.storage import Storages
+    from icdgen.backends.python.names import class_name
+    from icdgen.backends.rust.fields import raw_type
+    from icdgen.backends.rust.names import Enums
+
+    made: dict[str, object] = {}
+
+    def of(language: str, node: Node, message: Message, field: Field) -> str:
+        home = next((one for one in cut.nodes if one.name == message.node), node)
+        if language == "python":
+            plain = {"uint": "int", "enum": "int"}.get(field.type, field.type)
+            return class_name(field.enum, cut.node(field.enum.node)) if field.type == "enum" and field.enum else plain
+        if language == "rust":
+            enums = made.setdefault("rust", Enums(cut))
+            return raw_type(field, home, enums) if field.type != "enum" or field.enum else f"u{field.bits}"
+        if field.type == "bytes":
+            return f"uint8_t[{field.bits // 8}]"
+        return made.setdefault("c", Storages(cut, CNames(cut))).of(field).type
+
+    return of

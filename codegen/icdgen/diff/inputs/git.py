@@ -1,0 +1,145 @@
+"""ICDs of git revisions, read out of the repository without touching the working tree."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from collections.abc import Iterable
+from functools import cached_property
+from pathlib import Path, PurePosixPath
+from typing import NamedTuple
+
+from icdgen.errors import UserError
+
+_SUFFIX = ".yaml"
+_FILES = ("100644", "100755")  # modes of what is a plain file
+
+
+class Spec(NamedTuple):
+    """ICDs of a revision. ``paths`` are relative to the repository's top; ``named`` if the user named them."""
+
+    revision: str
+    paths: list[PurePosixPath]
+    label: str = ""
+    named: bool = False
+    top: str = "."
+
+    def extract(self, folder: Path) -> list[Path]:
+        """Writes the ICDs, and what may lie beside and below them, into a folder; the paths to load."""
+        found = []
+        for path in self.paths:
+            kind = _run("cat-file", "-t", f"{self.revision}:{_name(path)}", top=self.top).strip()
+            home = path if kind == "tree" else path.parent
+            _export(self.revision, home, folder, self.top)
+            if kind:
+                found.append(folder / path)
+        return found
+
+
+class Git:
+    """The repository around the current folder, if there is one."""
+
+    @cached_property
+    def top(self) -> str:
+        """Its top folder; empty where there is none, or no git."""
+        return _run("rev-parse", "--show-toplevel").rstrip("\n")
+
+    def commit(self, revision: str) -> str:
+        """The commit that a revision names; empty if it names none."""
+        if not revision or revision.startswith("-") or not self.top:
+            return ""
+        return _run("rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}").strip()
+
+    def span(self, word: str) -> tuple[str, str] | None:
+        """Both ends of ``A..B`` or ``A...B`` (since B left A); either may be left out and is HEAD then."""
+        first, dots, second = word.partition("..")
+        if not dots or not self.top:
+            return None
+        since = second.startswith(".")
+        ends = [end or "HEAD" for end in (first, second.lstrip("."))]
+        if not all(map(self.commit, ends)):
+            bad = next(end for end in ends if not self.commit(end))
+            raise UserError(f"git knows no revision {bad}", "`git log --oneline` and `git tag` list them")
+        if since:
+            base = _run("merge-base", "--end-of-options", *ends).strip()
+            ends[0] = base[:12] or ends[0]
+        return ends[0], ends[1]
+
+    def spec(self, word: str, usual: list[Path]) -> Spec | None:
+        """``REVISION`` or ``REVISION:PATH``; None if it is neither."""
+        revision, colon, path = word.partition(":")
+        if not self.commit(revision):
+            return None
+        if not colon:
+            return Spec(revision, self.inside(usual), word, top=self.top)
+        here = PurePosixPath(os.path.relpath(os.path.realpath("."), self.top).replace(os.sep, "/"))
+        inner = PurePosixPath(path)
+        if path.startswith("./"):
+            inner = here / inner
+        if ".." in inner.parts or inner.is_absolute():
+            raise UserError(
+                f"{word}: the path must lie in the repository", "as `git show` takes it: REVISION:icd/a.yaml"
+            )
+        if not _run("cat-file", "-t", f"{revision}:{_name(inner)}", top=self.top):
+            raise UserError(f"{revision} has no {path}", f"`git ls-tree -r {revision}` lists what it has")
+        return Spec(revision, [inner], word, named=True, top=self.top)
+
+    def inside(self, paths: Iterable[Path]) -> list[PurePosixPath]:
+        """The paths relative to the repository's top. Raises `UserError` for one that lies outside."""
+        found = []
+        for path in paths:
+            full = os.path.realpath(path)
+            if not self.top or os.path.commonpath([full, os.path.realpath(self.top)]) != os.path.realpath(self.top):
+                help = "say which ICDs are meant: REVISION:PATH, or `icds` in icdgen.toml"
+                raise UserError(f"{path} is not in this git repository", help)
+            found.append(PurePosixPath(os.path.relpath(full, os.path.realpath(self.top)).replace(os.sep, "/")))
+        return found
+
+    def outside(self, path: PurePosixPath) -> Path:
+        """The path in the working tree."""
+        return Path(os.path.relpath(os.path.join(self.top, path)))
+
+
+def _name(path: PurePosixPath) -> str:
+    return "" if str(path) == "." else str(path)
+
+
+def _export(revision: str, home: PurePosixPath, folder: Path, top: str) -> None:
+    name = _name(home)
+    listed = _run("ls-tree", "-r", "-z", "--full-tree", revision, *(["--", f"{name}/"] if name else []), top=top)
+    wanted: list[tuple[str, str]] = []
+    for line in listed.split("\0"):
+        head, _, path = line.partition("\t")
+        if path.endswith(_SUFFIX) and head.split(" ")[0] in _FILES:
+            wanted.append((head.split(" ")[2], path))
+    for path, data in _contents(wanted, top):
+        target = folder / PurePosixPath(path)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(data)
+    (folder / home).mkdir(parents=True, exist_ok=True)
+
+
+def _contents(wanted: list[tuple[str, str]], top: str) -> Iterable[tuple[str, bytes]]:
+    """Path and content of each blob, in one run of git."""
+    if not wanted:
+        return
+    asked = "".join(f"{blob}\n" for blob, _ in wanted).encode()
+    done = subprocess.run(["git", "-C", top, "cat-file", "--batch"], input=asked, capture_output=True, check=False)
+    rest = done.stdout
+    for _, path in wanted:
+        head, _, rest = rest.partition(b"\n")
+        words = head.split()
+        if len(words) != 3:
+            raise UserError(f"git cannot read {path}", done.stderr.decode("utf-8", "replace").strip())
+        size = int(words[2])
+        yield path, rest[:size]
+        rest = rest[size + 1 :]
+
+
+def _run(*words: str, top: str = ".") -> str:
+    """What git says; nothing if it fails or is not there."""
+    try:
+        done = subprocess.run(["git", "-C", top, *words], capture_output=True, check=False)
+    except OSError:
+        return ""
+    return done.stdout.decode("utf-8", "surrogateescape") if done.returncode == 0 else ""

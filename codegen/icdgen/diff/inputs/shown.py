@@ -1,0 +1,210 @@
+"""The output of ``icdgen show --format json`` -> ICDs."""
+
+from __future__ import annotations
+
+import json
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.diff.inputs.side import Side
+from icdgen.errors import UserError
+from icdgen.icd import model, source
+from icdgen.icd.formula import Scale
+from icdgen.icd.tree import Map, Seq
+from icdgen.icd.units import STANDARD, Unit
+
+_MOST = 64_000_000  # bytes
+
+
+def is_shown(path: Path) -> bool:
+    """Whether the file holds JSON, by its first character."""
+    try:
+        with open(path, "rb") as file:
+            return file.read(200).lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{"
+    except OSError:
+        return False
+
+
+def from_file(path: Path) -> Side:
+    """Raises `UserError` or `Findings` for what is no such output."""
+    try:
+        with open(path, "rb") as file:
+            data = file.read(_MOST + 1)
+    except OSError as error:
+        raise UserError(f"cannot read {path}: {error.strerror}", "check the path") from None
+    return from_bytes(data, str(path))
+
+
+def from_stdin() -> Side:
+    """As `from_file`."""
+    if sys.stdin is None:
+        raise UserError("standard input is closed", "pipe the output of `icdgen show --format json` in, or name a file")
+    return from_bytes(sys.stdin.buffer.read(_MOST + 1), "standard input")
+
+
+def from_bytes(data: bytes, name: str) -> Side:
+    """The ICDs that were shown, with places in that output."""
+    if len(data) > _MOST:
+        raise UserError(f"{name} has more than the {_MOST:,} bytes allowed", "show fewer ICDs")
+    tree = _tree(data, name)
+    _check(tree, name)
+    nodes: list[model.Node] = []
+    for item in tree["nodes"]:
+        nodes.append(_Reader(nodes).node(item))
+    return Side(name, model.Icd(tuple(nodes)), texts={name: data.decode("utf-8", "replace")})
+
+
+def _tree(data: bytes, name: str) -> Map:
+    try:
+        return source.parse(data, name)  # JSON is YAML, and this reader knows where everything stands
+    except Findings:
+        pass
+    try:
+        tree = json.loads(data)
+    except (ValueError, RecursionError) as error:
+        at = (getattr(error, "lineno", 1), getattr(error, "colno", 1))
+        finding = Finding("ICD001", f"not JSON: {getattr(error, 'msg', error)}", Place(name, *at), _HELP)
+        raise Findings([finding]) from None
+    return _placed(tree, Place(name))
+
+
+_HELP = "this should be what `icdgen show --format json` prints"
+
+
+def _placed(value: object, place: Place) -> object:
+    """The tree without places, for what only a JSON reader reads."""
+    if isinstance(value, dict):
+        made = Map(place)
+        for key, item in value.items():
+            made[key] = _placed(item, place)
+            made.keys_at[key] = made.values_at[key] = place
+        return made
+    if isinstance(value, list):
+        row = Seq(place)
+        row.extend(_placed(item, place) for item in value)
+        row.items_at = [place] * len(row)
+        return row
+    return value
+
+
+def _check(tree: object, name: str) -> None:
+    import jsonschema_rs
+
+    from icdgen.show import machine
+
+    validator = jsonschema_rs.validator_for(json.loads(machine.SCHEMA.read_text(encoding="utf-8")))
+    errors = list(validator.iter_errors(tree))
+    if errors:
+        finding = Finding(
+            "ICD010", f"{_path(errors[0])}{errors[0].message[:200]}", _where(tree, errors[0], name), _HELP
+        )
+        raise Findings([finding])
+
+
+def _path(error) -> str:
+    path = ".".join(str(step) for step in error.instance_path)
+    return f"`{path}`: " if path else ""
+
+
+def _where(tree: object, error, name: str) -> Place:
+    place = getattr(tree, "place", Place(name))
+    for step in error.instance_path:
+        place = tree.items_at[step] if isinstance(tree, Seq) else tree.at(step)
+        tree = tree[step]
+    return place
+
+
+class _Reader:
+    """One node, after those that it includes."""
+
+    def __init__(self, before: list[model.Node]) -> None:
+        self.before = {node.name: node for node in before}
+        self.enums: dict[str, model.Enum] = {}
+        self.units: dict[str, Unit] = dict(STANDARD)
+        self.errata: dict[str, model.Erratum] = {}
+
+    def node(self, item: Map) -> model.Node:
+        get = item.get
+        for node in self.included(item["includes"]):
+            self.enums.update((enum.name, enum) for enum in node.enums)
+            self.units.update((unit.symbol, unit) for unit in node.units)
+        units = tuple(Unit(u["symbol"], u["identifier"], u["quantity"], u.get("summary", "")) for u in get("units", ()))
+        self.units.update((unit.symbol, unit) for unit in units)
+        self.errata = {entry["id"]: _erratum(entry) for entry in get("errata", ())}
+        enums = tuple(self.enum(enum, item["name"]) for enum in item["enums"])
+        self.enums.update((enum.name, enum) for enum in enums)
+        return model.Node(
+            name=item["name"], title=item["title"], summary=get("summary", ""), byte_order=item["byte_order"],
+            bit_order=item["bit_order"], messages=tuple(self.message(m, item["name"]) for m in item["messages"]),
+            enums=enums, node_type=get("node_type"), interface_version=get("interface_version"),
+            document=tuple(get("document", {}).items()), includes=tuple(item["includes"]),
+            vocabulary=tuple(get("vocabulary", ())), units=units, protocol=_plain(get("protocol", {})),
+            loggable=tuple(
+                model.Loggable(r["bit"], r["id"], r.get("name", ""), self.about(r), r) for r in item["loggable"]
+            ),
+            missing=tuple(model.Missing(m["kind"], m["id"], m["name"], m["why"]) for m in get("missing", ())),
+            errata=tuple(self.errata.values()), digest=get("digest", ""), file=item.place.file, source=item,
+        )  # fmt: skip
+
+    def included(self, names: list[str]) -> list[model.Node]:
+        wanted, queue = set(), list(names)
+        while queue:
+            name = queue.pop()
+            if name in self.before and name not in wanted:
+                wanted.add(name)
+                queue += self.before[name].includes
+        return [node for name, node in self.before.items() if name in wanted]
+
+    def about(self, item: Map) -> tuple[model.Erratum, ...]:
+        return tuple(self.errata[key] for key in item.get("errata", ()) if key in self.errata)
+
+    def enum(self, item: Map, node: str) -> model.Enum:
+        get = item.get
+        members = tuple(
+            model.Member(m["value"], m["name"], m.get("identifier"), m.get("summary", ""), self.about(m), m)
+            for m in item["members"]
+        )
+        return model.Enum(
+            item["name"], members, get("identifier"), get("summary", ""), get("table"), node, self.about(item), item
+        )
+
+    def message(self, item: Map, node: str) -> model.Message:
+        get = item.get
+        return model.Message(
+            name=item["name"], kind=item["kind"], length=item["length"],
+            fields=tuple(self.field(field) for field in item["fields"]), id=get("id"), set_id=get("set_id"),
+            get_id=get("get_id"), identifier=get("identifier"), group=get("group", ""), table=get("table"),
+            page=get("page"), summary=get("summary", ""), acknowledge=get("acknowledge", True),
+            contains=tuple(model.Part(part["message"], part["offset"]) for part in get("contains", ())), node=node,
+            errata=self.about(item), source=item,
+        )  # fmt: skip
+
+    def field(self, item: Map) -> model.Field:
+        get = item.get
+        return model.Field(
+            name=item["name"], at=item["offset"], bits=item["bits"], type=item["type"], identifier=get("identifier"),
+            enum=self.enums.get(get("enum")), unit=self.units.get(get("unit")), formula=get("formula", ""),
+            scale=Scale(Fraction(item["scale"]), Fraction(get("scale_offset", "0"))) if "scale" in item else None,
+            const=get("const"), special=tuple(model.Special(s["value"], s["meaning"]) for s in get("special", ())),
+            limits=model.Limits(**{key: Fraction(value) for key, value in item["limits"].items()})
+            if "limits" in item else None,
+            bitfields=tuple(
+                model.BitField(b["offset"], b["bits"], b["name"], b.get("summary", "")) for b in get("bitfields", ())
+            ),
+            summary=get("summary", ""), errata=self.about(item), source=item,
+        )  # fmt: skip
+
+
+def _erratum(item: Map) -> model.Erratum:
+    return model.Erratum(
+        item["id"], item["title"], item["why"], item["evidence"], item["confidence"], tuple(item.get("tables", ())),
+        tuple(item.get("printed", {}).items()), tuple(item.get("held", {}).items()), item["changes"],
+    )  # fmt: skip
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, list) else value

@@ -1,0 +1,86 @@
+"""One side of a comparison: its ICDs, what it is called, and the texts that its places refer to."""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from icdgen.diagnostics import Finding, Place
+from icdgen.diff.inputs.git import Spec
+from icdgen.errors import UserError
+from icdgen.icd.load import load
+from icdgen.icd.loaded import Loaded
+from icdgen.icd.model import Icd
+
+_READING = ("ICD001", "ICD002", "ICD003", "ICD004", "ICD010")  # something of the ICD is not in the model
+
+
+@dataclass
+class Side:
+    """``label`` is what a user calls it. ``folder`` is where its files lay while they were read; places are told without it."""
+
+    label: str
+    icd: Icd
+    findings: list[Finding] = field(default_factory=list)
+    texts: dict[str, str] = field(default_factory=dict)
+    folder: str = ""
+    prefix: str = ""  # what stands there instead: "v1.2:"
+
+    def is_whole(self, unchecked: bool = False) -> bool:
+        """Whether the ICDs can be compared: without errors, or at least readable."""
+        errors = [finding for finding in self.findings if finding.severity == "error"]
+        return not any(not unchecked or finding.code in _READING for finding in errors)
+
+    def place(self, place: Place | None) -> Place | None:
+        """The place as a user knows it."""
+        if place is None or not place.file:
+            return None
+        return place._replace(file=self.name(place.file))
+
+    def erratum(self, key: str) -> Place | None:
+        """Where the entry of an overlay stands that has this id."""
+        entry = re.compile(rf"^[ -]*[\"']?id[\"']?: *[\"']?({re.escape(key)})[\"']?,? *$", re.MULTILINE)
+        for file, text in self.texts.items():
+            found = entry.search(text) if "errata" in text else None
+            if found:
+                start = found.start(1)
+                return Place(file, text.count("\n", 0, start) + 1, start - text.rfind("\n", 0, start), len(key))
+        return None
+
+    def name(self, file: str) -> str:
+        """The file as a user knows it."""
+        return self.prefix + file.removeprefix(self.folder) if self.folder and file.startswith(self.folder) else file
+
+
+def from_paths(paths: list[Path], unchecked: bool = False) -> Side:
+    """ICD files and folders."""
+    return _side(", ".join(map(str, paths)), load(paths, check=not unchecked))
+
+
+def from_git(spec: Spec, unchecked: bool = False) -> Side:
+    """The ICDs of a revision, as git has them. Raises `UserError`."""
+    with tempfile.TemporaryDirectory(prefix="icdgen-diff-") as name:
+        folder = os.path.realpath(name)
+        paths = spec.extract(Path(folder))
+        if not paths:
+            what = " ".join(map(str, spec.paths)) or "the folder"
+            raise UserError(f"{spec.revision} has no ICD in {what}", "name another path: REVISION:PATH")
+        loaded = load(paths, check=not unchecked)
+    side = _side(spec.label, loaded)
+    side.folder, side.prefix = folder + os.sep, f"{spec.revision}:"
+    side.findings = [_told(side, finding) for finding in side.findings]
+    side.texts = {side.name(file): text for file, text in side.texts.items()}
+    return side
+
+
+def _side(label: str, loaded: Loaded) -> Side:
+    return Side(label, loaded.icd, loaded.findings, loaded.texts)
+
+
+def _told(side: Side, finding: Finding) -> Finding:
+    words = (text.replace(side.folder, side.prefix) for text in (finding.message, finding.help))
+    message, help = words
+    return finding._replace(place=side.place(finding.place), message=message, help=help)

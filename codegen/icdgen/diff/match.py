@@ -1,0 +1,262 @@
+"""Finds what is the same thing in both ICDs: first by name, then, of what is left, by ids and layout.
+
+Everything here is symmetric: from new to old the same pairs are found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+
+from icdgen.diff.pairs import EnumPair, FieldPair, Match, MemberPair, MessagePair, NodePair, kind, position
+from icdgen.diff.similar import likeness, overlap
+from icdgen.icd.model import CONFIGURATION, Enum, Field, Icd, Message, Node
+
+SAME_NODE = 0.4  # from here on, nodes of different names are one
+SAME_MESSAGE = 0.55
+SAME_ENUM = 0.5
+SAME_FIELD = 0.6
+
+Score = Callable[[object, object], float]
+
+
+def match(old: Icd, new: Icd) -> Match:
+    """Both ICDs side by side."""
+    found = Match(old, new)
+    nodes, left = _by_name(old.nodes, new.nodes)
+    nodes += _alike(*left, _node_score, SAME_NODE)
+    found.nodes = [NodePair(one, other, sure) for one, other, sure in nodes]
+    found.nodes += [NodePair(one, None) for one in left[0] if not _taken(nodes, 0, one)]
+    found.nodes += [NodePair(None, one) for one in left[1] if not _taken(nodes, 1, one)]
+    _enums(found)
+    _messages(found)
+    _in_order(found)
+    return found
+
+
+def _taken(pairs: Iterable[tuple], side: int, one: object) -> bool:
+    return any(pair[side] is one for pair in pairs)
+
+
+def _by_name(old: Iterable, new: Iterable) -> tuple[list[tuple], tuple[list, list]]:
+    """Pairs of equal names, and what is left on either side. The first of several equal names counts."""
+    by_name: dict[str, list] = {}
+    for one in new:
+        by_name.setdefault(one.name, []).append(one)
+    pairs, left = [], []
+    for one in old:
+        same = by_name.get(one.name)
+        if same:
+            pairs.append((one, same.pop(0), 1.0))
+        else:
+            left.append(one)
+    return pairs, (left, [one for rest in by_name.values() for one in rest])
+
+
+def _alike(old: Sequence, new: Sequence, score: Score, least: float) -> list[tuple]:
+    """The best pairs of what is left, greedily; ties go to those that stand at like places."""
+    found = []
+    for i, one in enumerate(old):
+        for j, other in enumerate(new):
+            value = score(one, other)
+            if value >= least:
+                found.append((-value, abs(i - j), i + j, i, j))
+    found.sort()
+    pairs, taken_old, taken_new = [], set(), set()
+    for value, _, _, i, j in found:
+        if i not in taken_old and j not in taken_new:
+            taken_old.add(i)
+            taken_new.add(j)
+            pairs.append((old[i], new[j], min(0.99, -value)))
+    return pairs
+
+
+def _node_score(one: Node, other: Node) -> float:
+    keys = [frozenset((m.name, m.kind, m.ids) for m in node.messages) for node in (one, other)]
+    return 0.9 * overlap(*keys) + 0.1 * likeness(one.name, other.name) if any(keys) else 0.0
+
+
+# Enumerations
+
+
+def _enums(found: Match) -> None:
+    left_old: list[tuple[NodePair, Enum]] = []
+    left_new: list[tuple[NodePair, Enum]] = []
+    for node in found.nodes:
+        pairs, (old, new) = _by_name(node.old.enums if node.old else (), node.new.enums if node.new else ())
+        for one, other, sure in pairs:
+            _add_enum(found, node, node, one, other, sure)
+        left_old += [(node, enum) for enum in old]
+        left_new += [(node, enum) for enum in new]
+    for score in (_moved_enum, _renamed_enum):
+        for (home, one), (node, other), sure in _alike(left_old, left_new, score, SAME_ENUM):
+            _add_enum(found, home, node, one, other, sure)
+            left_old = [item for item in left_old if item[1] is not one]
+            left_new = [item for item in left_new if item[1] is not other]
+    for node, enum in left_old:
+        _add_enum(found, node, node, enum, None, 1.0)
+    for node, enum in left_new:
+        _add_enum(found, node, node, None, enum, 1.0)
+
+
+def _moved_enum(one: tuple[NodePair, Enum], other: tuple[NodePair, Enum]) -> float:
+    return 1.0 if one[1].name == other[1].name and _members_alike(one[1], other[1]) >= 0.3 else 0.0
+
+
+def _renamed_enum(one: tuple[NodePair, Enum], other: tuple[NodePair, Enum]) -> float:
+    if one[0] is not other[0]:
+        return 0.0
+    return 0.85 * _members_alike(one[1], other[1]) + 0.15 * likeness(one[1].name, other[1].name)
+
+
+def _members_alike(one: Enum, other: Enum) -> float:
+    return overlap(*(frozenset((m.value, m.name) for m in enum.members) for enum in (one, other)))
+
+
+def _add_enum(found: Match, home: NodePair, node: NodePair, old: Enum | None, new: Enum | None, sure: float) -> None:
+    pair = EnumPair(old, new, sure, home.old or home.new, node.new or node.old, home is not node)
+    if old is None or new is None or pair.changed:
+        pair.members = list(_members(pair))
+    node.enums.append(pair)
+    found.pair_of.update((id(enum), pair) for enum in (old, new) if enum is not None)
+
+
+def _members(pair: EnumPair) -> Iterable[MemberPair]:
+    old = list(pair.old.members) if pair.old else []
+    new = list(pair.new.members) if pair.new else []
+    for key in (lambda m: (m.value, m.name), lambda m: m.name, lambda m: m.value):
+        for one in list(old):
+            twins = [m for m in old if key(m) == key(one)]
+            others = [m for m in new if key(m) == key(one)]
+            if len(others) == 1 and len(twins) == 1:
+                yield MemberPair(one, others[0], 1.0, pair)
+                old.remove(one)
+                new.remove(others[0])
+    yield from (MemberPair(one, None, 1.0, pair) for one in old)
+    yield from (MemberPair(None, one, 1.0, pair) for one in new)
+
+
+# Messages
+
+
+def _messages(found: Match) -> None:
+    left_old: list[tuple[NodePair, Message]] = []
+    left_new: list[tuple[NodePair, Message]] = []
+    for node in found.nodes:
+        pairs, (old, new) = _by_name(node.old.messages if node.old else (), node.new.messages if node.new else ())
+        for one, other, sure in pairs:
+            _add_message(found, node, node, one, other, sure)
+        left_old += [(node, message) for message in sorted(old, key=_rank)]
+        left_new += [(node, message) for message in sorted(new, key=_rank)]
+    for score in (_moved_message, _renamed_message):
+        for (home, one), (node, other), sure in _alike(left_old, left_new, score, SAME_MESSAGE):
+            _add_message(found, home, node, one, other, sure)
+            left_old = [item for item in left_old if item[1] is not one]
+            left_new = [item for item in left_new if item[1] is not other]
+    for node, message in left_old:
+        _add_message(found, node, node, message, None, 1.0)
+    for node, message in left_new:
+        _add_message(found, node, node, None, message, 1.0)
+
+
+def _rank(message: Message) -> tuple:
+    return message.kind, message.ids, message.name
+
+
+def _moved_message(one: tuple[NodePair, Message], other: tuple[NodePair, Message]) -> float:
+    same = one[1].name == other[1].name and one[1].kind == other[1].kind
+    return 1.0 if same and (one[1].ids == other[1].ids or _layouts_alike(one[1], other[1]) > 0.5) else 0.0
+
+
+def _renamed_message(one: tuple[NodePair, Message], other: tuple[NodePair, Message]) -> float:
+    """The same layout under another name, or name and id."""
+    (home, old), (node, new) = one, other
+    if home is not node or not _same_direction(old, new):
+        return 0.0
+    same_id = any(a is not None and a == b for a, b in zip(_ids(old), _ids(new), strict=True))
+    alike = likeness(old.name, new.name)
+    if not same_id and min(len(old.fields), len(new.fields)) < 2 and alike < 0.6:
+        return 0.0  # too little to go by
+    names = overlap(*(frozenset(f.name for f in m.fields) for m in (old, new)))
+    return 0.4 * _layouts_alike(old, new) + 0.2 * names + 0.25 * same_id + 0.15 * alike
+
+
+def _same_direction(old: Message, new: Message) -> bool:
+    return old.kind == new.kind or CONFIGURATION in (old.kind, new.kind)
+
+
+def _ids(message: Message) -> tuple[int | None, int | None]:
+    return message.telecommand_id, message.telemetry_id
+
+
+def _layouts_alike(old: Message, new: Message) -> float:
+    shapes = [frozenset((f.at, f.bits, kind(f)) for f in m.fields) for m in (old, new)]
+    return overlap(*shapes) if any(shapes) else 0.75 if old.length == new.length else 0.0
+
+
+def _add_message(
+    found: Match, home: NodePair, node: NodePair, old: Message | None, new: Message | None, sure: float
+) -> None:
+    pair = MessagePair(old, new, sure, home.old or home.new, node.new or node.old, home is not node)
+    if old is None or new is None or pair.changed:
+        pair.fields = _fields(pair)
+    node.messages.append(pair)
+    found.pair_of.update((id(message), pair) for message in (old, new) if message is not None)
+
+
+# Fields
+
+
+def _fields(pair: MessagePair) -> list[FieldPair]:
+    rows_old = sorted(pair.old.fields, key=_place) if pair.old else []
+    rows_new = sorted(pair.new.fields, key=_place) if pair.new else []
+    pairs, (old, new) = _by_name(rows_old, rows_new)
+    if old and new:
+        pairs += _renamed_fields(pair, pairs, old, new)
+    found = [FieldPair(one, other, sure, pair) for one, other, sure in pairs]
+    taken = {id(one) for two in pairs for one in two[:2]}
+    found += [FieldPair(one, None, 1.0, pair) for one in old if id(one) not in taken]
+    found += [FieldPair(None, one, 1.0, pair) for one in new if id(one) not in taken]
+    return sorted(found, key=lambda p: _place(p.old or p.new))
+
+
+def _place(field: Field) -> tuple:
+    return field.at, field.name
+
+
+def _renamed_fields(pair: MessagePair, known: list[tuple], old: list[Field], new: list[Field]) -> list[tuple]:
+    spans_old, spans_new = ([position(node, f) for f in rows] for node, rows in
+                            ((pair.old_node, old), (pair.new_node, new)))  # fmt: skip
+    spans = {id(f): span for f, span in zip((*old, *new), (*spans_old, *spans_new), strict=True)}
+    steps = sorted((one.at, other.at) for one, other, _ in known)
+
+    def score(one: Field, other: Field) -> float:
+        alike = likeness(one.name, other.name)
+        same_kind = kind(one) == kind(other)
+        same_sense = (one.type, one.scale, one.unit, one.limits) == (other.type, other.scale, other.unit, other.limits)
+        if spans[id(one)] == spans[id(other)]:
+            if same_kind:
+                return 0.6 + 0.15 * alike + 0.2 * same_sense
+            return 0.7 * alike + 0.1 if alike >= 0.75 else 0.0
+        if one.bits != other.bits or not same_kind or not same_sense:
+            return 0.0
+        if other.at - one.at in _shifts(steps, one.at, other.at):
+            return 0.6 + 0.3 * alike
+        return 0.8 * alike if alike >= 0.75 else 0.0
+
+    return _alike(old, new, score, SAME_FIELD)
+
+
+def _shifts(steps: list[tuple[int, int]], old_at: int, new_at: int) -> set[int]:
+    """By how much the nearest fields before it have moved, as seen in the old frame and in the new one."""
+    before_old = [b - a for a, b in steps if a < old_at]
+    before_new = [b - a for a, b in sorted(steps, key=lambda s: s[1]) if b < new_at]
+    return {moved[-1] for moved in (before_old, before_new) if moved}
+
+
+def _in_order(found: Match) -> None:
+    """As the ICDs have them: what is new or there still as in the new one, what is gone at its end."""
+    for node in found.nodes:
+        for rows, names in ((node.messages, "messages"), (node.enums, "enums")):
+            order = {id(one): number for number, one in enumerate(getattr(node.new, names, ()))}
+            late = {id(one): number for number, one in enumerate(getattr(node.old, names, ()))}
+            rows.sort(key=lambda p: (p.new is None, order.get(id(p.new), 0), late.get(id(p.old), 0)))

@@ -1,0 +1,12 @@
+"""Changes as workflow commands: GitHub shows them beside the lines of a pull request."""
+
+from __future__ import annotations
+
+from icdgen import reports
+from icdgen.diff.report import Report
+from icdgen.diff.reports.findings import of_report
+
+
+def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
+    """One command a change."""
+    return reports.get("github")(of_report(report), {})

@@ -1,0 +1,101 @@
+"""The report as one JSON object, the stable form for programs, described by ``diff.schema.json``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from icdgen.diagnostics import Place
+from icdgen.diff.accepted import Acceptance
+from icdgen.diff.change import Change
+from icdgen.diff.compatibility import Direction
+from icdgen.diff.generated import Name
+from icdgen.diff.report import Report
+from icdgen.diff.uses import Use
+
+FORMAT = 1
+SCHEMA = Path(__file__).parent.parent.with_name("diff.schema.json")
+
+
+def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
+    """Everything, accepted changes included."""
+    return json.dumps(document(report), indent=1, ensure_ascii=False) + "\n"
+
+
+def document(report: Report) -> dict[str, object]:
+    """A tree for `json.dumps`."""
+    reasons = {id(change): entry.reason for change, entry in report.accepted}
+    names = report.comparison.context.generated.old if report.comparison.changes else {}
+    found: dict[str, object] = {
+        "format": FORMAT,
+        "old": report.old.label,
+        "new": report.new.label,
+        "version": {
+            "step": report.step.step,
+            "reason": report.step.reason,
+            "deciding": list(report.step.deciding),
+        },
+        "counts": report.counts(),
+        "compatibility": [_direction(one) for one in report.directions],
+        "changes": [_change(c, reasons.get(id(c)), names.get(id(c.pair), ())) for c in report.comparison.changes],
+        "stale": [_stale(entry) for entry in report.stale],
+    }
+    if report.uses is not None:
+        numbers = {id(change): number for number, change in enumerate(report.comparison.changes)}
+        found["uses"] = [_use(use, numbers) for use in report.uses]
+    return found
+
+
+def _direction(one: Direction) -> dict[str, object]:
+    return {
+        "key": one.key,
+        "question": one.question,
+        "verdict": one.verdict,
+        "frames_total": one.total,
+        "general": list(one.general),
+        "frames": [frame._asdict() | {"reasons": list(frame.reasons)} for frame in one.frames],
+    }
+
+
+def _change(change: Change, reason: str | None, names: tuple[Name, ...]) -> dict[str, object]:
+    found: dict[str, object] = {
+        "code": change.code,
+        "layer": change.layer,
+        "severity": change.severity,
+        "addition": change.addition,
+        "breaking": change.breaks,
+        "message": change.message,
+        "where": {key: value for key, value in change.where._asdict().items() if value},
+        "was": change.was,
+        "now": change.now,
+        "old": _place(change.old),
+        "new": _place(change.new),
+        "details": list(change.details),
+        "sure": round(change.sure, 3),
+        "errata": list(change.errata),
+        "generated": {language: _texts(names, language) for language in dict.fromkeys(n.language for n in names)},
+    }
+    return found if reason is None else found | {"accepted": reason}
+
+
+def _texts(names: tuple[Name, ...], language: str) -> list[str]:
+    return [name.text for name in names if name.language == language]
+
+
+def _place(place: Place | None) -> dict[str, object] | None:
+    return place._asdict() if place is not None else None
+
+
+def _stale(entry: Acceptance) -> dict[str, object]:
+    return {"code": entry.code, **entry.where, **entry.values, "reason": entry.reason, "place": _place(entry.place)}
+
+
+def _use(use: Use, numbers: dict[int, int]) -> dict[str, object]:
+    return {
+        "file": use.file,
+        "line": use.line,
+        "column": use.column,
+        "name": use.name,
+        "text": use.text,
+        "changes": sorted(numbers[id(change)] for change in use.changes),
+    }

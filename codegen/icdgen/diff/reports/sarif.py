@@ -1,0 +1,40 @@
+"""Changes as SARIF 2.1.0: each at its new place, with the old one beside it, accepted ones as suppressed."""
+
+from __future__ import annotations
+
+import json
+
+from icdgen.diff import rule
+from icdgen.diff.change import Change
+from icdgen.diff.compare import RULES
+from icdgen.diff.report import Report
+from icdgen.diff.reports.findings import of_change, of_report
+from icdgen.reports import sarif
+
+
+def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
+    """One run of the tool, with the rules that apply."""
+    findings = list(of_report(report))
+    accepted = [of_change(change) for change, _ in report.accepted]
+    document = sarif.document([*findings, *accepted], _rule)
+    results = document["runs"][0]["results"]
+    for result, change in zip(results, report.changes, strict=False):
+        _beside(result, change)
+    for result, (change, entry) in zip(results[len(findings) :], report.accepted, strict=True):
+        _beside(result, change)
+        result["suppressions"] = [{"kind": "external", "status": "accepted", "justification": entry.reason}]
+    return json.dumps(document, indent=2) + "\n"
+
+
+def _rule(code: str) -> dict:
+    one = RULES.get(code)
+    if one is None:
+        return {"id": code, "shortDescription": {"text": "an accepted change that does not happen"}}
+    return sarif.described(code, one, rule.explain(code))
+
+
+def _beside(result: dict, change: Change) -> None:
+    result["properties"] = {"layer": change.layer, "addition": change.addition, "sure": round(change.sure, 3)}
+    if change.old is not None and change.new is not None:
+        where = {"id": 1, "physicalLocation": sarif.physical(change.old), "message": {"text": "as it was"}}
+        result["relatedLocations"] = [where]

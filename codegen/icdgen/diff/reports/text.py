@@ -1,0 +1,141 @@
+"""The report for people at a terminal: what matters first, on one page where that is possible."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Iterator
+
+from icdgen.diff.accepted import about_stale
+from icdgen.diff.change import ABOUT, LAYERS, TEXT, Change
+from icdgen.diff.compatibility import NO, Direction
+from icdgen.diff.report import Report
+from icdgen.diff.reports.groups import groups, notes
+from icdgen.icd.rules.wording import count
+from icdgen.reports.excerpt import printable, shown
+
+RESET = "\x1b[0m"
+COLOURS = {
+    "head": "\x1b[1m", "place": "\x1b[2m", "error": "\x1b[1;31m", "warning": "\x1b[1;33m", "note": "\x1b[36m", "yes": "\x1b[32m",
+    "partly": "\x1b[33m", "no": "\x1b[31m", "wire": "\x1b[1;31m", "meaning": "\x1b[1;35m", "source": "\x1b[1;33m",
+    "text": "\x1b[1;36m",
+}  # fmt: skip
+MOST_WORDS = 10  # changes of words that are listed
+MOST_FRAMES = 12  # frames that are listed of one direction
+_INDENT = " " * 4
+
+Paint = Callable[[str, str], str]
+
+
+def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
+    """``width`` wraps explanations; ``everything`` leaves nothing out."""
+    paint: Paint = (lambda role, text: f"{COLOURS[role]}{text}{RESET}") if colour else (lambda role, text: text)
+    lines = [paint("head", f"{printable(report.old.label)} -> {printable(report.new.label)}")]
+    if not report.comparison.changes:
+        return "\n".join([*lines, "no change", *_stale(report, paint), ""])
+    lines += ["", *_summary(report, paint), ""]
+    lines += _wrapped(
+        f"version of the generated packages: {report.step.step}. Reason: {report.step.reason}.", width, ""
+    )
+    for direction in report.directions:
+        lines += ["", *_direction(direction, paint, width, everything)]
+    for layer in LAYERS:
+        lines += _layer(report, layer, paint, width, everything)
+    lines += _uses(report, paint)
+    lines += _accepted(report, paint)
+    lines += _stale(report, paint)
+    return "\n".join([*lines, ""])
+
+
+def _summary(report: Report, paint: Paint) -> Iterator[str]:
+    for layer, number in report.counts().items():
+        additions = sum(1 for c in report.of_layer(layer) if c.addition)
+        extra = f" ({count(additions, 'addition')})" if additions else ""
+        label = paint(layer, f"{layer:8}") if number else f"{layer:8}"
+        yield f"  {label} {number:4}  {ABOUT[layer]}{extra}"
+
+
+def _direction(direction: Direction, paint: Paint, width: int | None, everything: bool) -> Iterator[str]:
+    good = direction.total - len(direction.frames)
+    verdict = paint(direction.verdict, direction.verdict)
+    total = f"{good} of {count(direction.total, 'frame')} as before" if direction.total else "there are none"
+    yield f"{paint('head', direction.question)} {verdict}: {total}"
+    for line in direction.general:
+        yield from _wrapped(shown(line), width, "  ! ")
+    most = len(direction.frames) if everything else MOST_FRAMES
+    frames = sorted(direction.frames, key=lambda f: f.verdict != NO)
+    for frame in frames[:most]:
+        head = f"  {paint(frame.verdict, f'{frame.verdict:6}')} {printable(frame.node)} {shown(frame.message)} ({frame.id})"
+        yield f"{head}: {shown('; '.join(frame.reasons))}"
+    if len(frames) > most:
+        yield f"  ... and {len(frames) - most} more, which --all lists"
+
+
+def _layer(report: Report, layer: str, paint: Paint, width: int | None, everything: bool) -> Iterator[str]:
+    changes = report.of_layer(layer)
+    if not changes:
+        return
+    yield ""
+    yield f"{paint(layer, layer)}: {ABOUT[layer]}"
+    most = len(changes) if everything or layer != TEXT else MOST_WORDS
+    for group in groups(changes[:most]):
+        yield ""
+        yield f"  {paint('head', shown(group.title))} ({group.about}, {printable(group.node)})"
+        for change in group.changes:
+            yield from _change(change, paint, width, everything or not change.addition)
+    if len(changes) > most:
+        yield ""
+        yield f"  ... and {len(changes) - most} more changes of words, which --all lists"
+
+
+def _change(change: Change, paint: Paint, width: int | None, explained: bool) -> Iterator[str]:
+    kind = "addition" if change.addition else change.severity
+    head = paint("note" if change.addition else change.severity, f"{kind}[{change.code}]")
+    lead = len(f"{kind}[{change.code}] ")
+    first, *rest = _wrapped(shown(change.message), width, _INDENT + " " * lead)
+    yield f"{_INDENT}{head} {first.lstrip()}"
+    yield from rest
+    for note in notes(change) if explained else ():
+        yield from _wrapped(shown(note), width, _INDENT * 2)
+    yield f"{_INDENT * 2}{paint('place', printable(_places(change)))}"
+
+
+def _places(change: Change) -> str:
+    if change.old is None or change.new is None:
+        return str(change.place or "no file")
+    return f"{change.old} -> {change.new}"
+
+
+def _wrapped(text: str, width: int | None, indent: str) -> list[str]:
+    if width is None or len(indent) + len(text) <= width:
+        return [indent + text]
+    return textwrap.wrap(text, max(width, len(indent) + 30), initial_indent=indent, subsequent_indent=" " * len(indent))
+
+
+def _uses(report: Report, paint: Paint) -> Iterator[str]:
+    if report.uses is None:
+        return
+    yield ""
+    yield paint("head", "uses in your sources") + (": none" if not report.uses else "")
+    for use in report.uses:
+        codes = ", ".join(dict.fromkeys(change.code for change in use.changes))
+        yield f"  {paint('place', printable(f'{use.file}:{use.line}:{use.column}'))}: {use.name} ({codes})"
+        yield f"{_INDENT}{shown(use.text.strip())}"
+        for message in dict.fromkeys(change.message for change in use.changes):
+            yield f"{_INDENT}  {shown(message)}"
+
+
+def _accepted(report: Report, paint: Paint) -> Iterator[str]:
+    if report.accepted:
+        yield ""
+        yield paint("head", f"accepted: {count(len(report.accepted), 'change')}")
+        for change, entry in report.accepted:
+            yield f"  {change.code} {shown(change.message)}"
+            yield f"{_INDENT}{shown(entry.reason)} ({printable(str(entry.place))})"
+
+
+def _stale(report: Report, paint: Paint) -> Iterator[str]:
+    for entry in report.stale:
+        finding = about_stale(entry)
+        yield ""
+        yield f"{printable(str(finding.place))}: {paint('warning', f'warning[{finding.code}]')}: {shown(finding.message)}"
+        yield f"  help: {finding.help}"

@@ -1,0 +1,61 @@
+"""What a rule of the diff is, and how the modules of ``changes`` register theirs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from icdgen.diff.change import LAYERS, Found
+from icdgen.icd.rules import pages
+
+Check = Callable[..., Iterator[Found]]
+PAGES = Path(__file__).parent / "changes"
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A kind of change. The first digit of its code is the layer: 1 wire, 2 meaning, 3 source, 4 text."""
+
+    code: str
+    of: tuple[str, ...]  # what it looks at: "icd", "node", "message", "field", "enum", "member"
+    theme: str
+    check: Check
+    severity: str = "error"  # "error" | "warning" | "note"
+    addition: bool = False  # something that nobody relied upon came
+    when: str = "both"  # or "gone", "come": only in the old ICD, only in the new one
+
+    @property
+    def layer(self) -> str:
+        return LAYERS[int(self.code[3]) - 1]
+
+    @property
+    def page(self) -> pages.Page:
+        """Title, reason, and the same ICD before and after."""
+        return pages.of(self.theme, PAGES)[self.code]
+
+    @property
+    def title(self) -> str:
+        """The rule in one line."""
+        return self.page.title
+
+
+REGISTERED: dict[str, Rule] = {}
+
+
+def rule(code: str, *of: str, **properties: object) -> Callable[[Check], Check]:
+    """Registers the decorated function, which looks at one pair of things; its module's name is the theme."""
+
+    def register(check: Check) -> Check:
+        if code in REGISTERED:
+            raise ValueError(f"two rules are called {code}")
+        REGISTERED[code] = Rule(code, of, check.__module__.rpartition(".")[2], check, **properties)
+        return check
+
+    return register
+
+
+def explain(code: str) -> str:
+    """The page of a rule in Markdown. Raises `KeyError`."""
+    one = REGISTERED[code]
+    return pages.text(one.code, f"{one.layer}, {one.severity}", one.page, ("Before", "After"))

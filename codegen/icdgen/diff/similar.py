@@ -1,0 +1,59 @@
+"""How alike two names are, and whether the second still says what the first said."""
+
+from __future__ import annotations
+
+from difflib import SequenceMatcher
+from functools import lru_cache
+
+from icdgen.naming import words
+
+_SHORTEST = 5  # letters of a word in which a slip of the pen is told from another word
+
+
+@lru_cache(maxsize=4096)
+def likeness(one: str, other: str) -> float:
+    """0: nothing in common, 1: the same words. Symmetric."""
+    first, second = sorted((" ".join(words(one)), " ".join(words(other))))
+    return 1.0 if first == second else SequenceMatcher(None, first, second, autojunk=False).ratio()
+
+
+def overlap(one: frozenset, other: frozenset) -> float:
+    """Share of what both have in what either has; a half where there is nothing to compare."""
+    return len(one & other) / len(one | other) if one or other else 0.5
+
+
+@lru_cache(maxsize=4096)
+def same_sense(one: str, other: str) -> bool:
+    """Whether the names differ only in spelling: case, punctuation, spaces, or one slip of the pen in a long word.
+
+    Cautious: what could be another word is another sense.
+    """
+    first, second = words(one), words(other)
+    if "".join(first) == "".join(second) or sorted(first) == sorted(second):
+        return True
+    if len(first) != len(second):
+        return False
+    return all(a == b or _is_slip(*sorted((a, b))) for a, b in zip(first, second, strict=True))
+
+
+def extends(one: str, other: str) -> bool:
+    """Whether one name only says more than the other: ``Mode`` and ``Control Mode``."""
+    first, second = sorted((words(one), words(other)), key=len)
+    rest = iter(second)
+    return bool(first) and not _NEGATIONS.intersection(second) and all(word in rest for word in first)
+
+
+_NEGATIONS = frozenset("no not non un in dis de off without anti negative inverse inverted".split())
+
+
+def _is_slip(one: str, other: str) -> bool:
+    """One letter more, less, or two in the wrong order, within a word; s for z. Never in a number or at the beginning."""
+    if min(len(one), len(other)) < _SHORTEST or one[0] != other[0] or any(c.isdigit() for c in one + other):
+        return False
+    if len(one) == len(other):
+        apart = [i for i, (a, b) in enumerate(zip(one, other, strict=True)) if a != b]
+        if len(apart) == 1:
+            return {one[apart[0]], other[apart[0]]} == {"s", "z"}
+        return len(apart) == 2 and one[apart[0]] == other[apart[1]] and one[apart[1]] == other[apart[0]]
+    short, long = sorted((one, other), key=len)
+    return len(long) - len(short) == 1 and any(long[:i] + long[i + 1 :] == short for i in range(len(long)))

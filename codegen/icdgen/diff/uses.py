@@ -1,0 +1,126 @@
+"""Which lines of a user's own sources use names that a change touches."""
+
+from __future__ import annotations
+
+import os
+import re
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from icdgen.diff.change import Change
+from icdgen.diff.compare import Comparison
+from icdgen.diff.generated import Name
+from icdgen.diff.pairs import EnumPair, MessagePair, Pair
+from icdgen.errors import UserError
+
+SUFFIXES = {
+    **dict.fromkeys((".c", ".h", ".cc", ".cpp", ".cxx", ".hh", ".hpp", ".hxx", ".inc", ".ino"), "c"),
+    **dict.fromkeys((".py", ".pyi"), "python"),
+    ".rs": "rust",
+}
+MARK = "enerated by icdgen"  # at the beginning of a file that icdgen wrote; nobody's own source
+_HEAD = 400
+_MOST = 8_000_000  # bytes of a source file that are looked at
+_SKIPPED = frozenset((".git", ".hg", ".svn", "node_modules", "__pycache__", ".venv", "target"))
+
+_NAME = r"(?P<name>[A-Za-z_][A-Za-z0-9_]*)"
+_C_LIKE = re.compile(rf'//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|{_NAME}', re.DOTALL)
+_PYTHON = re.compile(
+    rf'#[^\n]*|[rbuRBU]{{0,2}}(?:"""(?:\\.|[^\\])*?(?:"""|\Z)|\'\'\'(?:\\.|[^\\])*?(?:\'\'\'|\Z)'
+    rf"|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*')|{_NAME}",
+    re.DOTALL,
+)
+_LEXERS = {"c": _C_LIKE, "rust": _C_LIKE, "python": _PYTHON}
+
+
+class Use(NamedTuple):
+    """A name of generated code in a user's source, and what changed about it."""
+
+    file: str
+    line: int
+    column: int
+    name: str
+    text: str  # the line
+    changes: tuple[Change, ...]
+
+
+class _Wanted(NamedTuple):
+    stem: str
+    changes: list[Change]
+
+
+def uses(comparison: Comparison, changes: Iterable[Change], paths: Iterable[Path]) -> list[Use]:
+    """Every use of a touched name, by file and line. Comments and strings are passed over. Raises `UserError`."""
+    wanted = _wanted(comparison, changes)
+    found: list[Use] = []
+    for path in dict.fromkeys(file for top in paths for file in _sources(top)):
+        language = SUFFIXES[path.suffix.lower()]
+        if wanted[language]:
+            found += _in_file(path, language, wanted[language])
+    return found
+
+
+def _wanted(comparison: Comparison, changes: Iterable[Change]) -> dict[str, dict[str, list[_Wanted]]]:
+    """By language and name: what changed about it. Changes of words touch nobody's code."""
+    old = comparison.context.generated.old
+    result: dict[str, dict[str, list[_Wanted]]] = {language: {} for language in _LEXERS}
+    for change in changes:
+        if not change.breaks:
+            continue
+        for name in _names(change, old):
+            rows = result[name.language].setdefault(name.text, [])
+            row = next((row for row in rows if row.stem == name.stem), None)
+            if row is None:
+                rows.append(row := _Wanted(name.stem, []))
+            row.changes.append(change)
+    return result
+
+
+def _names(change: Change, old: dict[int, tuple[Name, ...]]) -> Iterator[Name]:
+    pair: Pair = change.pair
+    yield from old.get(id(pair), ())
+    if isinstance(pair, EnumPair | MessagePair) and change.code in ("DIF101", "DIF301", "DIF303", "DIF306", "DIF310"):
+        for part in (*getattr(pair, "fields", ()), *getattr(pair, "members", ())):
+            yield from (name for name in old.get(id(part), ()) if not name.stem)
+
+
+def _sources(top: Path) -> Iterator[Path]:
+    if os.path.isfile(top):
+        if top.suffix.lower() not in SUFFIXES:
+            raise UserError(f"{top} is no C, Python or Rust source", f"known are {', '.join(SUFFIXES)}")
+        yield top
+        return
+    if not os.path.isdir(top):
+        raise UserError(f"there is no {top}", "give --uses a folder, or a source file")
+    for folder, folders, files in os.walk(top):
+        folders[:] = sorted(name for name in folders if name not in _SKIPPED)
+        yield from (Path(folder, name) for name in sorted(files) if Path(name).suffix.lower() in SUFFIXES)
+
+
+def _in_file(path: Path, language: str, wanted: dict[str, list[_Wanted]]) -> Iterator[Use]:
+    try:
+        with open(path, "rb") as file:
+            text = file.read(_MOST).decode("utf-8", "replace")
+    except OSError as error:
+        raise UserError(f"cannot read {path}: {error.strerror}", "make it readable, or leave it out") from None
+    if MARK in text[:_HEAD]:
+        return
+    tokens = [(m["name"], m.start("name")) for m in _LEXERS[language].finditer(text) if m["name"]]
+    known = {name for name, _ in tokens}
+    starts = [0, *(match.end() for match in re.finditer("\n", text))]
+    for name, start in tokens:
+        rows = [row for row in wanted.get(name, ()) if not row.stem or _mentions(language, known, row.stem)]
+        if rows:
+            number = bisect_right(starts, start)
+            line = text[starts[number - 1] :].split("\n", 1)[0].rstrip("\r")
+            changes = tuple(dict.fromkeys(change for row in rows for change in row.changes))
+            yield Use(str(path), number, start - starts[number - 1] + 1, name, line, changes)
+
+
+def _mentions(language: str, known: set[str], stem: str) -> bool:
+    """Whether the file speaks of the type that the member belongs to."""
+    if language != "c":
+        return stem in known
+    return any(name == stem or name.lower().startswith(f"{stem}_") for name in known)

@@ -1,0 +1,41 @@
+"""Which number of the version of the generated packages must be counted up, and why."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from icdgen.diff.change import LAYERS, Change
+from icdgen.icd.rules.wording import count, listing
+
+MAJOR, MINOR, PATCH, NONE = "major", "minor", "patch", "none"
+
+
+class Step(NamedTuple):
+    """``step`` is ``major``, ``minor``, ``patch`` or ``none``; ``deciding`` are the codes of the changes that decide."""
+
+    step: str
+    reason: str
+    deciding: tuple[str, ...] = ()
+
+
+def step(changes: list[Change]) -> Step:
+    """The step by Semantic Versioning. What someone accepted is still a change."""
+    breaking = [change for change in changes if change.breaks]
+    additions = [change for change in changes if change.addition]
+    if breaking:
+        counts = [(layer, sum(1 for c in breaking if c.layer == layer)) for layer in LAYERS]
+        said = [f"{count(number, 'change')} of {_OF[layer]}" for layer, number in counts if number]
+        return Step(MAJOR, f"{listing(said)}, the first: {breaking[0].message}", _codes(breaking))
+    if additions:
+        reason = f"nothing breaks, {count(len(additions), 'addition')}, the first: {additions[0].message}"
+        return Step(MINOR, reason, _codes(additions))
+    if changes:
+        return Step(PATCH, f"{count(len(changes), 'change')} of words only", _codes(changes))
+    return Step(NONE, "nothing changed")
+
+
+_OF = {"wire": "the wire format", "meaning": "meaning", "source": "generated names or types", "text": "words"}
+
+
+def _codes(changes: list[Change]) -> tuple[str, ...]:
+    return tuple(sorted({change.code for change in changes}))

@@ -1,0 +1,71 @@
+"""Turns of phrase that changes share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+
+from icdgen.icd.formula import Scale
+from icdgen.icd.model import Field
+from icdgen.icd.rules.wording import count, listing, quote
+
+MOST = 4  # things that are named before the rest is counted
+
+
+def some(names: Sequence[str], what: str = "") -> str:
+    """`` `a`, `b` and 12 more``: a few of the names, and how many there are besides."""
+    shown = [quote(name) for name in names[:MOST]]
+    rest = len(names) - len(shown)
+    text = listing([*shown, f"{rest} more"] if rest else shown) if shown else ""
+    return f"{text} ({count(len(names), what)})" if what and rest else text
+
+
+def bits(number: int) -> str:
+    """``16 bits``, ``2 bytes``"""
+    return count(number // 8, "byte") if number and number % 8 == 0 else count(number, "bit")
+
+
+def span(field: Field) -> str:
+    """``bits 16 to 31``"""
+    return f"bit {field.at:,}" if field.bits == 1 else f"bits {field.at:,} to {field.at + field.bits - 1:,}"
+
+
+def number(value: Fraction | int | None) -> str:
+    """Exact: ``0.01``, ``1/3``; empty where there is none."""
+    if value is None:
+        return ""
+    value = Fraction(value)
+    rest = value.denominator
+    for factor in (2, 5):
+        while rest % factor == 0:
+            rest //= factor
+    if rest != 1:
+        return f"{value.numerator}/{value.denominator}"
+    places, scaled = 0, value
+    while scaled.denominator != 1:
+        scaled, places = scaled * 10, places + 1
+    digits = f"{abs(scaled.numerator):0{places + 1}d}"
+    text = f"{digits[:-places]}.{digits[-places:]}" if places else digits
+    return f"-{text}" if value < 0 else text
+
+
+def formula(scale: Scale | None) -> str:
+    """The scale in one spelling: ``raw``, ``raw*0.01``, ``raw*0.5 - 40``."""
+    if scale is None:
+        return "raw"
+    text = "raw" if scale.factor == 1 else f"raw*{number(scale.factor)}"
+    if scale.offset:
+        text += f" {'+' if scale.offset > 0 else '-'} {number(abs(scale.offset))}"
+    return text
+
+
+def type_of(field: Field) -> str:
+    """``16-bit int``, ``enum Mode of 4 bits``"""
+    if field.type == "enum":
+        return f"{field.bits}-bit enum {field.enum.name if field.enum else '?'}"
+    return "bool" if field.type == "bool" and field.bits == 1 else f"{field.bits}-bit {field.type}"
+
+
+def ids(values: Iterable[int | None]) -> str:
+    """``120 / 247``"""
+    return " / ".join(str(value) for value in values if value is not None)

@@ -1,0 +1,119 @@
+"""The site over HTTP, on this machine only, made anew when an ICD changes."""
+
+from __future__ import annotations
+
+import html
+import os
+from collections.abc import Callable
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from threading import Lock
+from urllib.parse import unquote, urlsplit
+
+from icdgen import memo, reports
+from icdgen.errors import UserError
+from icdgen.site.make import Site, make
+
+HOST = "127.0.0.1"
+_NAMES = {HOST, "localhost"}
+_TYPES = {
+    ".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".json": "application/json", ".svg": "image/svg+xml",
+    ".txt": "text/plain",
+}  # fmt: skip
+
+
+class Source:
+    """Keeps the site current: what is asked for is made of the files as they are then."""
+
+    def __init__(self, icds: list[Path], previous: str | None = None, templates: Path | None = None) -> None:
+        self._arguments = (icds, previous, templates)
+        self._lock = Lock()
+        self._site: Site | None = None
+
+    def site(self) -> Site:
+        """The site as of now. Raises `UserError`."""
+        with self._lock:
+            if self._site is None or self._is_stale(self._site):
+                self._site = None
+                self._site = make(*self._arguments)
+            return self._site
+
+    @staticmethod
+    def _is_stale(site: Site) -> bool:
+        return any(memo.fingerprint(os.fspath(path)) != seen for path, seen in site.inputs.items())
+
+
+def handler(source: Source) -> type[BaseHTTPRequestHandler]:
+    """A request handler that answers from ``source``."""
+
+    class Handler(BaseHTTPRequestHandler):
+        server_version, sys_version = "icdgen", ""
+
+        def do_GET(self) -> None:
+            if (self.headers.get("Host") or "").rsplit(":", 1)[0] not in _NAMES:
+                self._send(HTTPStatus.FORBIDDEN, ".txt", "This server answers only to localhost.\n")
+                return
+            name = unquote(urlsplit(self.path).path).lstrip("/")
+            if not name or name.endswith("/"):
+                name += "index.html"
+            try:
+                site = source.site()
+            except UserError as error:
+                self._send(HTTPStatus.INTERNAL_SERVER_ERROR, ".html", _complaint(f"{error}\n{error.help}"))
+                return
+            if not site.ok:
+                report = reports.get("text")(site.findings, site.texts)
+                self._send(HTTPStatus.INTERNAL_SERVER_ERROR, ".html", _complaint(report))
+            elif f"{name}/index.html" in site.files:
+                self._send(HTTPStatus.MOVED_PERMANENTLY, ".txt", "", Location=f"/{name}/")
+            elif name in site.files:
+                self._send(HTTPStatus.OK, os.path.splitext(name)[1], site.files[name])
+            else:
+                self._send(HTTPStatus.NOT_FOUND, ".html", _complaint(f"There is no page {name}"))
+
+        do_HEAD = do_GET
+
+        def _send(self, status: HTTPStatus, suffix: str, text: str, **headers: str) -> None:
+            data = text.encode("utf-8")
+            self.send_response(status)
+            self.send_header("Content-Type", f"{_TYPES.get(suffix, 'text/plain')}; charset=utf-8")
+            self.send_header("Content-Length", str(len(data)))
+            self.send_header("Cache-Control", "no-cache")
+            for key, value in headers.items():
+                self.send_header(key, value)
+            self.send_header("X-Content-Type-Options", "nosniff")
+            self.end_headers()
+            if self.command != "HEAD":
+                self.wfile.write(data)
+
+        def log_message(self, format: str, *args: object) -> None:
+            """Nothing: what goes well need not be said."""
+
+    return Handler
+
+
+def _complaint(text: str) -> str:
+    return (
+        '<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>icdgen</title>'
+        f"<body><h1>This site cannot be shown</h1><pre>{html.escape(text)}</pre></body></html>\n"
+    )
+
+
+def serve(
+    icds: list[Path], previous: str | None, templates: Path | None, port: int, say: Callable[[str], None]
+) -> None:
+    """Serves until interrupted. Raises `UserError` if the port is taken."""
+    source = Source(icds, previous, templates)
+    try:
+        server = ThreadingHTTPServer((HOST, port), handler(source))
+    except OSError as error:
+        raise UserError(f"cannot listen on port {port}: {error.strerror}", "choose another one with --port") from None
+    with server:
+        site = source.site()
+        state = f"{len(site.files)} files" if site.ok else "the ICDs have errors, the pages say which"
+        say(f"http://localhost:{server.server_port}/ ({state}); Ctrl+C ends it")
+        try:
+            server.serve_forever()
+        except KeyboardInterrupt:
+            return

@@ -1,0 +1,186 @@
+"use strict";
+/*
+ * Decodes and encodes messages from their plans: which bits of which bytes, which scale. Exact throughout.
+ *
+ * Raw values are BigInt (of uint, int, enum and bool, and the IEEE 754 bits of a float, so that every NaN survives) or, of byte
+ * arrays, Uint8Array. A frame is a Uint8Array. Runs in a page and under Node; knows nothing of either.
+ */
+const icdgenCodec = (() => {
+  /** What does not fit. `kind` is "length", "range" or "missing-field"; `field` is the name of the field, where it is about one. */
+  class CodecError extends Error {
+    constructor(kind, text, more) {
+      super(text);
+      this.kind = kind;
+      Object.assign(this, more);
+    }
+  }
+
+  /** Raw value of each field, in their order. Throws a CodecError unless the frame has the message's length. */
+  function decode(message, frame) {
+    if (frame.length !== message.length) {
+      const text = `${message.name} has ${message.length} bytes, ${frame.length} given`;
+      throw new CodecError("length", text, { expected: message.length, actual: frame.length });
+    }
+    return message.fields.map((field) => read(field, frame));
+  }
+
+  /** The frame of raw values in the order of the fields; reserved bits are 0. Throws a CodecError for a value that does not fit. */
+  function encode(message, raw) {
+    const frame = new Uint8Array(message.length);
+    message.fields.forEach((field, index) => {
+      check(field, raw[index]);
+      write(field, frame, raw[index]);
+    });
+    return frame;
+  }
+
+  function read(field, frame) {
+    if (field.type === "bytes") return frame.slice(field.first, field.first + field.bits / 8);
+    let value = 0n;
+    for (const [byte, shift, bits, at] of field.pieces) {
+      value |= BigInt((frame[byte] >> shift) & ((1 << bits) - 1)) << BigInt(at);
+    }
+    return field.type === "int" ? BigInt.asIntN(field.bits, value) : value;
+  }
+
+  function write(field, frame, raw) {
+    if (field.type === "bytes") {
+      frame.set(raw, field.first);
+      return;
+    }
+    const value = BigInt.asUintN(field.bits, raw);
+    for (const [byte, shift, bits, at] of field.pieces) {
+      frame[byte] |= Number((value >> BigInt(at)) & BigInt((1 << bits) - 1)) << shift;
+    }
+  }
+
+  /** Smallest and largest raw value of a field that is not a byte array. */
+  function range(field) {
+    const top = 1n << BigInt(field.bits - (field.type === "int" ? 1 : 0));
+    return [field.type === "int" ? -top : 0n, top - 1n];
+  }
+
+  /** Throws a CodecError unless the field can hold the raw value. */
+  function check(field, raw) {
+    if (raw === undefined) throw new CodecError("missing-field", `no value for ${field.name}`, { field: field.name });
+    if (field.type === "bytes") {
+      if (raw.length !== field.bits / 8) throw unfit(field, `takes ${field.bits / 8} bytes, not ${raw.length}`);
+      return;
+    }
+    const [low, high] = range(field);
+    if (raw < low || raw > high) throw unfit(field, `takes ${low} to ${high}, not ${raw}`);
+  }
+
+  function unfit(field, text) {
+    return new CodecError("range", `${field.name} ${text}`, { field: field.name });
+  }
+
+  /** The raw values of a fresh message: 0, or what is demanded. */
+  function fresh(message) {
+    return message.fields.map((field) => (field.type === "bytes" ? new Uint8Array(field.bits / 8) : BigInt(field.const ?? 0)));
+  }
+
+  /** Exact physical value of a scaled field as [numerator, denominator]; null without a scale. */
+  function exact(field, raw) {
+    if (!field.scale) return null;
+    const [p, c, q] = field.scale.map(BigInt);
+    return [raw * p + c, q];
+  }
+
+  /** The correctly rounded double of the physical value; null without a scale. */
+  function physical(field, raw) {
+    const ratio = exact(field, raw);
+    return ratio && nearestDouble(...ratio);
+  }
+
+  /** Raw value nearest to a physical one, ties to even. Throws a CodecError for what is not finite or does not fit. */
+  function rawFromPhysical(field, value) {
+    if (!Number.isFinite(value)) throw unfit(field, `takes a finite number, not ${value}`);
+    const [p, c, q] = (field.scale ?? [1, 0, 1]).map(BigInt);
+    let [number, exponent] = split(value);
+    let over = p;
+    number *= q;
+    if (exponent >= 0n) number = (number << exponent) - c;
+    else {
+      number -= c << -exponent;
+      over <<= -exponent;
+    }
+    const raw = over < 0n ? rounded(-number, -over) : rounded(number, over);
+    const [low, high] = range(field);
+    if (raw < low || raw > high) {
+      const ends = [low, high].map((end) => (field.scale ? physical(field, end) : Number(end))).sort((a, b) => a - b);
+      throw unfit(field, `takes ${ends[0]} to ${ends[1]}, not ${value}`);
+    }
+    return raw;
+  }
+
+  /** n / d, rounded to the nearest integer, ties to even; d > 0. */
+  function rounded(n, d) {
+    if (n < 0n) return -rounded(-n, d);
+    const whole = n / d;
+    const twice = 2n * (n % d);
+    return twice > d || (twice === d && whole & 1n) ? whole + 1n : whole;
+  }
+
+  function bitLength(n) {
+    const hex = n.toString(16);
+    return 4 * hex.length - Math.clz32(parseInt(hex[0], 16)) + 28;
+  }
+
+  /** The double nearest to n / d, ties to even; d > 0. */
+  function nearestDouble(n, d) {
+    if (n === 0n) return 0;
+    if (n < 0n) return -nearestDouble(-n, d);
+    let exponent = Math.max(bitLength(n) - bitLength(d) - 53, -1074);
+    const digits = (e) => (e < 0 ? rounded(n << BigInt(-e), d) : rounded(n, d << BigInt(e)));
+    if (bitLength(digits(exponent)) > 53) exponent += 1;
+    return Number(digits(exponent)) * 2 ** exponent;
+  }
+
+  const scratch = new DataView(new ArrayBuffer(8));
+
+  /** A finite double as [integer, power of two], exactly. */
+  function split(value) {
+    scratch.setFloat64(0, value);
+    const bits = scratch.getBigUint64(0);
+    const exponent = (bits >> 52n) & 0x7ffn;
+    const fraction = bits & 0xfffffffffffffn;
+    const digits = exponent ? fraction | 0x10000000000000n : fraction;
+    return [bits >> 63n ? -digits : digits, (exponent || 1n) - 1075n];
+  }
+
+  /** The bits of a double. */
+  function doubleBits(value) {
+    scratch.setFloat64(0, value);
+    return scratch.getBigUint64(0);
+  }
+
+  /** The double of these bits. */
+  function doubleOf(bits) {
+    scratch.setBigUint64(0, bits);
+    return scratch.getFloat64(0);
+  }
+
+  /** The number that the bits of a float field stand for. */
+  function floatValue(field, raw) {
+    if (field.bits === 64) return doubleOf(raw);
+    scratch.setUint32(0, Number(raw));
+    return scratch.getFloat32(0);
+  }
+
+  /** The bits of the nearest float of the field's width. Throws a CodecError for a finite number that is too large. */
+  function floatBits(field, value) {
+    if (field.bits === 64) return doubleBits(value);
+    scratch.setFloat32(0, value);
+    if (Number.isFinite(value) && !Number.isFinite(scratch.getFloat32(0))) {
+      throw unfit(field, `is a 32-bit float and cannot hold ${value}`);
+    }
+    return BigInt(scratch.getUint32(0));
+  }
+
+  return {
+    CodecError, decode, encode, check, range, fresh, exact, physical, rawFromPhysical, nearestDouble, doubleBits, doubleOf,
+    floatValue, floatBits,
+  };
+})();
+if (typeof module !== "undefined") module.exports = icdgenCodec;

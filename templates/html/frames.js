@@ -1,0 +1,110 @@
+"use strict";
+/* Bytes as people write them, and as they go over a wire: hexadecimal in any spelling, framing with escapes, checksums. */
+const icdgenFrames = (() => {
+  const TOKEN = /(?<space>[\s,;:{}[\]()_.-]+)|(?<prefix>0[xX]|\\[xX]|[xX#$](?=[0-9A-Fa-f]))|(?<digits>[0-9A-Fa-f]+)/y;
+
+  /** The bytes of `2efb 0a00`, `0x2e,0xfb`, `2E:FB`, `{0x2e, 0xfb}`, `b"\x2e\xfb"`. Throws an Error that says what does not fit. */
+  function parseHex(text) {
+    const quoted = /^\s*b?(["'])([^]*)\1\s*$/.exec(text);
+    const inside = quoted ? quoted[2] : text;
+    const found = [];
+    let prefixed = -1;
+    for (TOKEN.lastIndex = 0; TOKEN.lastIndex < inside.length; ) {
+      const at = TOKEN.lastIndex;
+      const token = TOKEN.exec(inside);
+      if (!token) throw new Error(`${JSON.stringify(String.fromCodePoint(inside.codePointAt(at)))} is not hexadecimal`);
+      let { digits } = token.groups;
+      if (prefixed === at && digits === undefined) throw new Error("digits must follow the prefix");
+      if (digits !== undefined) {
+        if (prefixed === at && digits.length === 1) digits = `0${digits}`;
+        const after = inside[TOKEN.lastIndex] ?? "";
+        if (/[\p{L}\p{N}]/u.test(after)) throw new Error(`${JSON.stringify(after)} is not hexadecimal`);
+        if (digits.length % 2) throw new Error(`${digits.slice(0, 20)} is an odd number of digits`);
+        for (let i = 0; i < digits.length; i += 2) found.push(parseInt(digits.slice(i, i + 2), 16));
+      } else if (token.groups.prefix) {
+        prefixed = TOKEN.lastIndex;
+      }
+    }
+    if (prefixed === inside.length) throw new Error("digits must follow the prefix");
+    return Uint8Array.from(found);
+  }
+
+  /** Pairs of digits with spaces between them. */
+  function hex(bytes) {
+    return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0").toUpperCase()).join(" ");
+  }
+
+  const mirrored = (value, width) => {
+    let found = 0;
+    for (let bit = 0; bit < width; bit += 1) if ((value >> bit) & 1) found |= 1 << (width - 1 - bit);
+    return found;
+  };
+
+  /** An 8-bit checksum from its parameters. */
+  function crc(facts, data) {
+    if (data.length === 0 && facts.empty !== undefined) return facts.empty;
+    let value = facts.init;
+    for (const byte of data) {
+      value ^= facts.reflect_in ? mirrored(byte, 8) : byte;
+      for (let bit = 0; bit < 8; bit += 1) value = (value & 0x80 ? (value << 1) ^ facts.polynomial : value << 1) & 0xff;
+    }
+    return (facts.reflect_out ? mirrored(value, 8) : value) ^ facts.xor_out;
+  }
+
+  /** The message as it goes over the wire, with framing; `check` appends the checksum. */
+  function framed(wire, data, check) {
+    const [escape, start, end, doubled] = wire.framing;
+    const body = [wire.id, ...data, ...(check ? [crc(wire.crc[0], data)] : [])];
+    return Uint8Array.from([escape, start, ...body.flatMap((byte) => (byte === escape ? [escape, doubled] : [byte])), escape, end]);
+  }
+
+  /** Id and data between the framing; null where there is none. Throws an Error where it is broken. */
+  function unframed(wire, bytes) {
+    if (!wire.framing || bytes.length < 2) return null;
+    const [escape, start, end, doubled] = wire.framing;
+    if (bytes[0] !== escape || bytes[1] !== start) return null;
+    const body = [];
+    for (let at = 2; at < bytes.length; at += 1) {
+      if (bytes[at] !== escape) {
+        body.push(bytes[at]);
+        continue;
+      }
+      at += 1;
+      if (bytes[at] === doubled) body.push(escape);
+      else if (bytes[at] === end && at === bytes.length - 1) return body;
+      else if (bytes[at] === end) throw new Error(`${bytes.length - 1 - at} bytes follow the end of the message`);
+      else throw new Error(`byte ${at}: the escape byte is followed by neither itself nor an end of message`);
+    }
+    throw new Error("the end of the message is missing");
+  }
+
+  /** The data in what was pasted, and remarks about what was around it. Throws an Error where it cannot be this message. */
+  function unwrap(wire, length, bytes) {
+    const remarks = [];
+    let data = bytes;
+    const body = unframed(wire, bytes);
+    if (body) {
+      if (!wire.ids.includes(body[0])) throw new Error(`framed with id ${body[0]}, which is another message's`);
+      remarks.push(`framing with id ${body[0]} removed`);
+      data = Uint8Array.from(body.slice(1));
+    }
+    const checked = (some) => some.length > 0 && wire.crc.some((facts) => crc(facts, some.slice(0, -1)) === some[some.length - 1]);
+    if (data.length === length + 1 && checked(data)) {
+      remarks.push("CRC is right");
+      data = data.slice(0, length);
+    } else if (!body && data.length === length + 1 && wire.ids.includes(data[0])) {
+      remarks.push(`id ${data[0]} removed`);
+      data = data.slice(1);
+    } else if (!body && data.length === length + 2 && wire.ids.includes(data[0]) && checked(data.slice(1))) {
+      remarks.push(`id ${data[0]} removed`, "CRC is right");
+      data = data.slice(1, -1);
+    } else if (data.length === length + 1 && wire.crc.length) {
+      const right = crc(wire.crc[0], data.slice(0, length));
+      throw new Error(`one byte too many: as CRC it would have to be ${hex([right])}, not ${hex([data[length]])}`);
+    }
+    return { data, remarks };
+  }
+
+  return { parseHex, hex, crc, framed, unwrap };
+})();
+if (typeof module !== "undefined") module.exports = icdgenFrames;

@@ -1,0 +1,1 @@
+"""The diff and the generated code agree about what changed on the wire."""

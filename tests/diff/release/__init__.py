@@ -1,0 +1,1 @@
+"""An older release of the shipped ICDs, reconstructed: see ``reconstruction.yaml``."""

@@ -1,0 +1,130 @@
+"""``python -m tests.diff.release FOLDER``: writes the reconstructed older release, made from today's ICDs."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import yaml
+
+from icdgen.diagnostics import Finding
+from icdgen.icd.load import load
+from tests.conftest import ROOT
+
+FACTS = Path(__file__).with_name("reconstruction.yaml")
+SHIPPED = ROOT / "icd"
+
+_AT = re.compile(r"(?<=\{at: )( *)([0-9]+)(?=,)")
+_NAME = re.compile(r"name: (?:\"([^\"]*)\"|([^,}\n]*))")
+_MARK = "Reconstructed older release"
+_LONGER = """\
+  - id: {id}
+    title: "{name}: the last bytes of the older frame are not known"
+    where: {{message: {name}}}
+    accept: [ICD024]
+    why: Reconstructed. Only the length of the older frame is public.
+    evidence: Flight software for older firmware.
+    confidence: open
+"""
+
+
+def facts() -> dict:
+    return yaml.safe_load(FACTS.read_text(encoding="utf-8"))
+
+
+def make(folder: Path) -> Path:
+    """Writes ICDs and overlays; the folder."""
+    known = facts()
+    (folder / "errata").mkdir(parents=True, exist_ok=True)
+    longer: dict[str, list[str]] = {}
+    for path in sorted(SHIPPED.glob("*.yaml")):
+        text = path.read_text(encoding="utf-8")
+        head, *messages = re.split(r"(?m)^(?=  - name: )", text)
+        for index, message in enumerate(messages):
+            name = _first_name(message)
+            if name in known["lengths"] and "\n    length: " in message:
+                messages[index] = _older(message, known["lengths"][name], known["removed"].get(name, []))
+                if _described(messages[index]) < known["lengths"][name]:
+                    longer.setdefault(path.stem, []).append(name)
+        (folder / path.name).write_text(f"# {_MARK}\n{head}{''.join(messages)}", encoding="utf-8")
+    for path in sorted((SHIPPED / "errata").glob("*.yaml")):
+        overlay = yaml.safe_load(path.read_text(encoding="utf-8"))
+        for number, name in enumerate(longer.get(path.stem, ()), 1):
+            overlay["entries"] += yaml.safe_load(_LONGER.format(id=f"OLD-{number:03}", name=name))
+        _write(folder / "errata" / path.name, overlay)
+    _settle(folder)
+    return folder
+
+
+def _first_name(text: str) -> str:
+    match = _NAME.search(text)
+    return (match[1] or match[2]).strip()
+
+
+def _older(message: str, length: int, removed: list[str]) -> str:
+    """The message without the fields; what stands behind them moves up."""
+    lines, gone = [], 0
+    for line in message.splitlines(keepends=True):
+        if line.startswith("      - {message:") or line == "    contains:\n":
+            continue  # the parts no longer stand where they stood
+        if line.startswith("      - {at:"):
+            if _first_name(line) in removed:
+                gone += int(re.search(r"bits: ([0-9]+)", line)[1])
+                continue
+            line = _AT.sub(lambda m: f"{m[1]}{int(m[2]) - gone}", line)  # noqa: B023  (used at once)
+        lines.append(line)
+    return re.sub(r"(?m)^    length: [0-9]+", f"    length: {length}", "".join(lines))
+
+
+def _described(message: str) -> int:
+    """Bytes up to the end of the last field."""
+    rows = re.findall(r"\{at: +([0-9]+), +bits: +([0-9]+)", message)
+    return max((int(at) + int(bits) for at, bits in rows), default=0) // 8
+
+
+def _settle(folder: Path) -> None:
+    """Takes out of the overlays what no longer applies, until nothing is left to take out."""
+    for _ in range(20):
+        loaded = load([folder])
+        for fault in loaded.findings:
+            if fault.code == "ICD045":  # a frame that the log holds in another length
+                _accept(folder, fault, loaded.texts)
+        faults = [f for f in loaded.findings if f.code in ("ICD080", "ICD081", "ICD084")]
+        if not faults:
+            return
+        for path in sorted((folder / "errata").glob("*.yaml")):
+            mine = {f.place.line for f in faults if f.place.file == str(path)}
+            if mine:
+                _mend(path, mine)
+    raise AssertionError("the overlays do not settle")
+
+
+def _accept(folder: Path, fault: Finding, texts: dict[str, str]) -> None:
+    line = texts[fault.place.file].splitlines()[fault.place.line - 1]
+    bit = int(re.search(r"bit: ([0-9]+)", line)[1])
+    entry = yaml.safe_load(_LONGER.format(id=f"OLD-{900 + bit}", name=_first_name(line)))[0]
+    entry |= {"where": {"loggable": bit}, "accept": ["ICD045"], "title": "The log holds the frame in another length"}
+    path = folder / "errata" / Path(fault.place.file).name
+    with path.open("a", encoding="utf-8") as file:
+        file.write(yaml.safe_dump([entry], sort_keys=False))
+
+
+def _mend(path: Path, lines: set[int]) -> None:
+    """Leaves the entries with faults out, but counts places anew where only their number is wrong."""
+    texts = re.split(r"(?m)^(?=- )", path.read_text(encoding="utf-8"))
+    line, kept = 1, []
+    for text in texts:
+        end = line + text.count("\n")
+        hit = any(line <= one < end for one in lines)
+        if hit and "\n  places: " in text:
+            kept.append(re.sub(r"(?m)^  places: ([0-9]+)$", lambda m: f"  places: {int(m[1]) - 1}", text))
+        elif not hit:
+            kept.append(text)
+        line = end
+    path.write_text("".join(kept), encoding="utf-8")
+
+
+def _write(path: Path, overlay: dict) -> None:
+    entries = overlay.pop("entries")
+    dump = lambda value: yaml.safe_dump(value, sort_keys=False, allow_unicode=True, width=10_000)  # noqa: E731
+    path.write_text(f"# {_MARK}\n{dump(overlay)}entries:\n{dump(entries)}", encoding="utf-8")

@@ -1,0 +1,56 @@
+"""``python -m tests.site.pictures FOLDER``: each kind of page light, dark, on a phone and on paper, to be looked at."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from playwright.sync_api import sync_playwright
+
+from icdgen.site import make, write
+from tests.conftest import ROOT
+from tests.site.conftest import program
+from tests.site.pages import KINDS
+
+LOOKS = {
+    "light": {"viewport": {"width": 1280, "height": 1000}, "color_scheme": "light"},
+    "dark": {"viewport": {"width": 1280, "height": 1000}, "color_scheme": "dark"},
+    "phone": {"viewport": {"width": 390, "height": 844}, "device_scale_factor": 2, "is_mobile": True},
+}
+README = {"viewport": {"width": 1180, "height": 900}, "device_scale_factor": 1.5}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m tests.site.pictures", description=__doc__)
+    parser.add_argument("folder", type=Path, help="where the pictures go")
+    parser.add_argument("--previous", help="as of `icdgen docs`: adds the page of what changed")
+    parser.add_argument("--readme", action="store_true", help="only the picture of the README, into docs/images")
+    options = parser.parse_args()
+    site = options.folder / "site"
+    write(make([ROOT / "icd"], options.previous), site)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program("chromium"), args=["--no-sandbox"])
+        if options.readme:
+            target = ROOT / "docs" / "images" / "message.png"
+            target.parent.mkdir(exist_ok=True)
+            page = browser.new_page(**README)
+            page.goto((site / KINDS["message"]).as_uri() + "#try=8421ff0f3412")
+            page.evaluate("scrollTo(0, 0)")
+            page.screenshot(path=target)
+            return
+        for kind, name in KINDS.items():
+            if not (site / name).is_file():
+                continue
+            for look, settings in LOOKS.items():
+                page = browser.new_page(**settings)
+                page.goto((site / name).as_uri())
+                page.screenshot(path=options.folder / f"{kind}-{look}.png")
+                page.close()
+            page = browser.new_page()
+            page.goto((site / name).as_uri())
+            page.pdf(path=options.folder / f"{kind}.pdf", prefer_css_page_size=True, print_background=True)
+            page.close()
+
+
+if __name__ == "__main__":
+    main()

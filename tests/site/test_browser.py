@@ -1,0 +1,237 @@
+"""What people do with the site, in a browser, from the folder and from a server."""
+
+from __future__ import annotations
+
+import json
+from contextlib import contextmanager
+
+import pytest
+
+from tests.conformance.icds import COMMITTED
+from tests.site.conftest import tool
+from tests.site.pages import KINDS
+
+NODES = ["common", "bootloader", "cubeacp", "cubemag", "cubewheel"]
+
+
+@pytest.fixture(params=["file", "server"])
+def top(request, site) -> str:
+    """Where the site is: its address up to the paths of the pages."""
+    return site.as_uri() + "/" if request.param == "file" else request.getfixturevalue("served")
+
+
+@contextmanager
+def opened(browser, top: str, path: str, **options):
+    """A page that complains of nothing and asks for nothing outside."""
+    context = browser.new_context(**options)
+    page = context.new_page()
+    complaints, asked = [], []
+    page.on("console", lambda message: complaints.append(message.text))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto(top + path)
+    yield page
+    context.close()
+    assert complaints == []
+    assert [url for url in asked if not url.startswith(top)] == []
+
+
+def results(page) -> list[tuple[str, str]]:
+    page.wait_for_selector("#results a")
+    return [
+        (item.query_selector(".what").inner_text(), item.query_selector(".title").inner_text())
+        for item in page.query_selector_all("#results a")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected", "url"),
+    [
+        ("estimated roll", ("field", "Estimated Roll Angle"), "cubeacp/estimated_attitude_angles.html#field-estimated_roll_angle"),
+        ("thomson", ("member", "Y-Thomson spin"), "cubeacp/enum-con_mode_select.html#member-y_thomson_spin"),
+        ("0x92", ("message", "Estimated Attitude Angles"), "cubeacp/estimated_attitude_angles.html"),
+        ("146", ("message", "Estimated Attitude Angles"), "cubeacp/estimated_attitude_angles.html"),
+        ("acp-066", ("erratum", "ACP-066 Attitude angles: order of rotation and frame"), "errata.html#ACP-066"),
+        ("deg/s", ("unit", "deg/s"), "units.html#unit-deg_per_s"),
+    ],
+)  # fmt: skip
+def test_the_search_finds(browser, top, text, expected, url):
+    with opened(browser, top, KINDS["numbers"]) as page:
+        page.keyboard.press("/")
+        page.keyboard.type(text)
+        assert results(page)[0] == expected
+        page.keyboard.press("ArrowDown")
+        page.keyboard.press("ArrowUp")
+        page.keyboard.press("Enter")
+        page.wait_for_url(top + url)
+
+
+def test_the_first_result_is_there_within_50_ms(browser, site):
+    with opened(browser, site.as_uri() + "/", KINDS["home"]) as page:
+        page.click("#search")
+        page.wait_for_function("globalThis.icdgenSearchIndex")
+        took = page.evaluate("""() => {
+            const input = document.getElementById("search");
+            return ["a", "wheel", "enabled", "0x92", "deg", "thomson"].map((text) => {
+                input.value = text;
+                const start = performance.now();
+                input.dispatchEvent(new Event("input"));
+                if (!document.querySelector("#results a")) throw new Error(text);
+                return performance.now() - start;
+            });
+        }""")
+        assert sorted(took)[len(took) // 2] < 50
+
+
+def golden(node: str) -> tuple[str, dict, dict]:
+    """A message of the node's vectors with as many kinds of fields as there are, and a random frame of it."""
+    data = json.loads((COMMITTED / f"{node}.json").read_text("utf-8"))
+    message = max(data["messages"], key=lambda m: (len({f["type"] for f in m["fields"]}), len(m["fields"]) < 40))
+    return message["name"], message, next(v for v in message["vectors"] if v["why"] == "random 0")
+
+
+@pytest.mark.parametrize("node", NODES)
+def test_the_decoder_decodes_a_golden_vector_and_encodes_it_back(browser, top, shipped, node):
+    from icdgen.backends.html.links import Links
+
+    name, data, vector = golden(node)
+    message = next(m for m in shipped.node(node).messages if m.name == name)
+    with opened(browser, top, Links(shipped).message(message)) as page:
+        page.fill("#frame", vector["bytes"])
+        for key, (field, raw) in enumerate(zip(data["fields"], vector["raw"], strict=True), 1):
+            shown = page.input_value(f"#raw-{key}").replace(" ", "").lower().removeprefix("0x")
+            assert shown == (str(raw).lower())
+            if field["type"] == "bool":
+                assert page.is_checked(f"#value-{key}") == bool(raw)
+        assert page.locator("svg.layout .lit rect").count() > 0
+        values = {key: page.input_value(f"#raw-{key}") for key in range(1, len(data["fields"]) + 1)}
+        page.click("text=Reset")
+        for key, value in values.items():
+            page.fill(f"#raw-{key}", value)
+            page.locator(f"#raw-{key}").blur()
+        encoded = vector.get("encoded", vector["bytes"])
+        assert page.input_value("#frame").replace(" ", "").lower() == encoded
+
+
+def test_the_decoder_takes_framing_and_checksums_and_physical_values(browser, site):
+    with opened(browser, site.as_uri() + "/", KINDS["numbers"]) as page:
+        page.fill("#frame", "1F 7F 92 2e fb 1f 1f 00 00 00 1F FF")
+        assert page.input_value("#value-1") == "-12.34" and page.input_value("#raw-2") == "31"
+        assert "framing with id 146 removed" in page.inner_text("#verdict")
+        page.fill("#value-2", "-0.015")
+        page.locator("#value-2").blur()
+        assert page.input_value("#frame") == "2E FB FF FF 00 00" or page.input_value("#frame") == "2E FB FE FF 00 00"
+        page.fill("#frame", "zz")
+        assert "not hexadecimal" in page.inner_text("#verdict")
+        page.fill("#value-1", "400")
+        page.locator("#value-1").blur()
+        assert "takes -327.68 to 327.67" in page.inner_text("#verdict")
+
+
+def test_drawing_and_table_are_tied_together_by_pointer_and_keyboard(browser, top):
+    with opened(browser, top, KINDS["message"]) as page:
+        lit = "getComputedStyle(document.documentElement).getPropertyValue('--lit').trim()"
+        fill = "(s) => getComputedStyle(document.querySelector(s)).getPropertyValue('--tie').trim()"
+        row, shape = ".fields .k5", "svg.layout .k5"
+        assert page.evaluate(fill, row) == ""
+        page.hover(shape + " rect")
+        assert page.evaluate(fill, row) == page.evaluate(lit)
+        page.mouse.move(0, 0)
+        page.hover(row)
+        assert page.evaluate(fill, shape) == page.evaluate(lit)
+        page.mouse.move(0, 0)
+        page.focus(shape)
+        assert page.evaluate(fill, row) == page.evaluate(lit)
+        page.keyboard.press("Enter")
+        assert page.url.endswith("#field-cubecontrol_signal_enabled")
+
+
+def test_a_node_s_messages_are_filtered(browser, site):
+    with opened(browser, site.as_uri() + "/", KINDS["node"]) as page:
+        rows = page.locator("#message-table tbody tr:visible")
+        everything = rows.count()
+        page.fill("[name=text]", "0x92")
+        assert rows.count() == 1 and "Estimated Attitude Angles" in rows.first.inner_text()
+        page.fill("[name=text]", "")
+        page.select_option("[name=kind]", "telecommand")
+        commands = rows.count()
+        page.fill("[name=bytes]", ">20")
+        assert 0 < rows.count() < commands < everything
+        page.select_option("[name=kind]", "")
+        page.fill("[name=bytes]", "")
+        page.fill("[name=mask]", "any")
+        loggable = rows.count()
+        page.fill("[name=mask]", "28")
+        assert rows.count() == 1 < loggable < everything
+        page.fill("[name=mask]", "nonsense")
+        assert rows.count() == everything and page.get_attribute("[name=mask]", "aria-invalid") == "true"
+
+
+def test_the_chosen_language_is_remembered(browser, served):
+    context = browser.new_context()
+    page = context.new_page()
+    page.goto(served + KINDS["numbers"])
+    page.click("text=Rust")
+    page.goto(served + KINDS["message"])
+    assert page.is_visible(".snippet.rust") and not page.is_visible(".snippet.c")
+    context.close()
+
+
+@pytest.mark.parametrize("path", KINDS.values(), ids=KINDS.keys())
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing(browser, site, path, scheme):
+    with opened(browser, site.as_uri() + "/", path, color_scheme=scheme) as page:
+        page.evaluate(tool("axe-core/axe.min.js").read_text("utf-8"))
+        found = page.evaluate("axe.run({ resultTypes: ['violations'], preload: false })")
+        assert [(v["id"], [n["target"] for n in v["nodes"]][:5]) for v in found["violations"]] == []
+
+
+@pytest.mark.parametrize("path", KINDS.values(), ids=KINDS.keys())
+def test_a_phone_needs_no_sideways_scrolling(browser, site, path):
+    with opened(browser, site.as_uri() + "/", path, viewport={"width": 390, "height": 844}) as page:
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+
+
+def test_dark_mode_follows_the_system_and_the_button(browser, served):
+    background = "getComputedStyle(document.documentElement).backgroundColor"
+    context = browser.new_context(color_scheme="dark")
+    page = context.new_page()
+    page.goto(served)
+    dark = page.evaluate(background)
+    page.click("#theme")
+    light = page.evaluate(background)
+    page.reload()
+    assert light == "rgb(255, 255, 255)" and dark != light and page.evaluate(background) == light
+    context.close()
+
+
+def test_a_whole_node_prints_with_a_page_for_each_message(browser, site, shipped):
+    with opened(browser, site.as_uri() + "/", "bootloader/all-messages.html") as page:
+        pdf = page.pdf(prefer_css_page_size=True, print_background=True)
+    sheets = pdf.count(b"/Type /Page\n") or pdf.count(b"/Type /Page")
+    assert pdf.startswith(b"%PDF") and sheets >= len(shipped.node("bootloader").messages) + 1
+
+
+def test_without_javascript_everything_but_search_and_decoder_is_there(browser, site):
+    with opened(browser, site.as_uri() + "/", KINDS["message"], java_script_enabled=False) as page:
+        assert not page.is_visible("#search") and not page.is_visible("#decoder")
+        assert page.is_visible("svg.layout") and page.is_visible(".fields") and page.is_visible(".snippet.c")
+        page.click("text=Python")
+        assert page.is_visible(".snippet.python") and not page.is_visible(".snippet.c")
+        page.click("svg.layout .k5")
+        assert page.url.endswith("#field-cubecontrol_signal_enabled")
+
+
+def test_hostile_texts_are_shown_and_do_nothing(browser, strange):
+    top = strange.as_uri() + "/"
+    for path in sorted(str(p.relative_to(strange)) for p in strange.rglob("*.html")):
+        with opened(browser, top, path) as page:
+            assert page.title() != "broken" and page.locator("img").count() == 0
+    with opened(browser, top, "hostile/index_.html") as page:
+        text = page.inner_text("main")
+        assert "<script>document.title" in text and "{{ 7*7 }}" in text and "&lt;" in text
+        page.fill("#frame", "ff" * 25)
+        assert page.input_value("#raw-1") == "18446744073709551615"
+        assert page.input_value("#raw-5") == "0xFFFFFFFF" and page.input_value("#raw-6") == "FF FF"
+        page.fill("#search", "endless")
+        assert len(results(page)) == 3

@@ -1,0 +1,148 @@
+"""What is on disk: small, the same each time, with every link and anchor in its place, and valid."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections import Counter
+from html import unescape
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import pytest
+
+from icdgen.site import make
+from tests.conformance.icds import COMMITTED
+from tests.conftest import ROOT
+from tests.site.conftest import program, tool
+from tests.site.pages import KINDS
+
+
+class Page(HTMLParser):
+    """Anchors and links of a page, and what it would load."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.ids: list[str] = []
+        self.links: list[str] = []
+        self.refers: list[str] = []  # ids that labels, aria attributes and the like name
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        for name, value in attributes:
+            if name == "id":
+                self.ids.append(value or "")
+            elif name in ("href", "src"):
+                self.links.append(value or "")
+            elif name in ("for", "aria-labelledby", "aria-controls", "aria-describedby"):
+                self.refers += (value or "").split()
+
+
+def broken(folder: Path) -> list[str]:
+    """Every link of the site that leads nowhere, every id that is not unique."""
+    pages = {path.relative_to(folder): Page(path.read_text("utf-8")) for path in sorted(folder.rglob("*.html"))}
+    found = []
+    for path, page in pages.items():
+        found += [f"{path}: id {one} stands {n} times" for one, n in Counter(page.ids).items() if n > 1]
+        found += [f"{path}: nothing has id {one}" for one in page.refers if one not in page.ids]
+        for link in page.links:
+            parts = urlsplit(link)
+            if parts.scheme or parts.netloc or link.startswith("/"):
+                found.append(f"{path}: {link} leaves the site")
+                continue
+            target = (folder / path.parent / unquote(parts.path)).resolve() if parts.path else (folder / path).resolve()
+            if not target.is_file():
+                found.append(f"{path}: {link} is no file")
+            elif parts.fragment and not parts.fragment.startswith("try="):
+                known = pages[target.relative_to(folder.resolve())].ids
+                if unquote(parts.fragment) not in known:
+                    found.append(f"{path}: {link} has no anchor")
+    return found
+
+
+def test_the_site_is_small_and_has_a_page_for_everything(site, shipped):
+    assert sum(path.stat().st_size for path in site.rglob("*")) < 15_000_000
+    for node in shipped.nodes:
+        pages = {path.name for path in (site / node.name).iterdir()}
+        assert len(pages) == len(node.messages) + len(node.enums) + 2
+
+
+def test_the_site_is_the_same_each_time():
+    first, second = make([ROOT / "icd"]).files, make([ROOT / "icd"]).files
+    assert first == second and len(first) > 200
+
+
+def test_every_link_and_anchor_resolves(site):
+    assert broken(site) == []
+
+
+def test_every_link_and_anchor_resolves_whatever_the_names(strange):
+    assert broken(strange) == []
+
+
+def test_the_checker_notices_what_is_broken(tmp_path):
+    (tmp_path / "a.html").write_text(
+        '<p id="x"></p><p id="x"></p><a href="b.html">b</a><a href="#y">y</a><img src="//x.org/">'
+    )
+    assert [line.split(": ")[1] for line in broken(tmp_path)] == [
+        "id x stands 2 times", "b.html is no file", "#y has no anchor", "//x.org/ leaves the site",
+    ]  # fmt: skip
+
+
+def test_the_index_of_the_search_leads_to_pages_and_anchors(site):
+    text = (site / "search-index.js").read_text("utf-8")
+    entries = json.loads(text[text.index("[") : text.rindex("]") + 1])
+    pages = {str(p.relative_to(site)): set(Page(p.read_text("utf-8")).ids) for p in site.rglob("*.html")}
+    for _, title, _, _, url in entries:
+        path, _, anchor = url.partition("#")
+        assert not anchor or anchor in pages[path], title
+    kinds = Counter(entry[0] for entry in entries)
+    assert kinds["message"] == 171 and kinds["field"] == 1249 and kinds["member"] > 200 and kinds["erratum"] > 300
+
+
+@pytest.mark.parametrize("which", ["site", "strange"])
+def test_the_pages_are_valid_html(which, request, tmp_path):
+    folder = request.getfixturevalue(which)
+    names = KINDS.values() if which == "site" else [str(p.relative_to(folder)) for p in folder.rglob("*.html")]
+    config = Path(__file__).parent / "npm" / ".htmlvalidate.json"
+    command = [program("node"), str(tool("html-validate/bin/html-validate.mjs")), "--config", str(config), "-f", "text"]
+    done = subprocess.run([*command, *(str(folder / name) for name in names)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_everything_stands_in_one_json_and_in_llms_txt(site, shipped):
+    data = json.loads((site / "icd.json").read_text("utf-8"))
+    assert [node["name"] for node in data["nodes"]] == [node.name for node in shipped.nodes]
+    text = (site / "llms.txt").read_text("utf-8")
+    assert all(message.name in text for node in shipped.nodes for message in node.messages)
+    links = [part.split(")")[0] for part in text.split("](")[1:]]
+    assert len(links) > 200 and all((site / link).is_file() for link in links)
+
+
+def test_a_field_keeps_its_link_when_everything_around_it_changes(tmp_path, demo):
+    before = make([demo]).files["demo/estimated_roll.html"]
+    text = demo.read_text("utf-8").replace("id: 146", "id: 150").replace("at: 0,  bits: 16", "at: 8, bits: 16")
+    demo.write_text(text.replace("at: 16, bits: 4", "at: 0, bits: 4"), "utf-8")
+    after = make([demo]).files["demo/estimated_roll.html"]
+    assert "field-roll_angle" in Page(before).ids and "field-roll_angle" in Page(after).ids
+
+
+def test_pages_load_scripts_and_styles_only_from_their_folder(site):
+    for name in KINDS.values():
+        text = (site / name).read_text("utf-8")
+        assert "script-src 'self';" in unescape(text) and "default-src 'none'" in unescape(text)
+        assert " style=" not in text and " onclick=" not in text and "<style" not in text
+
+
+def test_a_page_lists_the_frames_of_the_golden_vectors(site, shipped):
+    from icdgen.backends.html.links import Links
+
+    links = Links(shipped)
+    for node in shipped.nodes:
+        vectors = json.loads((COMMITTED / f"{node.name}.json").read_text("utf-8"))
+        for message, data in zip(node.messages, vectors["messages"], strict=True):
+            text = (site / links.message(message)).read_text("utf-8")
+            listed = text.partition('<dl class="frames">')[2].partition("</dl>")[0]
+            shown = [part.partition('"')[0] for part in listed.split('href="#try=')[1:]]
+            assert shown == [vector["bytes"] for vector in data["vectors"] if message.length], message.name

@@ -1,0 +1,121 @@
+"""What the page makes of pasted bytes, against what the command line makes of them."""
+
+from __future__ import annotations
+
+import json
+import random
+import subprocess
+
+import pytest
+
+from icdgen.backends.html.crc import crc
+from icdgen.values import parse_hex
+from icdgen.values.errors import BadHex
+from tests.conftest import ROOT
+from tests.site.conftest import program
+
+FRAMES = ROOT / "templates" / "html" / "frames.js"
+
+
+def node(script: str, argument: object) -> object:
+    """What a script gives that is called with the frames module and the argument."""
+    code = f"""
+        const frames = require({json.dumps(str(FRAMES))});
+        const argument = JSON.parse(require("node:fs").readFileSync(0, "utf8"));
+        const attempt = (call) => {{ try {{ return call(); }} catch (error) {{ return {{ error: error.message }}; }} }};
+        process.stdout.write(JSON.stringify(({script})(argument)));
+    """
+    done = subprocess.run([program("node"), "-e", code], input=json.dumps(argument), capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def spellings() -> list[str]:
+    source = random.Random(1)
+    words = [
+        "2e", "FB", "0x2e", "0x5", "\\x1f", "$7f", "#aa", "x1", ", ", " ", "\n", ":", "-", "{", "}", "b'", "'", '"', "g", "é", "2",
+        "٣", "0x", "_", "(", ")", ";", "xz",
+    ]  # fmt: skip
+    made = ["".join(source.choices(words, k=source.randint(0, 6))) for _ in range(3000)]
+    return [
+        "", " ", "2efb 0a00", "0x2e,0xfb", "2E:FB", "{0x2e, 0xfb}", r"\x2e\xfb", 'b"\\x2e"', "'2e'", "0x5, 0x6", "0x", "abc",
+        "1F-7F", "2e fb", "zz", "0x0x", *made,
+    ]  # fmt: skip
+
+
+def test_hexadecimal_is_read_as_on_the_command_line():
+    def expected(text: str) -> list[int] | None:
+        try:
+            return list(parse_hex(text))
+        except BadHex:
+            return None
+
+    texts = spellings()
+    found = node(
+        "(texts) => texts.map((t) => attempt(() => [...frames.parseHex(t)])).map((r) => (r.error ? null : r))", texts
+    )
+    assert [t for t, f in zip(texts, found, strict=True) if f != expected(t)] == []
+    assert sum(f is not None for f in found) > 500 and sum(f is None for f in found) > 500
+
+
+def facts(seed: int) -> dict:
+    source = random.Random(seed)
+    return {
+        "width": 8, "polynomial": source.randrange(256), "init": source.randrange(256), "xor_out": source.randrange(256),
+        "reflect_in": source.random() < 0.5, "reflect_out": source.random() < 0.5,
+    } | ({"empty": source.randrange(256)} if seed % 2 else {})  # fmt: skip
+
+
+def test_checksums_are_those_of_the_generator():
+    cases = [[facts(seed), list(random.Random(seed).randbytes(seed % 12))] for seed in range(300)]
+    found = node("(cases) => cases.map(([facts, data]) => frames.crc(facts, data))", cases)
+    assert found == [crc(one, bytes(data)) for one, data in cases]
+
+
+@pytest.mark.parametrize(("node_name", "key"), [("cubeacp", "crc8"), ("common", "crc16")])
+def test_checksums_give_the_check_value_of_the_icd(shipped, node_name, key):
+    protocol = shipped.node(node_name).protocol[key]
+    assert crc(protocol, b"123456789") == protocol["check"]
+
+
+WIRE = {
+    "ids": [0x1F, 200], "id": 0x1F, "command": True, "framing": [0x1F, 0x7F, 0xFF, 0x1F],
+    "crc": [{"width": 8, "polynomial": 0x12, "init": 0, "reflect_in": True, "reflect_out": True, "xor_out": 0, "empty": 255}],
+}  # fmt: skip
+
+
+def test_framing_and_checksum_come_off_again_whatever_the_data():
+    cases = [list(random.Random(seed).choices([0x1F, 0x7F, 0xFF, 0, 7], k=seed % 9)) for seed in range(200)]
+    found = node(
+        """([wire, cases]) => cases.map((data) => [false, true].map((check) => {
+            const { data: back, remarks } = frames.unwrap(wire, data.length, frames.framed(wire, data, check));
+            return [[...back], remarks.includes("CRC is right")];
+        }))""",
+        [WIRE, cases],
+    )
+    assert found == [[[data, False], [data, True]] for data in cases]
+
+
+@pytest.mark.parametrize(
+    ("text", "length", "says"),
+    [
+        ("1f 7f 1f 1f 01 02 1f ff", 2, "framing with id 31 removed"),
+        ("1f 01 02", 2, "id 31 removed"),
+        ("01 02", 2, ""),
+        ("1f 7f 05 01 02 1f ff", 2, "another message's"),
+        ("1f 7f 1f 1f 01 02", 2, "end of the message is missing"),
+        ("1f 7f 1f 1f 01 1f 02 1f ff", 2, "followed by neither"),
+        ("1f 7f 1f 1f 01 1f ff 02", 2, "follow the end"),
+        ("01 02 03", 2, "one byte too many: as CRC"),
+    ],
+)
+def test_what_is_around_the_data_is_named(text, length, says):
+    found = node(
+        """([wire, text, length]) => attempt(() => {
+            const { data, remarks } = frames.unwrap(wire, length, frames.parseHex(text));
+            if (data.length !== length) throw new Error("wrong length");
+            return { error: remarks.join() };
+        })""",
+        [WIRE, text, length],
+    )
+    assert says in found["error"] and bool(says) == bool(found["error"])

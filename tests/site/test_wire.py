@@ -1,0 +1,51 @@
+"""The bytes that a page shows for each bus."""
+
+from __future__ import annotations
+
+import re
+
+from icdgen.backends.html import wire
+
+
+def lines(icd, node: str, name: str, data: bytes) -> dict[str, list[tuple[str, str]]]:
+    from icdgen.backends.html.atlas import Atlas
+
+    message = next(m for m in icd.node(node).messages if m.name == name)
+    found = wire.buses(message, icd.protocol_of(icd.node(node)), Atlas(icd).checks(message), data)
+    return {bus.name: [(line.label, " ".join(c.text for c in line.chunks)) for line in bus.lines] for bus in found}
+
+
+def test_a_telecommand_on_each_bus(shipped):
+    found = lines(shipped, "cubeacp", "ASGP4 Run Mode", b"\x1f")
+    assert found["UART"][0] == ("Telecommand", "1F 7F 1F 1F 1F 1F 1F FF")
+    assert found["I²C"][0] == ("Telecommand", "AE 1F 1F")
+    assert found["CAN"] == [("Telecommand", "011F0001 1F")]
+
+
+def test_an_optional_checksum_covers_the_parameters(shipped):
+    found = lines(shipped, "cubeacp", "Trigger ADCS Loop", b"")
+    assert found["UART"] == [("Telecommand", "1F 7F 12 1F FF"), ("with CRC", "1F 7F 12 FF 1F FF")]
+
+
+def test_a_telemetry_frame_on_each_bus(shipped):
+    found = lines(shipped, "cubeacp", "Estimated Attitude Angles", bytes.fromhex("2efb1f000000"))
+    assert found["UART"] == [("Request", "1F 7F 92 1F FF"), ("Answer", "1F 7F 92 2E FB 1F 1F 00 00 00 1F FF")]
+    assert found["I²C"][0] == ("Request and answer", "AE 92 repeated start AF 2E FB 1F 00 00 00")
+    assert found["CAN"] == [("Request", "04920001"), ("Answer", "05920100 2E FB 1F 00 00 00")]
+
+
+def test_long_frames_are_cut_into_packets_that_count_down(shipped):
+    found = lines(shipped, "cubeacp", "ADCS State", bytes(range(54)))["CAN"]
+    assert found[1] == ("Answer 1/8", "08BE0100 00 01 02 03 04 05 06 07")
+    assert found[-1][0] == "Answer 8/8" and found[-1][1].endswith(" 00")
+
+
+def test_a_node_without_protocol_facts_has_no_bytes_on_a_wire(shipped):
+    assert lines(shipped, "cubemag", "State", bytes(3)) == {}
+
+
+def test_the_page_says_the_same(site):
+    text = (site / "cubeacp" / "asgp4_run_mode.html").read_text("utf-8")
+    section = text[text.index('id="wire"') :]
+    shown = re.sub("<[^>]*>", "", section[section.index("<dd>") : section.index("</dd>")])
+    assert shown.split() == "1F 7F 1F 1F 00 1F FF".split()
