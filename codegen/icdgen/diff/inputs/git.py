@@ -53,7 +53,7 @@ class Git:
     def span(self, word: str) -> tuple[str, str] | None:
         """Both ends of ``A..B`` or ``A...B`` (since B left A); either may be left out and is HEAD then."""
         first, dots, second = word.partition("..")
-        if not dots or not self.top:
+        if not dots or ":" in word or not self.top:
             return None
         since = second.startswith(".")
         ends = [end or "HEAD" for end in (first, second.lstrip("."))]

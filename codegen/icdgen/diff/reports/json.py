@@ -19,7 +19,7 @@ SCHEMA = Path(__file__).parent.parent.with_name("diff.schema.json")
 
 def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
     """Everything, accepted changes included."""
-    return json.dumps(document(report), indent=1, ensure_ascii=False) + "\n"
+    return json.dumps(document(report), indent=1) + "\n"
 
 
 def document(report: Report) -> dict[str, object]:
