@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import cached_property
 from typing import NamedTuple
 
 from icdgen import backends
@@ -23,6 +24,7 @@ class Name(NamedTuple):
     stem: str = ""
 
 
+Types = Callable[[str, Node, Message, Field], str]
 NOTHING, NODES, OWNERS = range(3)  # what is called by its old name
 Names = dict[int, tuple[Name, ...]]  # id(pair) -> names
 
@@ -35,17 +37,32 @@ class Generated:
     """
 
     def __init__(self, match: Match, changed: Iterable[Pair]) -> None:
-        self.match = match
-        changed = list(changed)
-        wanted = {id(pair) for pair in changed}
-        old = _Cut(match, 0, wanted)
-        self.old = old.names(old.icd)
-        new = _Cut(match, 1, wanted, NODES)
-        self.new = new.names(new.icd)
-        dressed = _Cut(match, 1, wanted, OWNERS)
-        self.clothed = dressed.names(dressed.icd)
-        self._types = (_types(old.icd), _types(dressed.icd))
-        self._dressed = dressed
+        self._match, self._wanted = match, {id(pair) for pair in changed}
+
+    def _cut(self, side: int, clothed: int = NOTHING) -> _Cut:
+        return _Cut(self._match, side, self._wanted, clothed)
+
+    @cached_property
+    def old(self) -> Names:
+        cut = self._cut(0)
+        return cut.names(cut.icd)
+
+    @cached_property
+    def new(self) -> Names:
+        cut = self._cut(1, NODES)
+        return cut.names(cut.icd)
+
+    @cached_property
+    def clothed(self) -> Names:
+        return self._dressed.names(self._dressed.icd)
+
+    @cached_property
+    def _dressed(self) -> _Cut:
+        return self._cut(1, OWNERS)
+
+    @cached_property
+    def _types(self) -> tuple[Types, Types]:
+        return _types(self._cut(0).icd), _types(self._dressed.icd)
 
     def renamed(self, pair: Pair) -> list[tuple[Name | None, Name | None]]:
         """Old and new name of everything that is generated for the pair, where they differ. Its parts are left out."""
@@ -124,7 +141,7 @@ class _Cut:
     def enum(self, enum: Enum, names: dict[str, str]) -> Enum:
         pair = self.match.pair_of.get(id(enum))
         members = {id(self.side_of(p)): p for p in getattr(pair, "members", ())}
-        own = tuple(self.dress(m, members[id(m)]) if id(m) in members else m for m in enum.members)
+        own = tuple(self.dress(m, members[id(m)]) for m in enum.members if id(m) in members)  # none where nothing changed
         made = self.dress(enum, pair, members=own, node=names.get(enum.node, enum.node))
         self.enums[id(enum)] = made
         return made
@@ -134,6 +151,8 @@ class _Cut:
         fields = {id(self.side_of(p)): p for p in pair.fields}
         own = []
         for one in message.fields:
+            if self.side and not fields[id(one)].changed:
+                continue
             enum = self.enums.get(id(one.enum), one.enum)
             made = self.dress(one, fields.get(id(one)), enum=enum)
             self.fields[id(fields.get(id(one)))] = made
@@ -180,7 +199,7 @@ def _stem(language: str, scope: str) -> str:
 # Types
 
 
-def _types(cut: Icd) -> Callable[[str, Node, Message, Field], str]:
+def _types(cut: Icd) -> Types:
     """A function that tells the type of a field's raw value in a language."""
     from icdgen.backends.c.names import Names as CNames
     from icdgen.backends.c.storage import Storages
