@@ -30,17 +30,23 @@ Names = dict[int, tuple[Name, ...]]  # id(pair) -> names
 
 
 class Generated:
-    """Names of the pairs that changed.
+    """Names of the pairs whose names may have changed: all others keep theirs.
 
     ``new`` are those of the new things if their node kept its old name, ``clothed`` if the message or enumeration that holds them
     did too: a field's names are not said to change only because its message has another name.
     """
 
     def __init__(self, match: Match, changed: Iterable[Pair]) -> None:
-        self._match, self._wanted = match, {id(pair) for pair in changed}
+        self._match, self._changed = match, list(changed)
 
-    def _cut(self, side: int, clothed: int = NOTHING) -> _Cut:
-        return _Cut(self._match, side, self._wanted, clothed)
+    def _cut(self, side: int, clothed: int = NOTHING, keep: Callable[[Pair], bool] | None = None) -> _Cut:
+        return _Cut(self._match, side, self._changed, keep or may_rename, clothed)
+
+    @cached_property
+    def everything(self) -> Names:
+        """Old names of everything in messages and enumerations in which anything differs."""
+        cut = self._cut(0, keep=lambda pair: True)
+        return cut.names(cut.icd)
 
     @cached_property
     def old(self) -> Names:
@@ -90,11 +96,34 @@ class Generated:
         return found
 
 
-class _Cut:
-    """One of both ICDs, with the changed messages only; every part has a mark of its own, by which its names are found."""
+def may_rename(pair: Pair) -> bool:
+    """Whether anything differs that names or types of the pair itself are made from."""
+    if not pair.both or (pair.old.name, pair.old.identifier) != (pair.new.name, pair.new.identifier):
+        return True
+    if isinstance(pair, FieldPair):
+        return pair.owner.revoiced or _decisive(pair.old) != _decisive(pair.new)
+    if isinstance(pair, MemberPair):
+        return pair.owner.revoiced
+    return pair.rehomed or pair.revoiced
 
-    def __init__(self, match: Match, side: int, wanted: set[int], clothed: int = NOTHING) -> None:
-        self.match, self.side, self.clothed = match, side, clothed
+
+def _decisive(field: Field) -> tuple:
+    enum = field.enum.name if field.enum is not None else None
+    return field.type, field.bits, enum, field.unit, field.scale, field.special, field.limits, field.const
+
+
+def _parts(pair: Pair) -> list[Pair]:
+    return pair.fields if isinstance(pair, MessagePair) else pair.members
+
+
+class _Cut:
+    """One of both ICDs, with what is to be kept of it; every part has a mark of its own, by which its names are found."""
+
+    def __init__(
+        self, match: Match, side: int, changed: list[Pair], keep: Callable[[Pair], bool], clothed: int = NOTHING
+    ) -> None:
+        self.match, self.side, self.keep, self.clothed = match, side, keep, clothed
+        wanted = {id(pair) for pair in changed if keep(pair) or any(map(keep, _parts(pair)))}
         self.marks: dict[int, Pair] = {}
         self.kept: list[Map] = []
         self.enums: dict[int, Enum] = {}
@@ -151,7 +180,7 @@ class _Cut:
         fields = {id(self.side_of(p)): p for p in pair.fields}
         own = []
         for one in message.fields:
-            if self.side and not fields[id(one)].changed:
+            if not self.keep(fields[id(one)]) and not self.keep(pair):
                 continue
             enum = self.enums.get(id(one.enum), one.enum)
             made = self.dress(one, fields.get(id(one)), enum=enum)

@@ -63,7 +63,7 @@ def uses(comparison: Comparison, changes: Iterable[Change], paths: Iterable[Path
 
 def _wanted(comparison: Comparison, changes: Iterable[Change]) -> dict[str, dict[str, list[_Wanted]]]:
     """By language and name: what changed about it. Changes of words touch nobody's code."""
-    old = comparison.context.generated.old
+    old = comparison.context.generated.everything
     result: dict[str, dict[str, list[_Wanted]]] = {language: {} for language in _LEXERS}
     for change in changes:
         if not change.breaks:

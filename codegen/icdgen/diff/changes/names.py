@@ -6,10 +6,9 @@ from collections.abc import Iterator
 
 from icdgen.diff.change import Found
 from icdgen.diff.context import Context
-from icdgen.diff.generated import Name
+from icdgen.diff.generated import Name, may_rename
 from icdgen.diff.pairs import EnumPair, FieldPair, MemberPair, MessagePair, NodePair, Pair
 from icdgen.diff.rule import rule
-from icdgen.icd.model import Field
 from icdgen.icd.rules.wording import count, listing, quote
 
 MOST = 3  # names that are shown of one language
@@ -110,14 +109,9 @@ def retyped(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         yield Found(text, ("type", "bits", "enum"), changed[0][1], changed[0][2], said)
 
 
-def _decisive(field: Field) -> tuple:
-    """All that names of a field are made from, but for its own."""
-    return field.type, field.bits, field.unit, field.scale, field.special, field.limits, field.const
-
-
 @rule("DIF308", "field")
 def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    if _is_called_otherwise(pair) or pair.owner.rehomed or pair.owner.revoiced or _decisive(pair.old) == _decisive(pair.new):
+    if _is_called_otherwise(pair) or pair.owner.rehomed or pair.owner.revoiced or not may_rename(pair):
         return
     renamed = ctx.generated.renamed(pair)
     if renamed:

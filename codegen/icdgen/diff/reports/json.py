@@ -25,7 +25,7 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
 def document(report: Report) -> dict[str, object]:
     """A tree for `json.dumps`."""
     reasons = {id(change): entry.reason for change, entry in report.accepted}
-    names = report.comparison.context.generated.old if report.comparison.changes else {}
+    names = report.comparison.context.generated.everything if report.comparison.changes else {}
     found: dict[str, object] = {
         "format": FORMAT,
         "old": report.old.label,
