@@ -14,6 +14,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from contextlib import chdir
+from functools import partial
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
@@ -44,6 +45,10 @@ def far_apart(side: Side) -> Side:
     return Side("edited", icd)
 
 
+def say(what: str, runs: int, work: Callable[[], object]) -> None:
+    print(f"{what}: {median(runs, work):.1f} ms")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=21)
@@ -53,14 +58,18 @@ def main() -> None:
         older = str(make(Path(folder)))
         old, new = inputs.sides([older, "icd"], [])
         same, other = inputs.sides(["icd", "icd"], [])
-        pairs = {"the same twice": (same, other), "an older release": (old, new), "after 400 edits": (same, far_apart(same))}
-        print(f"load both: {median(max(runs // 4, 3), lambda: inputs.sides([older, 'icd'], [])):.1f} ms")
+        pairs = {
+            "the same twice": (same, other),
+            "an older release": (old, new),
+            "after 400 edits": (same, far_apart(same)),
+        }
+        say("load both", max(runs // 4, 3), lambda: inputs.sides([older, "icd"], []))
         for name, (one, two) in pairs.items():
-            made = report.make(one, two)
-            print(f"compare {name} ({len(made.changes)} changes): {median(runs, lambda: report.make(one, two)):.1f} ms")  # noqa: B023
+            number = len(report.make(one, two).changes)
+            say(f"compare {name} ({number} changes)", runs, partial(report.make, one, two))
         made = report.make(old, new)
         for form in reports.FORMATS:
-            print(f"report of an older release as {form}: {median(runs, lambda: reports.get(form)(made)):.1f} ms")  # noqa: B023
+            say(f"report of an older release as {form}", runs, partial(reports.get(form), made))
 
 
 if __name__ == "__main__":

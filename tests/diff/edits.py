@@ -82,7 +82,11 @@ def with_enum(icd: Icd, old: Enum, new: Enum) -> Icd:
 
     return Icd(
         tuple(
-            replace(node, enums=tuple(new if e is old else e for e in node.enums), messages=tuple(map(message, node.messages)))
+            replace(
+                node,
+                enums=tuple(new if e is old else e for e in node.enums),
+                messages=tuple(map(message, node.messages)),
+            )
             for node in icd.nodes
         )
     )
@@ -110,7 +114,13 @@ def members_of(icd: Icd) -> list[tuple[Enum, int]]:
 
 def is_plain(field: Field) -> bool:
     """A number without anything that depends on its range."""
-    return field.type in ("uint", "int") and field.const is None and not field.special and not field.limits and not field.bitfields
+    return (
+        field.type in ("uint", "int")
+        and field.const is None
+        and not field.special
+        and not field.limits
+        and not field.bitfields
+    )
 
 
 def is_free(message: Message, name: str) -> bool:
@@ -156,7 +166,9 @@ def swap_fields(icd, rng):
 
 @edit()
 def insert_field(icd, rng):
-    found = [(n, m, f) for n, m, f in fields_of(icd, lambda f: f.at % 8 == 0) if is_free(m, "Inserted") and _cut_at(m, f.at)]
+    found = [
+        (n, m, f) for n, m, f in fields_of(icd, lambda f: f.at % 8 == 0) if is_free(m, "Inserted") and _cut_at(m, f.at)
+    ]
     one = pick(rng, found)
     if one is None:
         return None
@@ -298,7 +310,9 @@ def add_message(icd, rng):
     number, one = free_id(icd), pick(rng, icd.nodes)
     if number is None or any(m.name == "Added" for m in one.messages):
         return None
-    new = Message("Added", rng.choice([TELECOMMAND, "telemetry"]), 1, (Field("Level", 0, 8, "uint"),), number, node=one.name)
+    new = Message(
+        "Added", rng.choice([TELECOMMAND, "telemetry"]), 1, (Field("Level", 0, 8, "uint"),), number, node=one.name
+    )
     return done(with_node(icd, one, replace(one, messages=(*one.messages, new))), "Added", "DIF102", "DIF311")
 
 
@@ -492,7 +506,9 @@ def rename_field(icd, rng):
     if one is None:
         return None
     node, message, field = one
-    new = replace(field, name=f"{field.name} Value", identifier=f"{field.identifier} Value" if field.identifier else None)
+    new = replace(
+        field, name=f"{field.name} Value", identifier=f"{field.identifier} Value" if field.identifier else None
+    )
     return done(with_field(icd, node, message, field, new), message.name, "DIF302")
 
 

@@ -54,14 +54,25 @@ def test_another_file_can_be_named(icdgen, releases, tmp_path):
 
 @pytest.mark.parametrize(
     "change",
-    [("'21'", "'22'"), ("Set Roll", "Set Yaw"), ("node: demo", "node: other"), ("DIF103", "DIF106"), ("was: '20'", "was: '19'")],
+    [
+        ("'21'", "'22'"),
+        ("Set Roll", "Set Yaw"),
+        ("node: demo", "node: other"),
+        ("DIF103", "DIF106"),
+        ("was: '20'", "was: '19'"),
+    ],
 )
 def test_an_entry_that_no_longer_applies_accepts_nothing_and_is_told(icdgen, releases, tmp_path, change):
     accept(tmp_path, ID.replace(*change))
     result = icdgen("diff", "old", "new", "--fail-on", "wire")
     assert result.status == 1
     assert ".icdgen-accepted.yaml:3:12: warning[DIF901]: this accepted change does not happen" in result.out
-    for form, said in (("markdown", "does not happen"), ("html", "does not happen"), ("github", "::warning"), ("sarif", "DIF901")):
+    for form, said in (
+        ("markdown", "does not happen"),
+        ("html", "does not happen"),
+        ("github", "::warning"),
+        ("sarif", "DIF901"),
+    ):
         assert said in icdgen("diff", "old", "new", "--format", form).out
     (stale,) = json.loads(icdgen("diff", "old", "new", "--format", "json").out)["stale"]
     assert stale["place"]["line"] == 3 and stale["reason"] == "Agreed in review 7."

@@ -23,7 +23,15 @@ class TestExitStatus:
 
     @pytest.mark.parametrize(
         "layers, status",
-        [("wire", 1), ("meaning", 1), ("source", 0), ("text", 0), ("source,text", 0), ("text, wire", 1), ("additions", 0)],
+        [
+            ("wire", 1),
+            ("meaning", 1),
+            ("source", 0),
+            ("text", 0),
+            ("source,text", 0),
+            ("text, wire", 1),
+            ("additions", 0),
+        ],
     )
     def test_fail_on_counts_only_its_layers(self, icdgen, releases, layers, status):
         assert icdgen("diff", "old", "new", "--fail-on", layers).status == status
@@ -111,7 +119,9 @@ class TestOutput:
 
     def test_output_is_the_same_every_time(self, icdgen, releases):
         for form in FORMATS:
-            assert icdgen("diff", "old", "new", "--format", form).out == icdgen("diff", "old", "new", "--format", form).out
+            assert (
+                icdgen("diff", "old", "new", "--format", form).out == icdgen("diff", "old", "new", "--format", form).out
+            )
 
     def test_words_are_cut_short_but_for_all(self, icdgen, releases):
         rows = "".join(f"      - {{value: {n}, name: Mode {n}, summary: S}}\n" for n in range(2, 40))

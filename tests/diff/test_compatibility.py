@@ -70,7 +70,7 @@ def answers(tmp_path, change: tuple[str, str], base: str = BASE) -> dict:
         (("id: 10", "id: 11"), "yes", "no", "yes"),
         (("raw*0.5", "raw*0.25"), "partly", "yes", "partly"),
         (("unit: mV", "unit: V"), "partly", "yes", "partly"),
-        (("{at: 21, bits: 3,  name: Count,   type: uint}", "{at: 21, bits: 3,  name: Count,   type: int}"), "partly", "yes", "partly"),
+        (("name: Count,   type: uint", "name: Count,   type: int"), "partly", "yes", "partly"),
         (("      - {at: 21, bits: 3,  name: Count,   type: uint}\n", ""), "partly", "yes", "yes"),
         (("    kind: telemetry\n", "    kind: telemetry\n    summary: Words.\n"), "yes", "yes", "yes"),
         (("const: 0x5A", "const: 0x5B"), "yes", "no", "yes"),
@@ -95,7 +95,11 @@ def test_a_new_field_is_no_harm_to_old_telemetry_but_to_old_telecommands(tmp_pat
 
 
 def test_an_id_that_means_another_message_is_a_no_with_its_reason(tmp_path):
-    found = answers(tmp_path, ("  - name: Status\n    id: 130", "  - name: Status\n    id: 131"), LOGGED.replace("id: 131", "id: 132"))
+    found = answers(
+        tmp_path,
+        ("  - name: Status\n    id: 130", "  - name: Status\n    id: 131"),
+        LOGGED.replace("id: 131", "id: 132"),
+    )
     (frame,) = found["telemetry"].frames
     assert (frame.verdict, frame.reasons) == ("no", ("its id is 131 now",))
 

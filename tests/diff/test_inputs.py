@@ -75,20 +75,27 @@ class TestGit:
 
     def test_findings_are_those_of_the_revision_too(self, icdgen, repository):
         (repository / "icd" / "demo.yaml").write_text(DEMO.replace("length: 3", "length: 2"))
-        subprocess.run(["git", "-c", "user.name=A", "-c", "user.email=a@b", "commit", "-qam", "bad"], cwd=repository, check=True)
+        subprocess.run(
+            ["git", "-c", "user.name=A", "-c", "user.email=a@b", "commit", "-qam", "bad"], cwd=repository, check=True
+        )
         result = icdgen("diff", "HEAD~1..HEAD", "icd")
         assert result.status == 2
         assert "HEAD:icd/demo.yaml:" in result.err and "bits: 4" in result.err
 
     def test_includes_and_overlays_of_a_revision_are_read_with_it(self, icdgen, repository):
-        overlay = "errata: 1\nnode: demo\nentries:\n  - {id: D-001, title: T, where: {section: node}, printed: {title: Demo},"
+        overlay = (
+            "errata: 1\nnode: demo\nentries:\n  - {id: D-001, title: T, where: {section: node}, printed: {title: Demo},"
+        )
         overlay += " held: {title: Other}, why: W., evidence: E., confidence: certain}\n"
         (repository / "icd" / "errata" / "demo.yaml").write_text(overlay)
         (repository / "icd" / "demo.yaml").write_text(LATER)
         git = ["git", "-c", "user.name=A", "-c", "user.email=a@b"]
         subprocess.run([*git, "add", "-A"], cwd=repository, check=True)
         subprocess.run([*git, "commit", "-qm", "overlay"], cwd=repository, check=True)
-        assert codes(icdgen("diff", "v2:icd/demo.yaml", "HEAD:icd/demo.yaml", "--format", "json").out) == {"DIF401", "DIF403"}
+        assert codes(icdgen("diff", "v2:icd/demo.yaml", "HEAD:icd/demo.yaml", "--format", "json").out) == {
+            "DIF401",
+            "DIF403",
+        }
 
     @pytest.mark.parametrize(
         "arguments, said",
@@ -129,7 +136,9 @@ class TestShown:
         out = icdgen("diff", "old.json", "new").out
         place = next(line for line in out.splitlines() if "-> new/demo.yaml:14:77" in line).split(" -> ")[0].strip()
         file, line, _ = place.split(":")
-        assert file == "old.json" and '"formula": "raw*0.01"' in (tmp_path / file).read_text().splitlines()[int(line) - 1]
+        assert (
+            file == "old.json" and '"formula": "raw*0.01"' in (tmp_path / file).read_text().splitlines()[int(line) - 1]
+        )
 
     def test_it_may_come_from_standard_input(self, icdgen, releases, monkeypatch):
         data = icdgen("show", "--icd", "old", "--format", "json").out.encode()
@@ -176,7 +185,9 @@ class TestNoChange:
         assert icdgen("diff", "old", "new").out == "old -> new\nno change\n"
 
     def test_nor_is_the_order_of_anything(self, icdgen, releases):
-        head, first, second = DEMO.split("  - name: Estimated")[0], *DEMO.split("messages:\n")[1].split("  - name: Set Roll")
+        head, first, second = DEMO.split("  - name: Estimated")[0], *DEMO.split("messages:\n")[1].split(
+            "  - name: Set Roll"
+        )
         turned = f"{head}  - name: Set Roll{second}{first}"
         lines = turned.splitlines(keepends=True)
         at = next(i for i, line in enumerate(lines) if "name: Idle" in line)

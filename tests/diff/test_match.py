@@ -9,7 +9,10 @@ from icdgen.diff.similar import extends, likeness, same_sense
 from icdgen.icd.load import load
 from tests.icd.files import HEAD, write
 
-AXES = [f"{{at: {16 * n}, bits: 16, name: {axis} Rate, type: int, unit: deg/s, formula: raw*0.01}}" for n, axis in enumerate("ABC")]
+AXES = [
+    f"{{at: {16 * n}, bits: 16, name: {axis} Rate, type: int, unit: deg/s, formula: raw*0.01}}"
+    for n, axis in enumerate("ABC")
+]
 
 
 def message(name: str, id: int, *fields: str, length: int = 6) -> str:
@@ -53,13 +56,19 @@ def test_another_layout_under_another_name_is_another_message(tmp_path):
 
 def test_a_short_frame_is_not_taken_for_another_of_the_same_form(tmp_path):
     byte = "{at: 0, bits: 8, name: %s, type: uint}"
-    found = changes(tmp_path, message("Heater", 130, byte % "Level", length=1), message("Door", 140, byte % "Angle", length=1))
+    found = changes(
+        tmp_path, message("Heater", 130, byte % "Level", length=1), message("Door", 140, byte % "Angle", length=1)
+    )
     assert {"DIF101", "DIF102"} <= set(codes(found))
 
 
 def test_names_decide_where_messages_change_places(tmp_path):
     """Two messages that swap their ids are not two that swap their names."""
-    found = changes(tmp_path, message("One", 130, *AXES) + message("Two", 131, *AXES), message("One", 131, *AXES) + message("Two", 130, *AXES))
+    found = changes(
+        tmp_path,
+        message("One", 130, *AXES) + message("Two", 131, *AXES),
+        message("One", 131, *AXES) + message("Two", 130, *AXES),
+    )
     assert sorted(set(codes(found))) == ["DIF103", "DIF104"]
 
 
@@ -74,8 +83,16 @@ def test_an_insertion_is_one_change_however_many_fields_follow(tmp_path, count):
 
 
 def test_a_field_that_grew_moves_those_behind_it(tmp_path):
-    old = ["{at: 0, bits: 8, name: A1, type: uint}", "{at: 8, bits: 8, name: B1, type: uint}", "{at: 16, bits: 8, name: C1, type: uint}"]
-    new = ["{at: 0, bits: 16, name: A1, type: uint}", "{at: 16, bits: 8, name: B1, type: uint}", "{at: 24, bits: 8, name: C1, type: uint}"]
+    old = [
+        "{at: 0, bits: 8, name: A1, type: uint}",
+        "{at: 8, bits: 8, name: B1, type: uint}",
+        "{at: 16, bits: 8, name: C1, type: uint}",
+    ]
+    new = [
+        "{at: 0, bits: 16, name: A1, type: uint}",
+        "{at: 16, bits: 8, name: B1, type: uint}",
+        "{at: 24, bits: 8, name: C1, type: uint}",
+    ]
     found = changes(tmp_path, message("M", 130, *old, length=3), message("M", 130, *new, length=4))
     assert codes(found) == ["DIF106", "DIF108", "DIF110", "DIF307"]
     assert found[1].message.startswith("`A1` has 16 bits, had 8: 2 fields")
@@ -90,7 +107,7 @@ def test_a_field_renamed_behind_an_insertion_is_still_found(tmp_path):
 
 
 def test_a_frame_that_gained_fields_at_its_end_is_said_to(tmp_path):
-    (length, *_) = changes(tmp_path, message("M", 130, AXES[0], length=2), message("M", 130, *AXES))
+    length, *_ = changes(tmp_path, message("M", 130, AXES[0], length=2), message("M", 130, *AXES))
     assert length.message == "`M` has 6 bytes, had 2: it gained `B Rate` and `C Rate` at its end"
     assert "The first 2 bytes are as they were." in length.details
 

@@ -156,7 +156,9 @@ class TestRelease:
 
     def test_the_diff_finds_exactly_what_was_taken_out(self, release):
         found = {(c.code, c.where.message) for c in release.changes if c.layer == "wire"}
-        expected = {("DIF106", name) for name in facts()["lengths"]} | {("DIF108", "Power and Temperature Measurements")}
+        expected = {("DIF106", name) for name in facts()["lengths"]} | {
+            ("DIF108", "Power and Temperature Measurements")
+        }
         assert found == expected
         assert [c for c in release.changes if c.layer == "meaning"] == []
         added = {c.where.field for c in release.changes if c.code == "DIF311"}

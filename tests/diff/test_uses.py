@@ -107,7 +107,12 @@ def test_a_renamed_message_is_found_with_all_its_functions(icdgen, releases, sou
     text = (releases[0] / "demo.yaml").read_text().replace("name: Estimated Roll\n", "name: Filtered Estimated Roll\n")
     (releases[1] / "demo.yaml").write_text(text)
     names = {name for _, _, name, _ in uses(icdgen)}
-    assert {"demo_estimated_roll_t", "demo_estimated_roll_decode", "demo_estimated_roll_roll_angle_deg", "EstimatedRoll"} <= names
+    assert {
+        "demo_estimated_roll_t",
+        "demo_estimated_roll_decode",
+        "demo_estimated_roll_roll_angle_deg",
+        "EstimatedRoll",
+    } <= names
 
 
 def test_words_touch_nobodys_code(icdgen, releases, sources):

@@ -112,9 +112,7 @@ def _members_alike(one: Enum, other: Enum) -> float:
     return overlap(*(frozenset((m.value, m.name) for m in enum.members) for enum in (one, other)))
 
 
-def _add_enum(
-    found: Match, home: NodePair, node: NodePair, old: Enum | None, new: Enum | None, sure: float
-) -> None:
+def _add_enum(found: Match, home: NodePair, node: NodePair, old: Enum | None, new: Enum | None, sure: float) -> None:
     pair = EnumPair(old, new, sure, home.old or home.new, node.new or node.old, home is not node)
     if old is None or new is None or pair.changed:
         pair.members = list(_members(pair))

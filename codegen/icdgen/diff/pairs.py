@@ -66,7 +66,7 @@ class FieldPair(Pair):
 
     @property
     def changed(self) -> bool:
-        return self.old != self.new or self.owner.reordered or self.owner.revoiced
+        return self.old != self.new or self.owner.revoiced
 
     @cached_property
     def same_bits(self) -> bool:

@@ -27,7 +27,9 @@ _SKIPPED = frozenset((".git", ".hg", ".svn", "node_modules", "__pycache__", ".ve
 
 _NAME = r"(?P<name>[A-Za-z_][A-Za-z0-9_]*)"
 _C_LIKE = re.compile(rf'//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|{_NAME}', re.DOTALL)
-_TEXT = r"""(?:\"{3}(?:\\.|[^\\])*?(?:\"{3}|\Z)|'{3}(?:\\.|[^\\])*?(?:'{3}|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')"""
+_TEXT = (
+    r"""(?:\"{3}(?:\\.|[^\\])*?(?:\"{3}|\Z)|'{3}(?:\\.|[^\\])*?(?:'{3}|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')"""
+)
 _PYTHON = re.compile(rf"#[^\n]*|(?P<format>[rR]?[fF][rR]?{_TEXT})|[rbuRBU]{{0,2}}{_TEXT}|{_NAME}", re.DOTALL)
 _FORMATTED = re.compile(r"(?<!\{)\{(?!\{)[^{}]*")  # what an f-string computes
 _INNER = re.compile(_NAME)

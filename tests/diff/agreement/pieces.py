@@ -39,7 +39,9 @@ def cases(icd: Icd, count: int, seed: int) -> list[Case]:
     return found
 
 
-def _attempts(icd: Icd, kind: str, name: str, messages: list[tuple[Node, Message]], rng: random.Random) -> Iterator[Case]:
+def _attempts(
+    icd: Icd, kind: str, name: str, messages: list[tuple[Node, Message]], rng: random.Random
+) -> Iterator[Case]:
     while True:
         node, message = rng.choice(messages)
         beside = [m for m in node.messages if m is not message]
@@ -60,7 +62,8 @@ def piece(icd: Icd, node: Node, messages: tuple[Message, ...], name: str) -> Icd
         return made.get(id(one))
 
     own = tuple(
-        replace(m, node=name, contains=(), fields=tuple(replace(f, enum=enum(f.enum)) for f in m.fields)) for m in messages
+        replace(m, node=name, contains=(), fields=tuple(replace(f, enum=enum(f.enum)) for f in m.fields))
+        for m in messages
     )
     cut = replace(
         node, name=name, messages=own, enums=tuple(made.values()), includes=(), loggable=(), missing=(), protocol={}, errata=(),

@@ -96,7 +96,7 @@ def length_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
     if old.length == new.length:
         return
-    shorter, longer = sorted((old.length, new.length))
+    shorter = min(old.length, new.length)
     tail = [p.any.name for p in ctx.at_the_end(pair)]
     if new.length > old.length:
         what = f"gained {some(tail, 'field')} at its end" if tail else "grew"

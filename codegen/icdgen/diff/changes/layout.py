@@ -28,7 +28,9 @@ def field_moved(pair: MessagePair, ctx: Context) -> Iterator[Found]:
 def fields_shifted(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     for move in ctx.moves(pair).moves:
         if move.is_shift:
-            yield _moved(pair, move, f"{_cause(move)}: {_fields(move)} {_by(move)}", move.gained + move.lost + move.resized)
+            yield _moved(
+                pair, move, f"{_cause(move)}: {_fields(move)} {_by(move)}", move.gained + move.lost + move.resized
+            )
 
 
 @rule("DIF109", "message")

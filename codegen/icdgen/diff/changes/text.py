@@ -109,7 +109,9 @@ def special_respelled(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     for value in sorted(old.keys() & new.keys()):
         was, now = old[value], new[value]
         if was != now and same_sense(was, now):
-            yield Found(f"what {value} of {quote(pair.new.name)} stands for is spelled otherwise", ("special",), was, now)
+            yield Found(
+                f"what {value} of {quote(pair.new.name)} stands for is spelled otherwise", ("special",), was, now
+            )
 
 
 @rule("DIF413", "node", severity="note")
@@ -128,7 +130,11 @@ def unit_described_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
     for symbol in sorted(old.keys() | new.keys()):
         was, now = old.get(symbol), new.get(symbol)
         if was != now:
-            verb = "is declared now" if was is None else "is no longer declared" if now is None else "is described otherwise"
+            verb = (
+                "is declared now"
+                if was is None
+                else "is no longer declared" if now is None else "is described otherwise"
+            )
             said = tuple(" ".join(filter(None, u[1:])) if u else "" for u in (was, now))
             places = tuple(_section(side, "units") for side in (pair.old, pair.new))
             yield Found(f"the unit {quote(symbol)} {verb}", (), *said, places=places)

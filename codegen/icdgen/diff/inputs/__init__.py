@@ -32,7 +32,9 @@ def _resolve(arguments: list[str], usual: list[Path]) -> tuple[object, object]:
             return old, list(usual) if not old.named else [git.outside(path) for path in old.paths]
         raise UserError("name what to compare with", "`icdgen diff OLD NEW`, or a git revision such as HEAD~1")
     if len(arguments) > 2:
-        raise UserError(f"{len(arguments)} arguments are given, OLD and NEW are enough", "name folders for several files")
+        raise UserError(
+            f"{len(arguments)} arguments are given, OLD and NEW are enough", "name folders for several files"
+        )
     old, new = arguments
     paths = [[Path(word)] if os.path.exists(word) else None for word in (new, old)]
     return tuple(_one(git, word, other or usual) for word, other in zip((old, new), paths, strict=True))

@@ -97,7 +97,9 @@ def _check(tree: object, name: str) -> None:
     validator = jsonschema_rs.validator_for(json.loads(machine.SCHEMA.read_text(encoding="utf-8")))
     errors = list(validator.iter_errors(tree))
     if errors:
-        finding = Finding("ICD010", f"{_path(errors[0])}{errors[0].message[:200]}", _where(tree, errors[0], name), _HELP)
+        finding = Finding(
+            "ICD010", f"{_path(errors[0])}{errors[0].message[:200]}", _where(tree, errors[0], name), _HELP
+        )
         raise Findings([finding])
 
 

@@ -16,7 +16,6 @@ from icdgen.icd.load import load
 from icdgen.icd.loaded import Loaded
 from icdgen.icd.model import Icd
 
-
 _OVERLAY = re.compile(r"^errata:|^ *\"errata\":", re.MULTILINE)
 _ENTRY = re.compile(r"^[ -]*[\"']?id[\"']?: *[\"']?([A-Z][A-Z0-9-]*)[\"']?,? *$", re.MULTILINE)
 _READING = ("ICD001", "ICD002", "ICD003", "ICD004", "ICD010")  # something of the ICD is not in the model
@@ -55,7 +54,9 @@ class Side:
             if _OVERLAY.search(text):
                 for match in _ENTRY.finditer(text):
                     start = match.start(1)
-                    place = Place(file, text.count("\n", 0, start) + 1, start - text.rfind("\n", 0, start), len(match[1]))
+                    place = Place(
+                        file, text.count("\n", 0, start) + 1, start - text.rfind("\n", 0, start), len(match[1])
+                    )
                     found.setdefault(match[1], place)
         return found
 

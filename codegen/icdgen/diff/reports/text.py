@@ -33,7 +33,9 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
     if not report.comparison.changes:
         return "\n".join([*lines, "no change", *_stale(report, paint), ""])
     lines += ["", *_summary(report, paint), ""]
-    lines += _wrapped(f"version of the generated packages: {report.step.step}. Reason: {report.step.reason}.", width, "")
+    lines += _wrapped(
+        f"version of the generated packages: {report.step.step}. Reason: {report.step.reason}.", width, ""
+    )
     for direction in report.directions:
         lines += ["", *_direction(direction, paint, width, everything)]
     for layer in LAYERS:
