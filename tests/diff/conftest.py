@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from icdgen import cli
-from tests.cli.conftest import Result
+from tests.cli.conftest import icdgen  # noqa: F401  (a fixture of ours too)
 from tests.conftest import DEMO
 
 LATER = DEMO.replace("formula: raw*0.01", "formula: raw*0.001", 1).replace("id: 20", "id: 21")
@@ -20,18 +19,3 @@ def releases(tmp_path) -> tuple[Path, Path]:
         (tmp_path / name).mkdir()
         (tmp_path / name / "demo.yaml").write_text(text, encoding="utf-8")
     return tmp_path / "old", tmp_path / "new"
-
-
-@pytest.fixture
-def icdgen(tmp_path, monkeypatch, capsys):
-    """``icdgen("diff", "old", "new")`` -> `Result`; the current folder is ``tmp_path``."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: object) -> Result:
-        capsys.readouterr()
-        with pytest.raises(SystemExit) as exit:
-            cli.main([str(argument) for argument in arguments])
-        captured = capsys.readouterr()
-        return Result(exit.value.code, captured.out, captured.err)
-
-    return run

@@ -79,23 +79,28 @@ def _node_score(one: Node, other: Node) -> float:
 
 
 def _enums(found: Match) -> None:
-    left_old: list[tuple[NodePair, Enum]] = []
-    left_new: list[tuple[NodePair, Enum]] = []
+    _pair_up(found, "enums", lambda enum: enum.name, (_moved_enum, _renamed_enum), SAME_ENUM, _add_enum)
+
+
+def _pair_up(found: Match, what: str, rank: Callable, scores: Iterable[Score], least: float, add: Callable) -> None:
+    """Pairs what nodes declare: by name within a node, then by each of the scores."""
+    left_old: list[tuple[NodePair, object]] = []
+    left_new: list[tuple[NodePair, object]] = []
     for node in found.nodes:
-        pairs, (old, new) = _by_name(node.old.enums if node.old else (), node.new.enums if node.new else ())
+        pairs, (old, new) = _by_name(getattr(node.old, what, ()), getattr(node.new, what, ()))
         for one, other, sure in pairs:
-            _add_enum(found, node, node, one, other, sure)
-        left_old += [(node, enum) for enum in old]
-        left_new += [(node, enum) for enum in new]
-    for score in (_moved_enum, _renamed_enum):
-        for (home, one), (node, other), sure in _alike(left_old, left_new, score, SAME_ENUM):
-            _add_enum(found, home, node, one, other, sure)
+            add(found, node, node, one, other, sure)
+        left_old += [(node, one) for one in sorted(old, key=rank)]
+        left_new += [(node, one) for one in sorted(new, key=rank)]
+    for score in scores:
+        for (home, one), (node, other), sure in _alike(left_old, left_new, score, least):
+            add(found, home, node, one, other, sure)
             left_old = [item for item in left_old if item[1] is not one]
             left_new = [item for item in left_new if item[1] is not other]
-    for node, enum in left_old:
-        _add_enum(found, node, node, enum, None, 1.0)
-    for node, enum in left_new:
-        _add_enum(found, node, node, None, enum, 1.0)
+    for node, one in left_old:
+        add(found, node, node, one, None, 1.0)
+    for node, one in left_new:
+        add(found, node, node, None, one, 1.0)
 
 
 def _moved_enum(one: tuple[NodePair, Enum], other: tuple[NodePair, Enum]) -> float:
@@ -139,23 +144,7 @@ def _members(pair: EnumPair) -> Iterable[MemberPair]:
 
 
 def _messages(found: Match) -> None:
-    left_old: list[tuple[NodePair, Message]] = []
-    left_new: list[tuple[NodePair, Message]] = []
-    for node in found.nodes:
-        pairs, (old, new) = _by_name(node.old.messages if node.old else (), node.new.messages if node.new else ())
-        for one, other, sure in pairs:
-            _add_message(found, node, node, one, other, sure)
-        left_old += [(node, message) for message in sorted(old, key=_rank)]
-        left_new += [(node, message) for message in sorted(new, key=_rank)]
-    for score in (_moved_message, _renamed_message):
-        for (home, one), (node, other), sure in _alike(left_old, left_new, score, SAME_MESSAGE):
-            _add_message(found, home, node, one, other, sure)
-            left_old = [item for item in left_old if item[1] is not one]
-            left_new = [item for item in left_new if item[1] is not other]
-    for node, message in left_old:
-        _add_message(found, node, node, message, None, 1.0)
-    for node, message in left_new:
-        _add_message(found, node, node, None, message, 1.0)
+    _pair_up(found, "messages", _rank, (_moved_message, _renamed_message), SAME_MESSAGE, _add_message)
 
 
 def _rank(message: Message) -> tuple:

@@ -59,24 +59,8 @@ def _renamed(pair: Pair, ctx: Context) -> Iterator[Found]:
         yield Found(text, ("name", "identifier"), was, now, lines(renamed))
 
 
-@rule("DIF301", "message")
-def message_renamed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
-    yield from _renamed(pair, ctx)
-
-
-@rule("DIF302", "field")
-def field_renamed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    yield from _renamed(pair, ctx)
-
-
-@rule("DIF303", "enum")
-def enum_renamed(pair: EnumPair, ctx: Context) -> Iterator[Found]:
-    yield from _renamed(pair, ctx)
-
-
-@rule("DIF304", "member")
-def member_renamed(pair: MemberPair, ctx: Context) -> Iterator[Found]:
-    yield from _renamed(pair, ctx)
+for _code, _of in (("DIF301", "message"), ("DIF302", "field"), ("DIF303", "enum"), ("DIF304", "member")):
+    rule(_code, _of)(_renamed)
 
 
 @rule("DIF305", "node")
