@@ -32,8 +32,8 @@ Names = dict[int, tuple[Name, ...]]  # id(pair) -> names
 class Generated:
     """Names of the pairs whose names may have changed: all others keep theirs.
 
-    ``new`` are those of the new things if their node kept its old name, ``clothed`` if the message or enumeration that holds them
-    did too: a field's names are not said to change only because its message has another name.
+    ``clothed`` are those of the new things if the message or enumeration that holds them, and their node, had kept their old
+    names: a field's names are not said to change only because its message has another name.
     """
 
     def __init__(self, match: Match, changed: Iterable[Pair]) -> None:
@@ -55,6 +55,13 @@ class Generated:
 
     @cached_property
     def new(self) -> Names:
+        cut = self._cut(1)
+        return cut.names(cut.icd)
+
+    @cached_property
+    def _at_home(self) -> Names:
+        if all(node.old.name == node.new.name for node in self._match.nodes if node.both):
+            return self.new
         cut = self._cut(1, NODES)
         return cut.names(cut.icd)
 
@@ -72,15 +79,17 @@ class Generated:
 
     def renamed(self, pair: Pair) -> list[tuple[Name | None, Name | None]]:
         """Old and new name of everything that is generated for the pair, where they differ. Its parts are left out."""
-        after = self.new if isinstance(pair, MessagePair | EnumPair) else self.clothed
+        after = self._at_home if isinstance(pair, MessagePair | EnumPair) else self.clothed
         old, new = self.old.get(id(pair), ()), after.get(id(pair), ())
+        real = dict(zip(new, self.new.get(id(pair), ()), strict=True))
         found: list[tuple[Name | None, Name | None]] = []
         for key in sorted({_sort(name) for name in (*old, *new)}):
             before, later = ([name for name in names if _sort(name) == key] for names in (old, new))
             if len(before) == len(later):
-                found += [(a, b) for a, b in zip(before, later, strict=True) if a.text != b.text]
+                found += [(a, real[b]) for a, b in zip(before, later, strict=True) if a.text != b.text]
             else:
-                found += [(a, None) for a in before if a not in later] + [(None, b) for b in later if b not in before]
+                found += [(a, None) for a in before if a not in later]
+                found += [(None, real[b]) for b in later if b not in before]
         return found
 
     def retyped(self, pair: FieldPair) -> list[tuple[str, str, str]]:
@@ -205,6 +214,8 @@ class _Cut:
                 if pair is None or not one.text.isidentifier() or one.scope.startswith("modules of"):
                     continue
                 owner = getattr(pair, "owner", None)
+                if owner is None and language == "c" and one.text.endswith("_H"):
+                    continue  # an include guard
                 if language == "rust" and owner is None:
                     types.setdefault(id(pair), one.text)
                 stem = types.get(id(owner), "") if language == "rust" else _stem(language, one.scope)
@@ -213,8 +224,8 @@ class _Cut:
 
 
 def _sort(name: Name) -> tuple[str, bool]:
-    """Names of one language, and in C those at file scope, correspond in their order."""
-    return name.language, bool(name.stem)
+    """Names of one language, and in C those at file scope, correspond in their order. Members come first: they are short."""
+    return name.language, not name.stem
 
 
 def _stem(language: str, scope: str) -> str:

@@ -11,7 +11,7 @@ from icdgen.diff.pairs import EnumPair, FieldPair, MemberPair, MessagePair, Node
 from icdgen.diff.rule import rule
 from icdgen.icd.rules.wording import count, listing, quote
 
-MOST = 3  # names that are shown of one language
+MOST = 2  # names that are shown of one language
 
 _WHAT = {MessagePair: "message", FieldPair: "field", EnumPair: "enumeration", MemberPair: "value", NodePair: "node"}
 Renamed = list[tuple[Name | None, Name | None]]
@@ -23,15 +23,15 @@ def lines(renamed: Renamed) -> tuple[str, ...]:
     one_way = not all(old and new for old, new in renamed) and any(
         all(pair[side] is None for pair in renamed) for side in (0, 1)
     )
-    for old, new in renamed:
-        said = f"{quote(old.text) if old else '(new)'} -> {quote(new.text) if new else '(gone)'}"
+    for old, new in sorted(renamed, key=lambda names: not (names[0] or names[1]).text.endswith("_t")):  # types first
+        said = f"{f'`{old.text}`' if old else '(new)'} -> {f'`{new.text}`' if new else '(gone)'}"
         if one_way:
-            said = quote((old or new).text)
+            said = f"`{(old or new).text}`"
         rows = found.setdefault((old or new).language, [])
         if said not in rows:
             rows.append(said)
     result = []
-    for language, rows in found.items():
+    for language, rows in sorted(found.items()):
         rest = [f"{len(rows) - MOST} more"] if len(rows) > MOST else []
         result.append(f"{TITLES.get(language, language)}: {listing(rows[:MOST] + rest)}")
     return tuple(result)
