@@ -81,19 +81,21 @@ class Generated:
         """Old and new name of everything that is generated for the pair, where they differ. Its parts are left out."""
         after = self._at_home if isinstance(pair, MessagePair | EnumPair) else self.clothed
         old, new = self.old.get(id(pair), ()), after.get(id(pair), ())
-        real = dict(zip(new, self.new.get(id(pair), ()), strict=True))
+        real = dict(zip(new, self.new.get(id(pair), ()), strict=False))
         found: list[tuple[Name | None, Name | None]] = []
         for key in sorted({_sort(name) for name in (*old, *new)}):
             before, later = ([name for name in names if _sort(name) == key] for names in (old, new))
             if len(before) == len(later):
-                found += [(a, real[b]) for a, b in zip(before, later, strict=True) if a.text != b.text]
+                found += [(a, real.get(b, b)) for a, b in zip(before, later, strict=True) if a.text != b.text]
             else:
                 found += [(a, None) for a in before if a not in later]
-                found += [(None, real[b]) for b in later if b not in before]
+                found += [(None, real.get(b, b)) for b in later if b not in before]
         return found
 
     def retyped(self, pair: FieldPair) -> list[tuple[str, str, str]]:
         """Language, old and new type of the raw value, where they differ."""
+        if not _is_sound(pair.old) or not _is_sound(pair.new):
+            return []
         message_old, message_new = pair.owner.old, self._dressed.message_of(pair.owner)
         field_new = self._dressed.field_of(pair)
         found = []
@@ -119,6 +121,14 @@ def may_rename(pair: Pair) -> bool:
 def _decisive(field: Field) -> tuple:
     enum = field.enum.name if field.enum is not None else None
     return field.type, field.bits, enum, field.unit, field.scale, field.special, field.limits, field.const
+
+
+def _is_sound(field: Field) -> bool:
+    """Whether a backend can make anything of the field: an ICD that was not checked may hold what none can."""
+    if field.type == "bytes":
+        return field.at % 8 == field.bits % 8 == 0
+    wanted = {"bool": field.bits == 1, "float": field.bits in (32, 64), "enum": field.enum is not None}
+    return field.bits <= 64 and wanted.get(field.type, True)
 
 
 def _parts(pair: Pair) -> list[Pair]:
@@ -189,7 +199,7 @@ class _Cut:
         fields = {id(self.side_of(p)): p for p in pair.fields}
         own = []
         for one in message.fields:
-            if not self.keep(fields[id(one)]) and not self.keep(pair):
+            if not _is_sound(one) or (not self.keep(fields[id(one)]) and not self.keep(pair)):
                 continue
             enum = self.enums.get(id(one.enum), one.enum)
             made = self.dress(one, fields.get(id(one)), enum=enum)
