@@ -43,6 +43,7 @@ class TestGit:
     @pytest.mark.parametrize(
         "arguments",
         [
+            ("v1..v2",),
             ("v1..v2", "icd"),
             ("v1..v2", "icd/demo.yaml"),
             ("v1...v2", "icd"),
@@ -61,6 +62,12 @@ class TestGit:
     def test_a_revision_and_the_working_tree(self, icdgen, repository):
         for arguments in (("v2", "icd"), ("v2:icd/demo.yaml",), ("v2:icd/demo.yaml", "icd/demo.yaml")):
             assert codes(icdgen("diff", *arguments, "--format", "json").out) == {"DIF202", "DIF308"}
+
+    def test_the_folder_icd_is_meant_where_nothing_says_otherwise(self, icdgen, repository):
+        assert codes(icdgen("diff", "v2", "--format", "json").out) == {"DIF202", "DIF308"}
+        (repository / "icd").rename(repository / "elsewhere")
+        result = icdgen("diff", "v1..v2")
+        assert result.status == 2 and "`icds` in icdgen.toml" in result.err
 
     def test_the_icds_of_icdgen_toml_are_meant_where_no_path_is_given(self, icdgen, repository):
         (repository / "icdgen.toml").write_text('icds = ["icd"]\n')
@@ -105,7 +112,6 @@ class TestGit:
             (("v1:icd/none.yaml", "icd"), "v1 has no icd/none.yaml"),
             (("v1:../x.yaml", "icd"), "must lie in the repository"),
             (("v1..v2", "/"), "is not in this git repository"),
-            (("v1..v2",), "is not in this git repository"),
             (("--", "-v1..v2", "icd"), "git knows no revision -v1"),
         ],
     )
