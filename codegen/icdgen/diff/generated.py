@@ -39,19 +39,33 @@ class Generated:
     def __init__(self, match: Match, changed: Iterable[Pair]) -> None:
         self._match, self._changed = match, list(changed)
 
-    def _cut(self, side: int, clothed: int = NOTHING, keep: Callable[[Pair], bool] | None = None) -> _Cut:
-        return _Cut(self._match, side, self._changed, keep or may_rename, clothed)
+    def _cut(self, side: int, clothed: int = NOTHING) -> _Cut:
+        return _Cut(self._match, side, self._kept, clothed)
+
+    @cached_property
+    def _kept(self) -> set[int]:
+        """Everything whose names may have changed, with what it is part of: id(pair)."""
+        kept: set[int] = set()
+        for pair in self._changed:
+            parts = [id(part) for part in _parts(pair) if may_rename(part)] if pair.both else []
+            if parts or may_rename(pair):
+                kept.update((id(pair), *parts))
+        return kept
 
     @cached_property
     def everything(self) -> Names:
         """Old names of everything in messages and enumerations in which anything differs."""
-        cut = self._cut(0, keep=lambda pair: True)
+        kept = {id(one) for pair in self._changed for one in (pair, *_parts(pair))}
+        cut = _Cut(self._match, 0, kept)
         return cut.names(cut.icd)
 
     @cached_property
     def old(self) -> Names:
-        cut = self._cut(0)
-        return cut.names(cut.icd)
+        return self._before.names(self._before.icd)
+
+    @cached_property
+    def _before(self) -> _Cut:
+        return self._cut(0)
 
     @cached_property
     def new(self) -> Names:
@@ -75,7 +89,7 @@ class Generated:
 
     @cached_property
     def _types(self) -> tuple[Types, Types]:
-        return _types(self._cut(0).icd), _types(self._dressed.icd)
+        return _types(self._before.icd), _types(self._dressed.icd)
 
     def renamed(self, pair: Pair) -> list[tuple[Name | None, Name | None]]:
         """Old and new name of everything that is generated for the pair, where they differ. Its parts are left out."""
@@ -138,13 +152,10 @@ def _parts(pair: Pair) -> list[Pair]:
 class _Cut:
     """One of both ICDs, with what is to be kept of it; every part has a mark of its own, by which its names are found."""
 
-    def __init__(
-        self, match: Match, side: int, changed: list[Pair], keep: Callable[[Pair], bool], clothed: int = NOTHING
-    ) -> None:
-        self.match, self.side, self.keep, self.clothed = match, side, keep, clothed
-        wanted = {id(pair) for pair in changed if keep(pair) or any(map(keep, _parts(pair)))}
+    def __init__(self, match: Match, side: int, kept: set[int], clothed: int = NOTHING) -> None:
+        self.match, self.side, self.kept, self.clothed = match, side, kept, clothed
         self.marks: dict[int, Pair] = {}
-        self.kept: list[Map] = []
+        self.alive: list[Map] = []  # marks go by identity
         self.enums: dict[int, Enum] = {}
         self.messages: dict[int, Message] = {}
         self.fields: dict[int, Field] = {}
@@ -162,7 +173,7 @@ class _Cut:
                     includes=tuple(names.get(name, name) for name in node.includes),
                     enums=enums,
                     messages=tuple(
-                        self.message(m, names) for m in node.messages if id(match.pair_of.get(id(m))) in wanted
+                        self.message(m, names) for m in node.messages if id(match.pair_of.get(id(m))) in kept
                     ),
                 )
                 for node, enums in nodes
@@ -180,7 +191,7 @@ class _Cut:
         if pair is not None:
             mark = Map(Place(""))
             self.marks[id(mark)] = pair
-            self.kept.append(mark)
+            self.alive.append(mark)
             more["source"] = mark
             if self.clothed == OWNERS and pair.old is not None and isinstance(pair, MessagePair | EnumPair):
                 more.update(name=pair.old.name, identifier=pair.old.identifier)
@@ -189,7 +200,8 @@ class _Cut:
     def enum(self, enum: Enum, names: dict[str, str]) -> Enum:
         pair = self.match.pair_of.get(id(enum))
         members = {id(self.side_of(p)): p for p in getattr(pair, "members", ())}
-        own = tuple(self.dress(m, members[id(m)]) for m in enum.members if id(m) in members)  # none where nothing changed
+        kept = [m for m in enum.members if id(m) in members and id(members[id(m)]) in self.kept]
+        own = tuple(self.dress(m, members[id(m)]) for m in kept)
         made = self.dress(enum, pair, members=own, node=names.get(enum.node, enum.node))
         self.enums[id(enum)] = made
         return made
@@ -199,7 +211,7 @@ class _Cut:
         fields = {id(self.side_of(p)): p for p in pair.fields}
         own = []
         for one in message.fields:
-            if not _is_sound(one) or (not self.keep(fields[id(one)]) and not self.keep(pair)):
+            if id(fields[id(one)]) not in self.kept or not _is_sound(one):
                 continue
             enum = self.enums.get(id(one.enum), one.enum)
             made = self.dress(one, fields.get(id(one)), enum=enum)
