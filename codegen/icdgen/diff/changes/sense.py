@@ -9,17 +9,26 @@ from icdgen.diff.context import Context
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair
 from icdgen.diff.rule import rule
 from icdgen.diff.similar import extends, same_sense
+from icdgen.icd.model import Message
 from icdgen.icd.rules.wording import quote
 
 
 @rule("DIF212", "message")
 def answer_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
-    old, new = pair.old.acknowledge, pair.new.acknowledge
+    old, new = _answer(pair.old), _answer(pair.new)
     if old != new:
-        said = {True: "acknowledged", False: "not acknowledged"}
-        detail = "Who waits for the answer waits in vain." if old else "An answer comes that nobody expects."
-        text = f"{quote(pair.new.name)} is {said[new]} now"
-        yield Found(text, ("acknowledge", "name"), said[old], said[new], (detail,))
+        detail = "Who waits for the answer waits in vain."
+        if pair.old.acknowledge == pair.new.acknowledge:
+            detail = "No answer comes in either case, but the node restarts in one of them."
+        elif pair.new.acknowledge:
+            detail = "An answer comes that nobody expects."
+        yield Found(f"{quote(pair.new.name)} is {new} now", ("acknowledge", "name"), old, new, (detail,))
+
+
+def _answer(message: Message) -> str:
+    if message.acknowledge:
+        return "acknowledged"
+    return "answered by a restart" if message.expects_reset else "not acknowledged"
 
 
 @rule("DIF213", "field", "message", severity="warning")
