@@ -1,0 +1,51 @@
+"""Running heads and feet: what pages repeat in their margins."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Callable
+
+from icdgen.importer.pages.extract import Page
+from icdgen.importer.pages.lines import Line
+
+MARGIN = 0.12  # of the page's height, above and below
+_FIGURES = re.compile("[0-9]+")
+_NUMBERING = re.compile(r"(?:page|p\.|pg\.?|seite)?\s*[-–|]?\s*([0-9]+)\s*(?:(?:of|/|von)\s*[0-9]+)?\s*[-–|]?\Z", re.I)
+
+
+def without(pages: list[Page], lines: dict[int, list[Line]], keep: Callable[[str], bool]) -> dict[int, list[Line]]:
+    """The lines of each page without heads and feet. ``keep`` says which lines are never taken for such."""
+    seen: dict[tuple[str, int], set[int]] = defaultdict(set)
+    for page in pages:
+        for line in lines[page.number]:
+            if _in_margin(line, page):
+                for key in _keys(line):
+                    seen[key].add(page.number)
+    needed = max(2, round(0.3 * len(pages)))
+    kept = {}
+    for page in pages:
+        rest = []
+        for line in lines[page.number]:
+            repeated = any(len(seen[key]) >= needed for key in _keys(line)) if _in_margin(line, page) else False
+            if keep(line.text) or not (repeated or _numbers_the_page(line, page)):
+                rest.append(line)
+        kept[page.number] = rest
+    return kept
+
+
+def _in_margin(line: Line, page: Page) -> bool:
+    return line.middle < MARGIN * page.height or line.middle > (1 - MARGIN) * page.height
+
+
+def _keys(line: Line) -> list[tuple[str, int]]:
+    """Text and height, rounded both ways so that a point of difference does not matter."""
+    text = _FIGURES.sub("#", line.text)
+    return [(text, int(line.middle // 4)), (text, -1 - int((line.middle + 2) // 4))]
+
+
+def _numbers_the_page(line: Line, page: Page) -> bool:
+    if not _in_margin(line, page):
+        return False
+    match = _NUMBERING.match(line.text.strip())
+    return match is not None and (abs(int(match[1]) - page.number) <= 30 and len(match[1]) < 5)

@@ -1,0 +1,287 @@
+"""Pieces of tables and captions -> whole tables, each with its caption, over any number of pages."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from icdgen.importer import headings, labels
+from icdgen.importer.document import Block, Heading, Row, Table, Text
+from icdgen.importer.pages import bands
+from icdgen.importer.pages.bands import Band
+from icdgen.importer.pages.flow import Item, Mark, Piece
+from icdgen.importer.pages.lines import lines
+from icdgen.importer.profile import Profile
+
+_CONTINUED = re.compile(r"\s*[-–,]?\s*[(\[]?\s*(?:continued|cont\.|cont'd|contd\.?)\s*[)\]]?\s*\Z", re.I)
+FAR = 4  # lines of text between a caption and its table; more, and it is none
+
+
+@dataclass
+class Draft:
+    """A table in the making."""
+
+    table: Table
+    edges: list[float] | None = None
+    size: float = 0.0
+    place: int = 0  # of its first piece among the items
+
+    @property
+    def last_page(self) -> int:
+        return self.table.boxes[-1].page
+
+
+@dataclass
+class Builder:
+    """Goes through the items once; what belongs together ends up in one draft."""
+
+    profile: Profile
+    known: frozenset[str]
+    out: list[Draft | Mark] = field(default_factory=list)
+
+    def run(self, items: list[Item]) -> list[Block]:
+        """Headings, text and tables, captions attached."""
+        for item in items:
+            if isinstance(item, Piece):
+                self.piece(item)
+            else:
+                self.out.append(item)
+        return self.captioned()
+
+    def piece(self, piece: Piece) -> None:
+        draft = self.continued(piece)
+        if draft is None:
+            draft = self.begin(piece)
+        else:
+            draft.table.boxes.append(piece.box)
+        if piece.ruled:
+            self.ruled(draft, piece)
+        else:
+            self.loose(draft, piece)
+
+    def begin(self, piece: Piece) -> Draft:
+        draft = Draft(Table(page=piece.box.page, boxes=[piece.box]))
+        self.out.append(draft)
+        return draft
+
+    def continued(self, piece: Piece) -> Draft | None:
+        """The draft that this piece goes on with."""
+        between = 0
+        number = None
+        for item in reversed(self.out):
+            if isinstance(item, Draft):
+                break
+            match = self.profile.caption.match(item.text) if item.kind == "caption" else None
+            if match and (_CONTINUED.search(item.text) or self.same_number(match["number"])):
+                number = match["number"]
+                continue
+            if item.kind != "text" or item.size > 8.6:
+                return None
+            between += 1
+        else:
+            return None
+        draft = item
+        follows = piece.box.page == draft.last_page + 1
+        below = piece.box.page == draft.last_page and 0 <= piece.box.top - draft.table.boxes[-1].bottom < 30
+        if between > 3 or not (follows or below):
+            return None
+        if self.first_is_id(piece):
+            return None
+        if number is None and not self.fits(draft, piece, follows):
+            return None
+        if number is not None:  # a repeated caption
+            while self.out[-1] is not draft:
+                self.out.pop()
+        return draft
+
+    def same_number(self, number: str) -> bool:
+        """Whether the last caption before has this number too."""
+        seen = [
+            m["number"] for item in self.out
+            if isinstance(item, Mark) and item.kind == "caption" and (m := self.profile.caption.match(item.text))
+        ]  # fmt: skip
+        return len(seen) > 1 and seen[-2] == number
+
+    def first_is_id(self, piece: Piece) -> bool:
+        """Whether the piece begins a message's table: with its id."""
+        if not piece.ruled:
+            return bool(piece.head) and labels.begins(piece.head[0], self.profile)
+        first = next((band for band in piece.bands if band.words), None)
+        return first is not None and labels.begins(" ".join(t for t in first.texts(self.known) if t), self.profile)
+
+    def fits(self, draft: Draft, piece: Piece, follows: bool) -> bool:
+        header = draft.table.header
+        if not piece.ruled:
+            if piece.columns is None:
+                return True
+            return header is None and bool(draft.table.head) or (
+                header is not None and follows and headings.repeats(piece.columns.header.titles, header, self.profile)
+            )
+        own = self.header_of(piece)
+        if own is not None:
+            if header is None:
+                return own.kind == "fields" and bool(draft.table.head)
+            return follows and own.kind == header.kind and own.roles == header.roles
+        if header is None:
+            last, box = draft.table.boxes[-1], piece.box
+            return follows and abs(box.x0 - last.x0) < 8 and abs(box.x1 - last.x1) < 8
+        last, box = draft.table.boxes[-1], piece.box
+        return abs((box.x1 - box.x0) - (last.x1 - last.x0)) < 8
+
+    def header_of(self, piece: Piece):
+        for band in piece.bands[:3]:
+            found = headings.match(band.texts(self.known), self.profile)
+            if found:
+                return found
+        return None
+
+    # --- ruled -----------------------------------------------------------------------------------------------------
+
+    def ruled(self, draft: Draft, piece: Piece) -> None:
+        waiting = list(piece.bands)
+        fresh = True  # nothing of the piece's body was read yet
+        while waiting:
+            band = waiting.pop(0)
+            if not band.words:
+                continue
+            texts = band.texts(self.known)
+            if self.is_new(draft, texts):
+                draft = self.begin(piece)
+            if draft.table.header is None:
+                if self.header(draft, band, waiting):
+                    continue
+                draft.table.head.append(Row(texts, band.page))
+            elif headings.repeats(texts, draft.table.header, self.profile):
+                if len(band.edges) == len(draft.edges or ()):
+                    draft.edges = band.edges
+            else:
+                self.body(draft, band, torn=fresh and len(draft.table.boxes) > 1)
+                fresh = False
+
+    def is_new(self, draft: Draft, texts: list[str]) -> bool:
+        """Whether a band is the first of another message within the same rules."""
+        has_more = draft.table.header is not None or len(draft.table.head) > 0
+        return has_more and labels.begins(" ".join(t for t in texts if t), self.profile)
+
+    def header(self, draft: Draft, band: Band, waiting: list[Band]) -> bool:
+        """Takes the heading row if the band is it, begins with it, or is its upper half."""
+        found = headings.match(band.texts(self.known), self.profile)
+        if found is None and waiting and len(lines(band.words)) < 4:
+            both = _stacked(band, waiting[0], self.known)
+            found = headings.match(both, self.profile) if both else None
+            if found is not None:
+                waiting.pop(0)
+        if found is None:
+            split = self.split(band)
+            if split is None:
+                return False
+            found, rest = split
+            waiting.insert(0, rest)
+        draft.table.header, draft.edges = found, band.edges
+        return True
+
+    def split(self, band: Band):
+        """A band without rules between its rows: headings first, then the rest."""
+        found = lines(band.words)
+        for count in range(min(4, len(found) - 1), 0, -1):
+            upper = Band(band.page, band.top, found[count].top, band.edges, [w for line in found[:count] for w in line.words])
+            header = headings.match(upper.texts(self.known), self.profile)
+            if header is not None:
+                words = [w for line in found[count:] for w in line.words]
+                return header, Band(band.page, found[count].top, band.bottom, band.edges, words)
+        return None
+
+    def body(self, draft: Draft, band: Band, torn: bool) -> None:
+        assert draft.table.header is not None and draft.edges is not None
+        made = bands.rows(bands.aligned(band, draft.edges), draft.table.header, self.known)
+        draft.table.rows += made
+
+    # --- without vertical rules ------------------------------------------------------------------------------------
+
+    def loose(self, draft: Draft, piece: Piece) -> None:
+        draft.table.head += [Row([text], piece.box.page) for text in piece.head]
+        if piece.columns is not None:
+            if draft.table.header is None:
+                draft.table.header = piece.columns.header
+        if draft.table.header is None:
+            return
+        for band in piece.bands:
+            if headings.repeats(band.texts(self.known), draft.table.header, self.profile):
+                continue
+            draft.table.rows += bands.rows(band, draft.table.header, self.known)
+
+    # --- captions --------------------------------------------------------------------------------------------------
+
+    def captioned(self) -> list[Block]:
+        captions = [i for i, item in enumerate(self.out) if isinstance(item, Mark) and item.kind == "caption"]
+        after = {i: self.table_from(i, 1) for i in captions}
+        before = {i: self.table_from(i, -1) for i in captions}
+        above = self.stands_above(captions, after, before)
+        owner: dict[int, int] = {}
+        for i in captions if above else reversed(captions):
+            target = (after if above else before)[i]
+            if target is not None:
+                owner[target] = i  # the nearest wins: it comes last
+        used = set(owner.values())
+        blocks: list[Block] = []
+        for index, item in enumerate(self.out):
+            if isinstance(item, Draft):
+                if index in owner:
+                    self.name(item.table, self.out[owner[index]])
+                blocks.append(item.table)
+            elif index not in used:
+                page = item.box.page
+                blocks.append(
+                    Heading(item.number, item.text, page) if item.kind == "heading" else Text(item.text, page)
+                )
+        return blocks
+
+    def table_from(self, index: int, step: int) -> int | None:
+        """The table nearest to the caption in this direction, with hardly any text and no caption between."""
+        between = 0
+        position = index + step
+        while 0 <= position < len(self.out):
+            item = self.out[position]
+            if isinstance(item, Draft):
+                return position
+            if item.kind != "text" or between >= FAR:
+                return None
+            between += 1
+            position += step
+        return None
+
+    def stands_above(self, captions: list[int], after: dict, before: dict) -> bool:
+        """Whether captions stand above their tables in this document: by distance on the page, then by number."""
+        nearer = 0
+        for i in captions:
+            down, up = self.distance(i, after[i], 1), self.distance(i, before[i], -1)
+            nearer += (down < up) - (up < down)
+        if nearer == 0:
+            found = sum(after[i] is not None for i in captions) - sum(before[i] is not None for i in captions)
+            return found >= 0
+        return nearer > 0
+
+    def distance(self, caption: int, table: int | None, step: int) -> float:
+        if table is None:
+            return 1000.0
+        mark, draft = self.out[caption], self.out[table]
+        box = draft.table.boxes[0 if step > 0 else -1]
+        if box.page != mark.box.page:
+            return 500.0
+        return max(0.0, box.top - mark.box.bottom if step > 0 else mark.box.top - box.bottom)
+
+    def name(self, table: Table, mark: Mark) -> None:
+        match = self.profile.caption.match(mark.text)
+        assert match is not None
+        number = match["number"]
+        table.number = int(re.split("[-.]", number)[-1]) if not number.isdigit() else int(number)
+        table.caption = _CONTINUED.sub("", match["title"]).strip()
+        table.page = min(mark.box.page, table.page or mark.box.page)
+
+
+def _stacked(upper: Band, lower: Band, known: frozenset[str]) -> list[str] | None:
+    """Two bands of cells as one heading row: the texts above and below each other."""
+    if len(upper.edges) != len(lower.edges):
+        lower = bands.aligned(lower, upper.edges)
+    above, below = upper.texts(known), lower.texts(known)
+    return [" ".join(filter(None, pair)) for pair in zip(above, below, strict=True)]
