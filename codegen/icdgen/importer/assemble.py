@@ -7,7 +7,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 from icdgen.importer import references, trees
-from icdgen.importer.document import Document, Spot, Trouble
+from icdgen.importer.document import Document, Trouble
 from icdgen.importer.profile import NodeWords, Profile
 from icdgen.importer.understand.model import Listed, ReadEnum, ReadList, ReadLog, ReadMessage
 from icdgen.importer.understand.survey import Found, Survey
@@ -35,7 +35,7 @@ def assemble(document: Document, survey: Survey, profile: Profile, prose: bool =
     nodes = _dealt(document, survey, profile)
     everything = survey.of(ReadEnum)
     for node in nodes:
-        _merge_enums(node, survey.troubles)
+        _merge_enums(node, survey)
     for node in nodes:
         references.listed(node, survey.troubles)
     _includes(nodes)
@@ -62,7 +62,7 @@ def _dealt(document: Document, survey: Survey, profile: Profile) -> list[NodePar
     first = next(iter(nodes), "")
     for key, one in zip(keys, survey.found, strict=True):
         if one.thing is not None:
-            _put(nodes.get(key) or _home(one, nodes, first), one)
+            _put(nodes.get(key) or nodes[first], one)
     if len(nodes) == 1:
         next(iter(nodes.values())).shared = False
     return [n for n in nodes.values() if n.messages or n.enums or n.logs]
@@ -72,11 +72,6 @@ def _put(node: NodeParts, one: Found) -> None:
     thing = one.thing
     target = {ReadMessage: node.messages, ReadEnum: node.enums, ReadList: node.lists, ReadLog: node.logs}[type(thing)]
     target.append(thing)
-
-
-def _home(one: Found, nodes: dict[str, NodeParts], first: str) -> NodeParts:
-    """The node of a table that stands outside all: where its twin is, else the first."""
-    return nodes[first]
 
 
 def _keys(survey: Survey, profile: Profile) -> list[str]:
@@ -99,6 +94,7 @@ def _keys(survey: Survey, profile: Profile) -> list[str]:
         if told is not None:
             current = told
         keys.append(key)
+    keys = [_canonical(key, profile) for key in keys]
     named = {id(one.table): key for one, key in zip(survey.found, keys, strict=True)}
     return [key or named.get(twins.get(id(one.table), 0), "") for one, key in zip(survey.found, keys, strict=True)]
 
@@ -134,13 +130,18 @@ def _by_profile(one: Found, profile: Profile) -> str | None:
     return None
 
 
+def _canonical(key: str, profile: Profile) -> str:
+    """The profile's name of a node that the manual calls ``key``."""
+    return next((w.name for w in profile.nodes if w.name == key or any(_says(key, m) for m in w.match)), key)
+
+
 def _says(text: str, phrase: str) -> bool:
     words, parts = folded(text), folded(phrase)
     return any(words[i : i + len(parts)] == parts for i in range(len(words)))
 
 
 def _node(key: str, profile: Profile) -> NodeParts:
-    words = next((w for w in profile.nodes if w.name == key or any(_says(key, m) for m in w.match)), None)
+    words = next((w for w in profile.nodes if w.name == key), None)
     if words is not None:
         shared = any(_says(key, s) for s in profile.data["shared"])
         return NodeParts(words.name, words.head.get("title", key), shared, words, include=list(words.include))
@@ -166,8 +167,17 @@ def _includes(nodes: list[NodeParts]) -> None:
             node.include += [f"{name}.yaml" for name in shared if f"{name}.yaml" not in node.include]
 
 
-def _merge_enums(node: NodeParts, troubles: list[Trouble]) -> None:
-    """Tables that print the same enumeration become one; those that only share its name are told apart."""
+def _merge_enums(node: NodeParts, survey: Survey) -> None:
+    """Tables that print the same enumeration become one, that which fields point to standing first; those that only
+    share its name are told apart."""
+    runs = _runs(survey)
+    order = {id(one.table): index for index, one in enumerate(survey.found)}
+    pointed = {
+        (one.run, field.described.enum_table)
+        for one in survey.of(ReadMessage)
+        for field in one.thing.fields
+        if field.described.enum_table is not None
+    }
     kept: dict[str, ReadEnum] = {}
     taken: Counter = Counter()
     for one in node.enums:
@@ -176,15 +186,19 @@ def _merge_enums(node: NodeParts, troubles: list[Trouble]) -> None:
             kept[one.name] = one
             continue
         if [(m.value, m.name) for m in first.members] == [(m.value, m.name) for m in one.members]:
-            first.also.append(one.table)
+            is_meant = (runs.get(id(one.table)), one.table.number) in pointed
+            if is_meant and (runs.get(id(first.table)), first.table.number) not in pointed:
+                one.also = [first.table, *first.also]
+                kept[one.name] = one
+            else:
+                first.also.append(one.table)
             continue
         taken[one.name] += 1
         name = f"{one.name} {taken[one.name] + 1}"
-        troubles.append(
+        survey.troubles.append(
             Trouble("IMP052", f"{one.table.title}: table {first.table.number} has an enumeration of this name with other "
-                    "members", Spot(one.table.page, one.table.line, one.table.number),
-                    f"held as `{name}`: see which one the fields mean", "error")
+                    "members", one.table.spot, f"held as `{name}`: see which one the fields mean", "error")
         )  # fmt: skip
         one.name = name
         kept[name] = one
-    node.enums = list(kept.values())
+    node.enums = sorted(kept.values(), key=lambda e: order[id(e.table)])

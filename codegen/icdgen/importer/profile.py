@@ -173,6 +173,8 @@ def _check(tree: Map, base: dict, name: str) -> None:
             add(f"unknown key `{key}`", tree.keys_at[key], "known keys: " + ", ".join(sorted(known)))
         elif key == "nodes":
             _check_nodes(value, tree.at(key), add)
+        elif key == "damage":
+            _check_damage(value, tree.at(key), add)
         elif key not in ("profile", "name"):
             _check_like(value, base[key], tree.at(key), key, add)
     if findings:
@@ -202,6 +204,18 @@ def _check_like(value: object, like: object, place, key: str, add) -> None:
                 add(f"unknown key `{inner}`", value.keys_at[inner], "known keys: " + ", ".join(like))
     elif type(value) is not type(like):
         add(f"`{key}` must be {type(like).__name__}", place)
+
+
+_DAMAGE = ({"printed": str, "meant": str}, {"table": int, "before": int, "group": str})
+
+
+def _check_damage(value: object, place, add) -> None:
+    for item in value if isinstance(value, list) else [None]:
+        if not isinstance(item, Map) or not any(
+            item.keys() == form.keys() and all(type(item[key]) is kind for key, kind in form.items()) for form in _DAMAGE
+        ):
+            forms = "{printed: ..., meant: ...} or {table: 97, before: 171, group: ...}"
+            add(f"each of `damage` must be {forms}", getattr(item, "place", place))
 
 
 def _check_nodes(value: object, place, add) -> None:

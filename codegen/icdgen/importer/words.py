@@ -13,7 +13,6 @@ _PLAIN = str.maketrans(
 _WORD = re.compile(r"[A-Za-z0-9%]+")
 SUPERSCRIPTS = str.maketrans("0123456789-+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺")
 _RAISED = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺]+")
-_DOWN = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺", "0123456789-+")
 _NUMBER = re.compile(r"[-+]?(?:0[xX][0-9A-Fa-f]+|[0-9]+)\Z")
 
 
@@ -22,9 +21,9 @@ def plain(text: str) -> str:
     return " ".join(text.translate(_PLAIN).split())
 
 
-def powers(text: str) -> str:
-    """``m²`` as ``m^2``."""
-    return _RAISED.sub(lambda m: "^" + m.group().translate(_DOWN), text)
+def tidy_unit(text: str) -> str:
+    """A unit as printed, without brackets, and without a blank before a raised figure."""
+    return re.sub(r"\s+(?=[⁰¹²³⁴⁵⁶⁷⁸⁹⁻])", "", plain(text).strip("[] "))
 
 
 def folded(text: str) -> tuple[str, ...]:

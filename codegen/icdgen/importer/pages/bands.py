@@ -56,21 +56,18 @@ def aligned(band: Band, edges: list[float]) -> Band:
         return band
     moved = []
     for index, part in enumerate(band.parts()):
+        if not part:
+            continue
         left, right = band.edges[index], band.edges[index + 1]
         overlaps = [max(0.0, min(right, b) - max(left, a)) for a, b in zip(edges, edges[1:], strict=False)]
         covered = [i for i, o in enumerate(overlaps) if o > 0.5 * (edges[i + 1] - edges[i])]
         target = covered[0] if covered else overlaps.index(max(overlaps))
         a, b = edges[target], edges[target + 1]
-        if len(covered) > 1:  # squeezed into its column without changing the order of its words
-            moved += [w._replace(x0=a + (b - a) * _share(w.x0, left, right), x1=a + (b - a) * _share(w.x1, left, right))
-                      for w in part]  # fmt: skip
-        else:
-            moved += [w if a <= (w.x0 + w.x1) / 2 <= b else w._replace(x0=a, x1=a + 1) for w in part]
+        if all(a <= (w.x0 + w.x1) / 2 <= b for w in part):
+            moved += part
+        else:  # its lines, whole
+            moved += [line.words[0]._replace(text=line.text, x0=a + 1, x1=b - 1) for line in lines(part)]
     return Band(band.page, band.top, band.bottom, edges, moved)
-
-
-def _share(x: float, left: float, right: float) -> float:
-    return min(1.0, max(0.0, (x - left) / max(right - left, 1.0)))
 
 
 def rows(band: Band, header: Header, known: frozenset[str]) -> list[Row]:

@@ -151,12 +151,23 @@ class Builder:
                 if self.header(draft, band, waiting):
                     continue
                 draft.table.head.append(Row(texts, band.page))
+            elif not draft.table.rows and (whole := self.lower_half(draft, texts)):
+                draft.table.header = whole
             elif headings.repeats(texts, draft.table.header, self.profile):
                 if len(band.edges) == len(draft.edges or ()):
                     draft.edges = band.edges
             else:
                 self.body(draft, band, torn=fresh and len(draft.table.boxes) > 1)
                 fresh = False
+
+    def lower_half(self, draft: Draft, texts: list[str]):
+        """The headings as a whole where a page break stands between their two lines."""
+        header = draft.table.header
+        assert header is not None
+        if len(texts) != len(header.titles):
+            return None
+        whole = headings.match([f"{a} {b}".strip() for a, b in zip(header.titles, texts, strict=True)], self.profile)
+        return whole if whole and sum(map(bool, whole.roles)) > sum(map(bool, header.roles)) else None
 
     def is_new(self, draft: Draft, texts: list[str]) -> bool:
         """Whether a band is the first of another message within the same rules."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import formulas
-from icdgen.importer.words import plain, powers
+from icdgen.importer.words import plain, tidy_unit
 
 _TABLE = re.compile(r"[0-9]+(?:[-.][0-9]+)*\Z")
 _FORMULA_WORD = re.compile(r"\bformula\b", re.I)
@@ -70,7 +70,7 @@ def _unit(text: str, profile: Profile, made: Described, spans: list) -> None:
         for pattern in profile.phrases[what]:
             match = pattern.search(text)
             if match and not any(a < match.end() and match.start() < b and what == "unit" for a, b in spans):
-                units.append(powers(match["unit"] or match["bare"]).strip("[]"))
+                units.append(tidy_unit(match["unit"] or match["bare"]))
                 spans.append(match.span())
                 break
     if units:

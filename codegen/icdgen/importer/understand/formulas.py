@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.icd import formula as formulas
-from icdgen.importer.words import plain, powers
+from icdgen.importer.words import plain, tidy_unit
 
 _NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,2})?|\.[0-9]+")
 _TIMES = {"×": "*", "·": "*", "∙": "*", "⋅": "*", "∗": "*", "x": "*", "X": "*", "÷": "/", "–": "-", "−": "-", ":": "/"}
@@ -81,7 +81,7 @@ def _left(before: str, names: Words) -> tuple[str, str, int] | None:
     unit = ""
     bracket = re.search(r"\[\s*([^\[\]]*?)\s*\]\Z", bare)
     if bracket:
-        unit, bare = powers(bracket[1]), bare[: bracket.start()].rstrip()
+        unit, bare = tidy_unit(bracket[1]), bare[: bracket.start()].rstrip()
     for gives, pattern in (("physical", names.physical), ("raw", names.raw)):
         last = None
         for match in pattern.finditer(bare):

@@ -10,7 +10,7 @@ from icdgen.importer.profile import Profile
 from icdgen.importer.understand import descriptions, formulas, numbers
 from icdgen.importer.understand.model import ReadField, ReadMessage
 from icdgen.importer.understand.rows import Entry, entries
-from icdgen.importer.words import folded, number, plain, powers
+from icdgen.importer.words import folded, number, plain, tidy_unit
 
 KINDS = ("telecommand", "telemetry", "configuration")
 
@@ -37,10 +37,24 @@ def read(table: Table, profile: Profile, troubles: list[Trouble]) -> ReadMessage
         for entry in entries(table, troubles):
             if found := _field(entry, table, profile, troubles):
                 message.fields.append(found)
+        _contradictions(message, troubles)
         if not message.fields:
             troubles.append(Trouble("IMP024", f"{table.title}: it has headings for fields and no field", table.spot,
                                     "look at the page: the rest may stand on the next one", sure=DOUBTFUL))  # fmt: skip
     return message
+
+
+def _contradictions(message: ReadMessage, troubles: list[Trouble]) -> None:
+    """Fields whose formula gives what the words before it do not announce: one finding for all of a table."""
+    for words, gives in (("raw", "physical"), ("physical", "raw")):
+        found = [f.name for f in message.fields if f.described.formula_for == words]
+        if found:
+            which = f"the formula of `{found[0]}`" + (f" and of {len(found) - 1} more fields" if found[1:] else "")
+            troubles.append(
+                Trouble("IMP041", f"{message.table.title}: {which} is announced as giving the {words} value and gives the "
+                        f"{gives} one", message.table.spot,
+                        "taken as printed; `formula_for` keeps what the words say: find out which holds")
+            )  # fmt: skip
 
 
 def _labelled(table: Table, profile: Profile) -> list[labels.Labelled]:
@@ -154,12 +168,6 @@ def _field(entry: Entry, table: Table, profile: Profile, troubles: list[Trouble]
         severity = "warning"
         text = entry.get("description")
         troubles.append(Trouble("IMP040", f"{where}: {problem}: `{text[-160:]}`", entry.spot, "read the page", severity))
-    if described.formula_for:
-        other = "physical" if described.formula_for == "raw" else "raw"
-        troubles.append(
-            Trouble("IMP041", f"{where}: the words announce the {described.formula_for} value, the formula gives the "
-                    f"{other} one", entry.spot, "the formula is taken as printed; `formula_for` keeps the words", "note")
-        )  # fmt: skip
     return ReadField(name, at, bits, kind, described, entry.spot)
 
 
@@ -213,11 +221,11 @@ def _described(entry: Entry, profile: Profile, is_enum: bool) -> descriptions.De
     made = descriptions.read(text, profile, is_enum)
     if is_enum and made.enum_table is None and not made.enum_title and entry.get("values"):
         made.enum_title = entry.get("values")
-    unit = entry.get("unit").strip("[]()- ")
+    unit = tidy_unit(entry.get("unit")).strip("()- ")
     if unit and unit.casefold() not in ("na", "n/a", "none", "–"):
         if made.unit and made.unit != unit:
             made.problems.append(f"its unit is `{unit}` in one column and `{made.unit}` in another")
-        made.unit = powers(unit)
+        made.unit = unit
     formula = entry.get("formula").strip()
     if formula and formula.casefold() not in ("-", "–", "n/a", "na", "none"):
         found = formulas.alone(formula, descriptions.names(profile))
