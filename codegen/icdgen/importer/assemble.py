@@ -121,6 +121,8 @@ def _by_profile(one: Found, profile: Profile) -> str | None:
             if in_group and in_tables:
                 return words.name
             continue
+        if not words.match:
+            return words.name  # a profile with one node and nothing to choose by
         texts = list(one.headings)
         if isinstance(one.thing, ReadList):
             texts = [one.thing.node or one.table.caption]

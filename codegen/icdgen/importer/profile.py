@@ -129,6 +129,24 @@ def _pattern(text: str, stand_ins: dict[str, str]) -> str:
     return _PLACEHOLDER.sub(lambda m: stand_ins.get(m.group(1), ".+?"), escaped)
 
 
+def find(name: str | None) -> Path | None:
+    """The profile of this name: a file, or one that is shipped beside the ICDs. Raises `UserError` if there is none."""
+    from icdgen import places
+    from icdgen.errors import UserError
+
+    if name is None:
+        return None
+    path = Path(name)
+    if path.exists() or path.suffix or len(path.parts) > 1:
+        return path
+    folder = places.icds() / "profiles"
+    shipped = folder / f"{name}.yaml"
+    if shipped.is_file():
+        return shipped
+    known = ", ".join(sorted(p.stem for p in folder.glob("*.yaml"))) or "none"
+    raise UserError(f"there is no profile `{name}`", f"name a file, or one of those shipped: {known}")
+
+
 def load(path: Path | None = None) -> Profile:
     """The profile that comes with icdgen, with ``path`` laid over it. Raises `Findings` for a profile that is wrong."""
     base = without_places(source.read(DEFAULT))

@@ -10,7 +10,7 @@ from icdgen.importer.document import Document
 from icdgen.importer.profile import Profile
 
 MAX_BYTES = 300_000_000
-Progress = Callable[[int, int], None]  # pages done, pages altogether
+Progress = Callable[[int, int, int], None]  # pages done, pages altogether, captions seen
 
 
 def read(path: Path, profile: Profile, progress: Progress | None = None, jobs: int | None = None) -> Document:

@@ -7,6 +7,7 @@ import os
 import re
 import signal
 from collections.abc import Iterator
+from itertools import pairwise
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -27,10 +28,12 @@ def read(path: Path, profile: Profile, progress=None, jobs: int | None = None) -
     count, title = _open(path, name)
     document = Document(name, pages=count, title=title)
     pages = []
+    seen = 0
     for page in _pages(path, count, jobs):
         pages.append(page)
         if progress:
-            progress(len(pages), count)
+            seen += _captions(page, profile)
+            progress(len(pages), count, seen)
     _look_over(pages, document, name)
     made = flow.items(pages, profile)
     document.blocks = tables.Builder(profile, _known(pages)).run(made)
@@ -148,6 +151,18 @@ def _look_over(pages: list[Page], document: Document, name: str) -> None:
                 Trouble("IMP012", f"{page.unmapped} characters of the page have no meaning: the PDF does not say which they are",
                         Spot(page.number), "compare what was read with the page")
             )  # fmt: skip
+
+
+def _captions(page: Page, profile: Profile) -> int:
+    """About how many tables begin on the page: for the eye, while pages are read."""
+    words = [word.text for word in page.words]
+    return sum(
+        1 for a, b in pairwise(words) if a.rstrip(".") in _heads(profile) and b[:1].isdigit() and b[-1:] in ":.–-"
+    )
+
+
+def _heads(profile: Profile) -> set[str]:
+    return {word.rstrip(".") for word in profile.data["captions"]}
 
 
 def _known(pages: list[Page]) -> frozenset[str]:
