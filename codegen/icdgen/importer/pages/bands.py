@@ -74,6 +74,8 @@ def rows(band: Band, header: Header, known: frozenset[str]) -> list[Row]:
     """The rows of a band whose cells are those of ``header``."""
     key = next((i for i, role in enumerate(header.roles) if role in KEYS[header.kind]), 0)
     found = lines(band.words)
+    if header.kind == "list" and (groups := [i for i, line in enumerate(found) if _is_group(line, band.edges, key)]):
+        return _around(band, found, groups, header, known)
     keyed = [i for i, line in enumerate(found) if is_key(_text_in(line, band.edges, key))]
     if len(keyed) <= 1:
         return [Row(band.texts(known), band.page)] if band.words else []
@@ -81,6 +83,27 @@ def rows(band: Band, header: Header, known: frozenset[str]) -> list[Row]:
     for first, last in _stretches(found, keyed):
         words = [word for line in found[first:last] for word in line.words]
         made.append(Row(Band(band.page, band.top, band.bottom, band.edges, words).texts(known), band.page))
+    return made
+
+
+def _is_group(line: Line, edges: list[float], key: int) -> bool:
+    """Whether the line is a group heading: words, not figures, in the column of ids."""
+    inside = _text_in(line, edges, key)
+    first = index_of((line.words[0].x0 + line.words[0].x1) / 2, edges)
+    return bool(inside) and first <= key and not any(is_key(word) for word in inside.split())
+
+
+def _around(band: Band, found: list[Line], groups: list[int], header: Header, known: frozenset[str]) -> list[Row]:
+    """The rows of a band in which group headings stand."""
+    made: list[Row] = []
+    start = 0
+    for index in [*groups, len(found)]:
+        words = [word for line in found[start:index] for word in line.words]
+        if words:
+            made += rows(Band(band.page, band.top, band.bottom, band.edges, words), header, known)
+        if index < len(found):
+            made.append(Row([found[index].text, *[""] * (len(band.edges) - 2)], band.page))
+        start = index + 1
     return made
 
 

@@ -32,7 +32,10 @@ class Region:
         for y, length in _lengths(self.across):
             if length >= WIDE * (self.x1 - self.x0):
                 found.append(y)
-        return distinct(found)
+        for rule in self.down:  # where a column ends or begins within the region, a row with other cells does
+            if self.x0 + 3 < rule.at < self.x1 - 3:
+                found += [rule.start, rule.end]
+        return distinct([y for y in found if self.top <= y <= self.bottom], 3.0)
 
     def separators(self, top: float, bottom: float) -> list[float]:
         """Where vertical rules part the band from ``top`` to ``bottom``; with the region's own edges."""

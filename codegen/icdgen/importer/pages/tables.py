@@ -6,11 +6,11 @@ import re
 from dataclasses import dataclass, field
 
 from icdgen.importer import headings, labels
-from icdgen.importer.document import Block, Heading, Row, Table, Text
+from icdgen.importer.document import Block, Header, Heading, Row, Table, Text
 from icdgen.importer.pages import bands
 from icdgen.importer.pages.bands import Band
 from icdgen.importer.pages.flow import Item, Mark, Piece
-from icdgen.importer.pages.lines import lines
+from icdgen.importer.pages.lines import Line, lines
 from icdgen.importer.profile import Profile
 
 _CONTINUED = re.compile(r"\s*[-–,]?\s*[(\[]?\s*(?:continued|cont\.|cont'd|contd\.?)\s*[)\]]?\s*\Z", re.I)
@@ -148,9 +148,8 @@ class Builder:
             if self.is_new(draft, texts):
                 draft = self.begin(piece)
             if draft.table.header is None:
-                if self.header(draft, band, waiting):
-                    continue
-                draft.table.head.append(Row(texts, band.page))
+                if not self.header(draft, band, waiting):
+                    draft.table.head += self.head(band, texts)
             elif not draft.table.rows and (whole := self.lower_half(draft, texts)):
                 draft.table.header = whole
             elif headings.repeats(texts, draft.table.header, self.profile):
@@ -186,20 +185,37 @@ class Builder:
             split = self.split(band)
             if split is None:
                 return False
-            found, rest = split
-            waiting.insert(0, rest)
+            above, found, rest = split
+            draft.table.head += [Row([line.text], band.page) for line in above]
+            if rest.words:
+                waiting.insert(0, rest)
         draft.table.header, draft.edges = found, band.edges
         return True
 
-    def split(self, band: Band):
-        """A band without rules between its rows: headings first, then the rest."""
+    def head(self, band: Band, texts: list[str]) -> list[Row]:
+        """A band above the headings: one row, or where that labels more, one for each line."""
+        whole = Row(texts, band.page)
+        single = [Row([line.text], band.page) for line in lines(band.words)]
+        return single if len(single) > 1 and self.labelled(single) > self.labelled([whole]) else [whole]
+
+    def labelled(self, rows: list[Row]) -> int:
+        """How many values have a label that the vocabulary knows."""
+        found = (labels.parse(" ".join(c for c in row.cells if c), self.profile) for row in rows)
+        return sum(1 for parts in found for one in parts if one.what and one.value)
+
+    def split(self, band: Band) -> tuple[list[Line], Header, Band] | None:
+        """A band without rules between its rows: lines above the headings, headings, the rest."""
         found = lines(band.words)
-        for count in range(min(4, len(found) - 1), 0, -1):
-            upper = Band(band.page, band.top, found[count].top, band.edges, [w for line in found[:count] for w in line.words])
-            header = headings.match(upper.texts(self.known), self.profile)
-            if header is not None:
-                words = [w for line in found[count:] for w in line.words]
-                return header, Band(band.page, found[count].top, band.bottom, band.edges, words)
+        for start in range(min(8, len(found))):
+            for count in range(min(4, len(found) - start), 0, -1):
+                words = [w for line in found[start : start + count] for w in line.words]
+                upper = Band(band.page, band.top, band.bottom, band.edges, words)
+                header = headings.match(upper.texts(self.known), self.profile)
+                if header is not None:
+                    rest = found[start + count :]
+                    words = [w for line in rest for w in line.words]
+                    top = rest[0].top if rest else band.bottom
+                    return found[:start], header, Band(band.page, top, band.bottom, band.edges, words)
         return None
 
     def body(self, draft: Draft, band: Band, torn: bool) -> None:
