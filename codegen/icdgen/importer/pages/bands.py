@@ -86,6 +86,16 @@ def rows(band: Band, header: Header, known: frozenset[str]) -> list[Row]:
     return made
 
 
+def has_keys(band: Band, header: Header) -> bool:
+    """Whether a line has a key in the key column and words in another one."""
+    key = next((i for i, role in enumerate(header.roles) if role in KEYS[header.kind]), 0)
+    for line in lines(band.words):
+        columns = {index_of((w.x0 + w.x1) / 2, band.edges) for w in line.words}
+        if len(columns) > 1 and is_key(_text_in(line, band.edges, key)):
+            return True
+    return False
+
+
 def _is_group(line: Line, edges: list[float], key: int) -> bool:
     """Whether the line is a group heading: words, not figures, in the column of ids."""
     inside = _text_in(line, edges, key)

@@ -99,7 +99,8 @@ def _river(words: list[Word], low: float, high: float, guess: float, before: flo
     for a, b, crossings in pieces:
         middle = (a + b) / 2
         empty = not any(before < x < middle for x in middles) or not any(middle < x < beyond for x in middles)
-        this = (crossings, empty, -(b - a))
+        begin = sum(1 for w in words if abs(w.x0 - b) < 1)  # words that begin together, as a column's do
+        this = (crossings, empty, -begin if begin > 2 else 0, -(b - a))
         if key is None or this < key:
             best, key = middle, this
     return best

@@ -251,7 +251,7 @@ class _Flow:
             return True
         if _HEADING.match(line.text) and self.stands_out(line) and line.size > size + 0.6:
             return True
-        if self.reads_on(line, found.spans):
+        if self.reads_on(line, found.spans) and not self.has_key(line, found):
             return True
         gap = line.top - rest[index - 1].bottom if index else 0
         return gap > 2.2 * line.size and not self.has_key(line, found)

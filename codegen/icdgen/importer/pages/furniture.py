@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable
 
 from icdgen.importer.pages.extract import Page
@@ -23,12 +23,13 @@ def without(pages: list[Page], lines: dict[int, list[Line]], keep: Callable[[str
                 for key in _keys(line):
                     seen[key].add(page.number)
     needed = max(2, round(0.3 * len(pages)))
+    offset = _offset(pages, lines)
     kept = {}
     for page in pages:
         rest = []
         for line in lines[page.number]:
             repeated = any(len(seen[key]) >= needed for key in _keys(line)) if _in_margin(line, page) else False
-            if keep(line.text) or not (repeated or _numbers_the_page(line, page)):
+            if keep(line.text) or not (repeated or _numbers_the_page(line, page, offset)):
                 rest.append(line)
         kept[page.number] = rest
     return kept
@@ -44,8 +45,22 @@ def _keys(line: Line) -> list[tuple[str, int]]:
     return [(text, int(line.middle // 4)), (text, -1 - int((line.middle + 2) // 4))]
 
 
-def _numbers_the_page(line: Line, page: Page) -> bool:
+def _numbers_the_page(line: Line, page: Page, offset: int | None) -> bool:
     if not _in_margin(line, page):
         return False
     match = _NUMBERING.match(line.text.strip())
-    return match is not None and (abs(int(match[1]) - page.number) <= 30 and len(match[1]) < 5)
+    if match is None:
+        return False
+    return not line.text.strip().isdigit() or (offset is not None and int(match[1]) == page.number + offset)
+
+
+def _offset(pages: list[Page], lines: dict[int, list[Line]]) -> int | None:
+    """By how much the printed page numbers differ from the count; None where pages are not numbered by bare figures."""
+    found: Counter = Counter()
+    for page in pages:
+        figures = {line.text.strip() for line in lines[page.number] if _in_margin(line, page)}
+        found.update({int(text) - page.number for text in figures if text.isdigit() and len(text) < 5})
+    if not found:
+        return None
+    offset, count = found.most_common(1)[0]
+    return offset if count >= max(2, len(pages) / 2) or (len(pages) == 1 and offset == 0) else None

@@ -12,6 +12,7 @@ from icdgen.importer.pages.bands import Band
 from icdgen.importer.pages.flow import Item, Mark, Piece
 from icdgen.importer.pages.lines import Line, lines
 from icdgen.importer.profile import Profile
+from icdgen.importer.words import squeezed
 
 _CONTINUED = re.compile(r"\s*[-–,]?\s*[(\[]?\s*(?:continued|cont\.|cont'd|contd\.?)\s*[)\]]?\s*\Z", re.I)
 FAR = 4  # lines of text between a caption and its table; more, and it is none
@@ -72,7 +73,7 @@ class Builder:
             if isinstance(item, Draft):
                 break
             match = self.profile.caption.match(item.text) if item.kind == "caption" else None
-            if match and (_CONTINUED.search(item.text) or self.same_number(match["number"])):
+            if match and (_CONTINUED.search(item.text) or self.repeated(item)):
                 number = match["number"]
                 continue
             if item.kind != "text" or item.size > 8.6:
@@ -94,20 +95,23 @@ class Builder:
                 self.out.pop()
         return draft
 
-    def same_number(self, number: str) -> bool:
-        """Whether the last caption before has this number too."""
-        seen = [
-            m["number"] for item in self.out
-            if isinstance(item, Mark) and item.kind == "caption" and (m := self.profile.caption.match(item.text))
-        ]  # fmt: skip
-        return len(seen) > 1 and seen[-2] == number
+    def repeated(self, mark: Mark) -> bool:
+        """Whether an earlier caption has this number and title too."""
+        return any(
+            other is not mark and isinstance(other, Mark) and other.kind == "caption"
+            and squeezed(other.text) == squeezed(mark.text)
+            for other in self.out
+        )  # fmt: skip
 
     def first_is_id(self, piece: Piece) -> bool:
         """Whether the piece begins a message's table: with its id."""
         if not piece.ruled:
             return bool(piece.head) and labels.begins(piece.head[0], self.profile)
         first = next((band for band in piece.bands if band.words), None)
-        return first is not None and labels.begins(" ".join(t for t in first.texts(self.known) if t), self.profile)
+        if first is None:
+            return False
+        texts = (" ".join(t for t in first.texts(self.known) if t), lines(first.words)[0].text)
+        return any(labels.begins(text, self.profile) for text in texts)
 
     def fits(self, draft: Draft, piece: Piece, follows: bool) -> bool:
         header = draft.table.header
@@ -220,8 +224,12 @@ class Builder:
 
     def body(self, draft: Draft, band: Band, torn: bool) -> None:
         assert draft.table.header is not None and draft.edges is not None
-        made = bands.rows(bands.aligned(band, draft.edges), draft.table.header, self.known)
-        draft.table.rows += made
+        header = draft.table.header
+        if len(band.edges) < len(draft.edges):
+            plain = Band(band.page, band.top, band.bottom, draft.edges, band.words)
+            if bands.has_keys(plain, header):  # rules part the headings only, the rows stand below them all the same
+                band = plain
+        draft.table.rows += bands.rows(bands.aligned(band, draft.edges), header, self.known)
 
     # --- without vertical rules ------------------------------------------------------------------------------------
 
