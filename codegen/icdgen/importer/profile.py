@@ -53,6 +53,12 @@ class Profile:
         }
 
     @cached_property
+    def heading_words(self) -> frozenset[str]:
+        """All words of all headings."""
+        roles = (roles for kinds in self.headings.values() for roles in kinds.values())
+        return frozenset(word for headings in roles for heading in headings for word in heading)
+
+    @cached_property
     def needs(self) -> dict[str, list[tuple[str, ...]]]:
         """Kind of table -> groups of roles, one of each group must be there."""
         return {

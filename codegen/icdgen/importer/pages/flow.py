@@ -15,6 +15,7 @@ from icdgen.importer.pages.extract import Page, Word
 from icdgen.importer.pages.lines import Line, lines, runs
 from icdgen.importer.pages.rules import Region, regions, row_marks
 from icdgen.importer.profile import Profile
+from icdgen.importer.words import folded
 
 _HEADING = re.compile(r"(?P<number>[0-9]+(?:\.[0-9]+)*)\.?\s+(?P<text>[A-Z].*)\Z")
 _CONTINUED = re.compile(r"\(?\s*(?:table )?continue[ds]\b.*|.*\bcontinued (?:on|from) (?:the )?(?:next|previous) page.*", re.I)
@@ -84,8 +85,10 @@ def _body(loose: dict[int, list[Line]]) -> Type:
 
 def _is_of_a_table(text: str, profile: Profile) -> bool:
     words = text.split()
+    parts = folded(text)
     return (
-        profile.caption.match(text) is not None
+        (bool(parts) and all(part in profile.heading_words for part in parts))
+        or profile.caption.match(text) is not None
         or headings.segmented(words, profile) is not None
         or labels.begins(text, profile)
     )
