@@ -78,12 +78,15 @@ def boundaries(spans: list[tuple[float, float]], lines: list[Line], x0: float, x
     for index, (low, high) in enumerate(zip(centres, centres[1:], strict=False)):
         beyond = centres[index + 2] if index + 2 < len(centres) else last
         guess = (spans[index][1] + spans[index + 1][0]) / 2
-        edges.append(_river(words, low, high, guess, edges[-1], beyond))
+        edges.append(_river(words, low, high, guess, edges[-1], beyond, spans[index + 1][0]))
     return [*edges, last]
 
 
-def _river(words: list[Word], low: float, high: float, guess: float, before: float, beyond: float) -> float:
-    """The middle of the widest gap that the fewest words cross, with words on both sides of it if possible."""
+def _river(
+    words: list[Word], low: float, high: float, guess: float, before: float, beyond: float, heading: float
+) -> float:
+    """The middle of the gap that the fewest words cross: one with words on both sides of it, then one that ends where
+    the heading begins, then where most words begin, then the widest."""
     middles = [(w.x0 + w.x1) / 2 for w in words]
     near = [(w.x0, w.x1) for w in words if w.x1 > low and w.x0 < high]
     points = sorted({low, high, *(x for span in near for x in span if low < x < high)})
@@ -100,7 +103,9 @@ def _river(words: list[Word], low: float, high: float, guess: float, before: flo
         middle = (a + b) / 2
         empty = not any(before < x < middle for x in middles) or not any(middle < x < beyond for x in middles)
         begin = sum(1 for w in words if abs(w.x0 - b) < 1)  # words that begin together, as a column's do
-        this = (crossings, empty, -begin if begin > 2 else 0, -(b - a))
+        headed = abs(b - heading) < 1.5
+        narrow = bool(words) and b - a < 0.5 * words[0].size
+        this = (crossings, not headed, empty, narrow, -begin if begin > 2 else 0, -(b - a))
         if key is None or this < key:
             best, key = middle, this
     return best

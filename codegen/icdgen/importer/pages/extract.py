@@ -91,7 +91,10 @@ def _size(chars: list[dict]) -> float:
 
 def _style(word: dict) -> str:
     first = word["chars"][0]
-    return f"{first['fontname'].rsplit('+', 1)[-1]} {first.get('non_stroking_color')}"
+    colour = first.get("non_stroking_color")
+    values = colour if isinstance(colour, (tuple, list)) else (colour,)
+    shade = " ".join(f"{v:.2f}" for v in values if isinstance(v, (int, float)))
+    return f"{first['fontname'].rsplit('+', 1)[-1]} {shade}"
 
 
 def _text(word: dict) -> str:

@@ -11,9 +11,9 @@ from icdgen.importer.document import Box
 from icdgen.importer.pages import columns, furniture
 from icdgen.importer.pages.bands import Band, is_key
 from icdgen.importer.pages.columns import Columns
-from icdgen.importer.pages.extract import Page, Word
+from icdgen.importer.pages.extract import Page
 from icdgen.importer.pages.lines import Line, lines, runs
-from icdgen.importer.pages.rules import Region, regions, row_marks
+from icdgen.importer.pages.rules import Region, regions
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded
 
@@ -31,6 +31,9 @@ class Piece:
     columns: Columns | None = None
     head: list[str] = field(default_factory=list)  # lines above the headings, where no rules part them
     lines: list[Line] = field(default_factory=list)  # of the body, where no rules part the columns
+    page: Page | None = None  # on which the body stands, where no rules part the columns
+    top: float = 0.0  # of the body
+    extent: tuple[float, float] = (0.0, 0.0)  # from left to right
 
 
 @dataclass(slots=True)
@@ -100,7 +103,7 @@ class _Flow:
     def __init__(self, profile: Profile, body: Type) -> None:
         self.profile, self.body = profile, body
         self.open: Columns | None = None  # of a table without vertical rules that the next page may continue
-        self.edges: list[float] = []
+        self.extent = (0.0, 0.0)  # of that table, from left to right
 
     def page(self, page: Page, ruled: list[Region], loose: list[Line]) -> list[Item]:
         made: list[Item] = []
@@ -209,29 +212,14 @@ class _Flow:
             return length, Piece(_box(page, rest[:length]), [], ruled=False, head=head)
         start = length + found.lines
         end = self.end(page, rest, start, found)
-        spans = found.spans
         x0, x1 = min(line.x0 for line in rest[:start]), max(line.x1 for line in rest[:start])
-        edges = columns.boundaries(spans, rest[length:end], x0, x1)
         piece = Piece(
-            _box(page, rest[:end]), self.bands(page, rest[start:end], edges, rest[start - 1].bottom), ruled=False,
-            columns=found, head=head, lines=rest[start:end],
+            _box(page, rest[:end]), [], ruled=False, columns=found, head=head, lines=rest[start:end], page=page,
+            top=rest[start - 1].bottom, extent=(x0, x1),
         )  # fmt: skip
-        self.open, self.edges = found, edges
+        self.open = found
+        self.extent = (min(x0, piece.box.x0), max(x1, piece.box.x1))
         return end, piece
-
-    def bands(self, page: Page, body: list[Line], edges: list[float], top: float) -> list[Band]:
-        """The body cut where rules or shading cut it."""
-        if not body:
-            return []
-        bottom = body[-1].bottom
-        marks = [y for y in row_marks(page, edges[0], edges[-1]) if top < y < bottom]
-        cuts = [top, *marks, bottom + 1]
-        made = []
-        for upper, lower in zip(cuts, cuts[1:], strict=False):
-            words: list[Word] = [w for line in body for w in line.words if upper <= w.middle < lower]
-            if words:
-                made.append(Band(page.number, upper, lower, edges, words))
-        return made
 
     def end(self, page: Page, rest: list[Line], start: int, found: Columns) -> int:
         """The index of the first line that is no longer of the table."""
@@ -278,21 +266,26 @@ class _Flow:
     def continues(self, rest: list[Line]) -> bool:
         """Whether the lines at the top of a page go on with the table before."""
         line = rest[0]
-        if self.open is None or not self.edges:
+        if self.open is None:
             return False
-        if line.x0 < self.edges[0] - 8 or line.x1 > self.edges[-1] + 8 or self.reads_on(line, self.open.spans):
+        if line.x0 < self.extent[0] - 8:
             return False
-        if _HEADING.match(line.text) and self.stands_out(line):
+        if self.reads_on(line, self.open.spans) and not self.has_key(line, self.open):
+            return False
+        if _HEADING.match(line.text) and line.size > self.body.size + 0.6:
             return False
         near = rest[:8]
-        return any(self.has_key(one, self.open) for one in near) or _begins_in_a_column(line, self.open.spans)
+        return (
+            any(self.has_key(one, self.open) for one in near)
+            or _begins_in_a_column(line, self.open.spans)
+            or len(runs(line, 0.9)) >= min(3, len(self.open.spans))
+        )
 
     def continuation(self, page: Page, rest: list[Line]) -> tuple[int, Piece]:
         assert self.open is not None
         end = max(1, self.end(page, rest, 0, self.open))
         piece = Piece(
-            _box(page, rest[:end]), self.bands(page, rest[:end], self.edges, rest[0].top - 1), ruled=False,
-            lines=rest[:end],
+            _box(page, rest[:end]), [], ruled=False, lines=rest[:end], page=page, top=rest[0].top - 1, extent=self.extent
         )  # fmt: skip
         return end, piece
 

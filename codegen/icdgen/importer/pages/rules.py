@@ -107,6 +107,16 @@ def regions(page: Page) -> list[Region]:
                 and steep.start - REACH <= flat.at <= steep.end + REACH
             ):
                 parent[root(i)] = root(j)
+    floating = {i for i in range(len(across), len(parent)) if root(i) == i and parent.count(i) == 1}
+    for i, one in enumerate(down, len(across)):  # the middle part of a framed table that goes over three pages
+        for j, other in enumerate(down[: i - len(across)], len(across)):
+            if abs(one.start - other.start) < REACH and abs(one.end - other.end) < REACH:
+                parent[root(i)] = root(j)
+                if i in floating and j in floating:  # its sides: what stands between them is of the same table
+                    low, high = sorted((one.at, other.at))
+                    for k, inner in enumerate(down, len(across)):
+                        if low < inner.at < high and inner.start >= one.start - REACH and inner.end <= one.end + REACH:
+                            parent[root(k)] = root(i)
     groups: dict[int, tuple[list[Rule], list[Rule]]] = {}
     for i, rule in enumerate([*across, *down]):
         groups.setdefault(root(i), ([], []))[i >= len(across)].append(rule)

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from icdgen.importer import headings, labels
 from icdgen.importer.document import Block, Header, Heading, Row, Table, Text
-from icdgen.importer.pages import bands
+from icdgen.importer.pages import bands, columns
 from icdgen.importer.pages.bands import Band
 from icdgen.importer.pages.flow import Item, Mark, Piece
 from icdgen.importer.pages.lines import Line, lines
+from icdgen.importer.pages.rules import row_marks
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import squeezed
 
@@ -24,8 +26,7 @@ class Draft:
 
     table: Table
     edges: list[float] | None = None
-    size: float = 0.0
-    place: int = 0  # of its first piece among the items
+    loose: list[Piece] = field(default_factory=list)  # pieces without vertical rules
 
     @property
     def last_page(self) -> int:
@@ -235,19 +236,31 @@ class Builder:
 
     def loose(self, draft: Draft, piece: Piece) -> None:
         draft.table.head += [Row([text], piece.box.page) for text in piece.head]
-        if piece.columns is not None:
-            if draft.table.header is None:
-                draft.table.header = piece.columns.header
-        if draft.table.header is None:
+        if piece.columns is not None and draft.table.header is None:
+            draft.table.header = piece.columns.header
+        if draft.table.header is not None:
+            draft.loose.append(piece)
+
+    def cut(self, draft: Draft) -> None:
+        """The rows of pieces without vertical rules, once all lines of the table tell where its columns are."""
+        spans = next((piece.columns.spans for piece in draft.loose if piece.columns is not None), None)
+        header = draft.table.header
+        if spans is None or header is None:
             return
-        for band in piece.bands:
-            if headings.repeats(band.texts(self.known), draft.table.header, self.profile):
-                continue
-            draft.table.rows += bands.rows(band, draft.table.header, self.known)
+        body = [line for piece in draft.loose for line in piece.lines]
+        for piece in draft.loose:
+            own = piece.columns.spans if piece.columns is not None and len(piece.columns.spans) == len(spans) else spans
+            edges = columns.boundaries(own, body, *piece.extent)
+            for band in _bands(piece, edges):
+                if not headings.repeats(band.texts(self.known), header, self.profile):
+                    draft.table.rows += bands.rows(band, header, self.known)
 
     # --- captions --------------------------------------------------------------------------------------------------
 
     def captioned(self) -> list[Block]:
+        for item in self.out:
+            if isinstance(item, Draft) and item.loose:
+                self.cut(item)
         captions = [i for i, item in enumerate(self.out) if isinstance(item, Mark) and item.kind == "caption"]
         after = {i: self.table_from(i, 1) for i in captions}
         before = {i: self.table_from(i, -1) for i in captions}
@@ -312,6 +325,20 @@ class Builder:
         table.number = int(re.split("[-.]", number)[-1]) if not number.isdigit() else int(number)
         table.caption = _CONTINUED.sub("", match["title"]).strip()
         table.page = min(mark.box.page, table.page or mark.box.page)
+
+
+def _bands(piece: Piece, edges: list[float]) -> list[Band]:
+    """The body of a piece, cut where rules or shading cut it."""
+    if not piece.lines or piece.page is None:
+        return []
+    top, bottom = piece.top, piece.lines[-1].bottom
+    cuts = [top, *(y for y in row_marks(piece.page, edges[0], edges[-1]) if top < y < bottom), bottom + 1]
+    made = []
+    for upper, lower in pairwise(cuts):
+        words = [w for line in piece.lines for w in line.words if upper <= w.middle < lower]
+        if words:
+            made.append(Band(piece.page.number, upper, lower, edges, words))
+    return made
 
 
 def _stacked(upper: Band, lower: Band, known: frozenset[str]) -> list[str] | None:
