@@ -51,4 +51,20 @@ LAYOUTS: dict[str, Draw] = {
             caption_style="BI", repeat=False, padding=0.8, widths=(16, 10, 10, 26, 12, 40),
         ),
     ),
+    # Held back until the others were read without a difference.
+    "small": partial(
+        freehand.draw,
+        look=freehand.Look(
+            page="A5", font="Vera", size=6.5, borders="HORIZONTAL_LINES", mark=" — ", caption_style="I", figures="RIGHT",
+            two_lines=True, padding=1.4, widths=(18, 12, 12, 24, 12, 32),
+        ),
+    ),
+    "ligatures": partial(
+        platypus.draw,
+        look=platypus.Look(
+            page=landscape(LETTER), margin=50, font="Vera", bold="VeraBd", slanted="VeraIt", size=8.5, caption_below=True,
+            mark=" | ", word="Tab.", caption_font="bold", caption_center=True, figures="right", middle=True, stacked=True,
+            repeat=False, ligatures=True, padding=4,
+        ),
+    ),
 }  # fmt: skip

@@ -10,6 +10,8 @@ from reportlab.lib import colors
 from reportlab.lib.enums import TA_CENTER, TA_JUSTIFY, TA_LEFT, TA_RIGHT
 from reportlab.lib.pagesizes import A4
 from reportlab.lib.styles import ParagraphStyle
+from reportlab.pdfbase import pdfmetrics
+from reportlab.pdfbase.ttfonts import TTFont
 from reportlab.platypus import KeepTogether, Paragraph, Preformatted, SimpleDocTemplate, Spacer, Table, TableStyle
 
 from tests.importer.manuals.content import FIELD_TITLES, Manual, MessageTable, PlainTable, Prose
@@ -48,6 +50,9 @@ class Look:
 
 def draw(manual: Manual, path: Path, look: Look) -> None:
     """Writes the PDF."""
+    if look.font == "Vera":
+        for name in ("Vera", "VeraBd", "VeraIt"):
+            pdfmetrics.registerFont(TTFont(name, f"{name}.ttf"))
     artist = _Artist(look)
     story: list = []
     for part in manual.parts:

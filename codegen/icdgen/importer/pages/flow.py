@@ -13,7 +13,7 @@ from icdgen.importer.pages.bands import Band, is_key
 from icdgen.importer.pages.columns import Columns
 from icdgen.importer.pages.extract import Page
 from icdgen.importer.pages.lines import Line, lines, runs
-from icdgen.importer.pages.rules import Region, regions
+from icdgen.importer.pages.rules import Region, joined, regions
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded
 
@@ -305,7 +305,7 @@ def _lowest_rule(page: Page, rest: list[Line], start: int, found: Columns) -> fl
     """The lowest horizontal rule of the table; nothing of it stands below. Infinite where it has no rule below."""
     x0, x1 = found.spans[0][0], found.spans[-1][1]
     top = rest[start - 1].bottom - 1 if start else 0
-    wide = [r for r in page.across if r.start <= x0 + 12 and r.end >= x1 - 12 and r.at > top]
+    wide = [r for r in joined(page.across) if r.start <= x0 + 12 and r.end >= x1 - 12 and r.at > top]
     wide = [r for r in wide if r.at <= rest[-1].bottom + 8]
     head = [r for r in wide if start < len(rest) and r.at < rest[start].top + 2] if start < len(rest) else wide
     below = [r.at for r in wide if r not in head]
