@@ -227,7 +227,8 @@ class _Flow:
         size = rest[start].size if start < len(rest) else 0
         for index in range(start, len(rest)):
             line = rest[index]
-            if line.middle > limit or self.ends(rest, index, found, size):
+            below = line.middle > limit and not self.has_key(line, found) and not _begins_in_a_column(line, found.spans)
+            if below or self.ends(rest, index, found, size):
                 return index
         return len(rest)
 
