@@ -51,11 +51,15 @@ def _message(wanted: dict, got: dict, tables: bool) -> list[str]:
 
 def _enum(wanted: dict, got: dict, tables: bool) -> list[str]:
     found = _same(
-        "members", [(m["value"], m["name"]) for m in wanted["members"]], [(m["value"], m["name"]) for m in got["members"]]
+        "members",
+        [(m["value"], m["name"]) for m in wanted["members"]],
+        [(m["value"], m["name"]) for m in got["members"]],
     )
     if tables:
         found += _same("table", _table(wanted), _table(got))
-        found += _same("also", [s.get("table") for s in wanted.get("also", [])], [s.get("table") for s in got.get("also", [])])
+        found += _same(
+            "also", [s.get("table") for s in wanted.get("also", [])], [s.get("table") for s in got.get("also", [])]
+        )
     return found
 
 

@@ -17,10 +17,21 @@ from icdgen.errors import UserError
 @click.command("import")
 @click.argument("manual", type=PATH)
 @click.option("--out", type=PATH, default=Path("icd"), show_default=True, help="Folder for the ICDs, one file a node.")
-@click.option("--profile", "words", metavar="PROFILE", help="Vocabulary of the manual: a YAML file, or the name of a shipped one.")
-@click.option("--update", is_flag=True, help="Lay the manual over ICDs that exist; errata, identifiers, summaries and comments stay.")
+@click.option(
+    "--profile", "words", metavar="PROFILE", help="Vocabulary of the manual: a YAML file, or the name of a shipped one."
+)
+@click.option(
+    "--update",
+    is_flag=True,
+    help="Lay the manual over ICDs that exist; errata, identifiers, summaries and comments stay.",
+)
 @click.option("--dry-run", is_flag=True, help="Write no ICD; say what would be written or changed.")
-@click.option("--report", "page", type=PATH, help="Write a page (HTML) with each doubtful table as a picture beside what was read.")
+@click.option(
+    "--report",
+    "page",
+    type=PATH,
+    help="Write a page (HTML) with each doubtful table as a picture beside what was read.",
+)
 @click.option("--descriptions", is_flag=True, help="Hold the manual's descriptions as summaries.")
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @click.option("--jobs", type=click.IntRange(1, 64), help="Processes that read pages (default: one a core).")
@@ -51,7 +62,11 @@ def import_(manual, out, words, update, dry_run, page, descriptions, form, jobs)
             click.echo(console.report(result, True), color=True)
         else:
             say(console.report(result))
-        say("\n".join(line.replace(": written;", ": would be written;") if dry_run else line for line in console.files(result)))
+        say(
+            "\n".join(
+                line.replace(": written;", ": would be written;") if dry_run else line for line in console.files(result)
+            )
+        )
         if not dry_run:
             _next_step(result)
     sys.exit(1 if result.failed else 0)

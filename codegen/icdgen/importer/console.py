@@ -50,7 +50,9 @@ def summary(result: Result) -> list[str]:
     pages = f"{result.document.pages:,} pages, " if result.document.pages else ""
     sure = result.sureness()
     severities = Counter(t.severity for t in result.troubles)
-    found = ", ".join(f"{severities[s]} {s}{'s' if severities[s] != 1 else ''}" for s in ("error", "warning", "note") if severities[s])
+    found = ", ".join(
+        f"{severities[s]} {s}{'s' if severities[s] != 1 else ''}" for s in ("error", "warning", "note") if severities[s]
+    )
     return [
         f"{pages}{len(result.survey.found):,} tables: " + ", ".join(parts),
         "read: " + ", ".join(f"{sure[level]} {level}" for level in (CERTAIN, LIKELY, DOUBTFUL) if sure[level]),

@@ -12,7 +12,11 @@ from icdgen.importer.words import number
 def mend(document: Document, profile: Profile) -> None:
     """Replaces damaged words and puts lost group headings back."""
     entries = profile.data["damage"]
-    words = [(re.compile(rf"(?<!\w){re.escape(e['printed'])}(?!\w)"), e["meant"], e["printed"]) for e in entries if "printed" in e]
+    words = [
+        (re.compile(rf"(?<!\w){re.escape(e['printed'])}(?!\w)"), e["meant"], e["printed"])
+        for e in entries
+        if "printed" in e
+    ]
     for table in document.tables:
         for pattern, meant, printed in words:
             _words(table, pattern, meant, printed, document)

@@ -7,9 +7,7 @@ from icdgen.icd.fmt import format_text, kinds, write
 from icdgen.icd.fmt.tree import Branch, Child, Text
 from icdgen.importer.trees import Spelled
 
-SCHEMA_LINE = (
-    "# yaml-language-server: $schema=https://raw.githubusercontent.com/icdgen/icdgen/main/codegen/icdgen/icd/schema.json"
-)
+SCHEMA_LINE = "# yaml-language-server: $schema=https://raw.githubusercontent.com/icdgen/icdgen/main/codegen/icdgen/icd/schema.json"
 
 
 def text(tree: dict, header: list[str] | None = None) -> str:

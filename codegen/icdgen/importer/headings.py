@@ -78,9 +78,11 @@ def repeats(cells: list[str], header: Header, profile: Profile) -> bool:
     if len(given) >= 2 and _is_lower_half(given, titles):
         return True
     found = match(cells, profile)
-    return found is not None and found.kind == header.kind and [r for r in found.roles if r] == [
-        r for r in header.roles if r
-    ]
+    return (
+        found is not None
+        and found.kind == header.kind
+        and [r for r in found.roles if r] == [r for r in header.roles if r]
+    )
 
 
 def _is_lower_half(given: list[tuple[str, ...]], titles: list[tuple[str, ...]]) -> bool:

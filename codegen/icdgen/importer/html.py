@@ -65,7 +65,9 @@ def _list(troubles: list[Trouble]) -> str:
     for t in troubles:
         place = f" (page {t.spot.page})" if t.spot.page else f" (line {t.spot.line})" if t.spot.line else ""
         help = f" <i>{html.escape(t.help)}.</i>" if t.help else ""
-        items.append(f'<li class="{t.severity}"><b>{t.severity}</b> {t.code}{place}: {html.escape(t.message)}{help}</li>')
+        items.append(
+            f'<li class="{t.severity}"><b>{t.severity}</b> {t.code}{place}: {html.escape(t.message)}{help}</li>'
+        )
     return "<ul>" + "\n".join(items) + "</ul>"
 
 

@@ -236,7 +236,8 @@ _DAMAGE = ({"printed": str, "meant": str}, {"table": int, "before": int, "group"
 def _check_damage(value: object, place, add) -> None:
     for item in value if isinstance(value, list) else [None]:
         if not isinstance(item, Map) or not any(
-            item.keys() == form.keys() and all(type(item[key]) is kind for key, kind in form.items()) for form in _DAMAGE
+            item.keys() == form.keys() and all(type(item[key]) is kind for key, kind in form.items())
+            for form in _DAMAGE
         ):
             forms = "{printed: ..., meant: ...} or {table: 97, before: 171, group: ...}"
             add(f"each of `damage` must be {forms}", getattr(item, "place", place))

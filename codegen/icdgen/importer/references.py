@@ -64,7 +64,13 @@ def _name(message: ReadMessage, row: Listed) -> None:
 
 
 def _compare(message: ReadMessage, row: Listed, troubles: list[Trouble]) -> None:
-    mine = {"name": message.name, "length": message.length, "id": message.id, "set_id": message.set_id, "get_id": message.get_id}
+    mine = {
+        "name": message.name,
+        "length": message.length,
+        "id": message.id,
+        "set_id": message.set_id,
+        "get_id": message.get_id,
+    }
     theirs = {"name": row.name, "length": row.length, "id": row.id, "set_id": row.set_id, "get_id": row.get_id}
     for key, value in theirs.items():
         own = mine[key]
@@ -164,7 +170,9 @@ def complete(node: NodeParts, troubles: list[Trouble]) -> None:
             continue
         if not message.name:
             message.name = f"Table {message.table.number}" if message.table.number else f"Message {message.id}"
-            troubles.append(Trouble("IMP025", f"{title}: nothing names the message", spot, "name it in the ICD", "error"))
+            troubles.append(
+                Trouble("IMP025", f"{title}: nothing names the message", spot, "name it in the ICD", "error")
+            )
         needed = max((f.at + f.bits + 7) // 8 for f in message.fields) if message.fields else 0
         if message.length is None:
             message.length = needed

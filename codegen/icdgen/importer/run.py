@@ -38,7 +38,9 @@ class Result:
     @property
     def troubles(self) -> list[Trouble]:
         """All findings in the order of the manual, each once."""
-        return sorted(set(self.survey.troubles), key=lambda t: (t.spot.page or 0, t.spot.line or 0, t.spot.table or 0, t.code))
+        return sorted(
+            set(self.survey.troubles), key=lambda t: (t.spot.page or 0, t.spot.line or 0, t.spot.table or 0, t.code)
+        )
 
     @property
     def failed(self) -> bool:
@@ -111,4 +113,6 @@ def write(result: Result) -> None:
         try:
             replace(Path(os.path.realpath(target.path)), target.text.encode("utf-8"))
         except OSError as error:
-            raise UserError(f"cannot write {target.path}: {error.strerror}", "choose another folder with --out") from None
+            raise UserError(
+                f"cannot write {target.path}: {error.strerror}", "choose another folder with --out"
+            ) from None

@@ -152,7 +152,9 @@ _MATCHES: dict[str, list[Callable[[dict], object]]] = {
 def _added(root: Branch, key: str, by: str, items: list[dict], changes: list[str]) -> None:
     """Entries that are not there yet."""
     child = _child(root, key)
-    have = {_plain(c.value).get(by) for c in child.value.children} if child and isinstance(child.value, Branch) else set()
+    have = (
+        {_plain(c.value).get(by) for c in child.value.children} if child and isinstance(child.value, Branch) else set()
+    )
     new = [item for item in items if item[by] not in have]
     if not new:
         return

@@ -155,7 +155,8 @@ def _message(message: dict, number: int, enum_tables: dict[str, int]) -> Message
         ids = ("ID", str(message["id"]))
     length = "Frame Length (bytes)" if kind == "telemetry" else "Parameters Length (bytes)"
     rows = [
-        [str(f["at"]), str(f["bits"]), f["name"], _type(f), _description(f, enum_tables)] for f in message.get("fields", [])
+        [str(f["at"]), str(f["bits"]), f["name"], _type(f), _description(f, enum_tables)]
+        for f in message.get("fields", [])
     ]
     return MessageTable(
         number, f"{message['name']} {_CAPTIONS[kind]}", [ids, (length, str(message["length"]))],
@@ -208,12 +209,17 @@ def _list(tree: dict, kind: str, title: str, tables: dict[str, int]) -> PlainTab
 
 def _enum(enum: dict, number: int) -> PlainTable:
     rows = [[str(m["value"]), m["name"], f"{m['name']} is chosen"] for m in enum["members"]]
-    return PlainTable(number, f"{enum['name']} Enumeration Values", "enumeration", ["Numeric Value", "Name", "Description"], rows)
+    return PlainTable(
+        number, f"{enum['name']} Enumeration Values", "enumeration", ["Numeric Value", "Name", "Description"], rows
+    )
 
 
 def _log(loggable: list[dict], number: int) -> PlainTable:
     size = max(row["bit"] for row in loggable) // 8 + 1
     rows = [
-        [(1 << row["bit"]).to_bytes(size, "little").hex(" ").upper(), str(row["id"]), row.get("name", "")] for row in loggable
+        [(1 << row["bit"]).to_bytes(size, "little").hex(" ").upper(), str(row["id"]), row.get("name", "")]
+        for row in loggable
     ]
-    return PlainTable(number, "Loggable Telemetry Frames", "loggable", ["Mask", "Telemetry ID", "Telemetry Frame"], rows)
+    return PlainTable(
+        number, "Loggable Telemetry Frames", "loggable", ["Mask", "Telemetry ID", "Telemetry Frame"], rows
+    )

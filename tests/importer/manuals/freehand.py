@@ -109,7 +109,9 @@ class _Artist:
             self.pdf.set_font("Courier", size=8)
         else:
             self.font("", 1)
-        self.pdf.multi_cell(0, 5, part.text, new_x="LMARGIN", new_y="NEXT", border=1 if part.style == "code" else 0, align="L")
+        self.pdf.multi_cell(
+            0, 5, part.text, new_x="LMARGIN", new_y="NEXT", border=1 if part.style == "code" else 0, align="L"
+        )
         self.pdf.ln(3)
 
     def table(self, widths: tuple[float, ...], head: bool):

@@ -76,7 +76,9 @@ class _Artist:
         self.look = look
         self.width = look.page[0] - 2 * look.margin
         base = {"fontName": look.font, "fontSize": look.size, "leading": look.size * 1.22}
-        self.body = ParagraphStyle("body", **base | {"fontSize": look.size + 1, "leading": (look.size + 1) * 1.25}, spaceAfter=6)
+        self.body = ParagraphStyle(
+            "body", **base | {"fontSize": look.size + 1, "leading": (look.size + 1) * 1.25}, spaceAfter=6
+        )
         self.cell = ParagraphStyle("cell", **base, alignment=_ALIGN[look.text])
         self.figure = ParagraphStyle("figure", **base, alignment=_ALIGN[look.figures])
         self.title = ParagraphStyle("title", **base | {"fontName": look.bold}, alignment=_ALIGN["left"])
@@ -86,7 +88,9 @@ class _Artist:
             "caption", **base | {"fontName": font}, spaceBefore=8, spaceAfter=4,
             alignment=TA_CENTER if look.caption_center else TA_LEFT,
         )  # fmt: skip
-        self.heading = ParagraphStyle("heading", fontName=look.bold, fontSize=look.size + 5, leading=look.size + 9, spaceBefore=10, spaceAfter=6)
+        self.heading = ParagraphStyle(
+            "heading", fontName=look.bold, fontSize=look.size + 5, leading=look.size + 9, spaceBefore=10, spaceAfter=6
+        )
 
     def part(self, part) -> list:
         if isinstance(part, Prose):
@@ -136,7 +140,9 @@ class _Artist:
             rows.append([Paragraph(first, self.title), Paragraph(one, self.cell), Paragraph(second, self.title), "",
                          Paragraph(two, self.cell), ""])  # fmt: skip
             style += [("SPAN", (2, 0), (3, 0)), ("SPAN", (4, 0), (5, 0))]
-        rows.append([Paragraph("Description", self.title), Paragraph(self.markup(part.description), self.cell), *[""] * 4])
+        rows.append(
+            [Paragraph("Description", self.title), Paragraph(self.markup(part.description), self.cell), *[""] * 4]
+        )
         style.append(("SPAN", (1, len(rows) - 1), (-1, len(rows) - 1)))
         head = len(rows)
         if part.rows:
@@ -147,14 +153,18 @@ class _Artist:
                 side = Paragraph(part.label, self.title) if look.middle and index == middle else ""
                 rows.append([side, *self.cells(row, {0, 1})])
             if look.rules == "grid":
-                style.append(("LINEBELOW", (0, head), (0, -2), 0.1, colors.white) if False else ("NOSPLIT", (0, 0), (0, 0)))
+                style.append(
+                    ("LINEBELOW", (0, head), (0, -2), 0.1, colors.white) if False else ("NOSPLIT", (0, 0), (0, 0))
+                )
         table = Table(rows, colWidths=widths, repeatRows=0)
         table.setStyle(TableStyle([*self.rules(rows, head if part.rows else None, body_from=1), *style]))
         return [table]
 
     def plain(self, part: PlainTable) -> list:
         count = len(part.titles)
-        widths = {2: [0.4, 0.6], 3: [0.25, 0.35, 0.4], 4: [0.1, 0.3, 0.45, 0.15], 5: [0.09, 0.09, 0.27, 0.4, 0.15]}[count]
+        widths = {2: [0.4, 0.6], 3: [0.25, 0.35, 0.4], 4: [0.1, 0.3, 0.45, 0.15], 5: [0.09, 0.09, 0.27, 0.4, 0.15]}[
+            count
+        ]
         if part.kind == "loggable":
             widths = [0.45, 0.2, 0.35]
         figures = {i for i, t in enumerate(part.titles) if "ID" in t or "Value" in t or "Length" in t}
@@ -189,5 +199,8 @@ class _Artist:
         if look.head_fill and head is not None:
             made.append(("BACKGROUND", (0, head), (-1, head), colors.HexColor("#d9d9d9")))
         if look.stripes:
-            made += [("BACKGROUND", (0, i), (-1, i), colors.HexColor("#f0f4ff")) for i in range((head or 0) + 2, len(rows), 2)]
+            made += [
+                ("BACKGROUND", (0, i), (-1, i), colors.HexColor("#f0f4ff"))
+                for i in range((head or 0) + 2, len(rows), 2)
+            ]
         return made

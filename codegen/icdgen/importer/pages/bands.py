@@ -13,7 +13,12 @@ from icdgen.importer.pages.lines import Line, lines
 from icdgen.importer.words import join
 
 _KEY = re.compile(r"(?:0[xX])?[0-9A-Fa-f]*[0-9][0-9A-Fa-f]*(?:\s*(?:[-–:/]|\.\.\.?|to)\s*[0-9]+)?[⁰¹²³⁴⁵⁶⁷⁸⁹*†]*\Z")
-KEYS = {"fields": ("at", "at_bytes"), "enumeration": ("value",), "list": ("id", "set_id", "get_id"), "loggable": ("id",)}
+KEYS = {
+    "fields": ("at", "at_bytes"),
+    "enumeration": ("value",),
+    "list": ("id", "set_id", "get_id"),
+    "loggable": ("id",),
+}
 
 
 @dataclass(slots=True)

@@ -18,7 +18,9 @@ from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded
 
 _HEADING = re.compile(r"(?P<number>[0-9]+(?:\.[0-9]+)*)\.?\s+(?P<text>[A-Z].*)\Z")
-_CONTINUED = re.compile(r"\(?\s*(?:table )?continue[ds]\b.*|.*\bcontinued (?:on|from) (?:the )?(?:next|previous) page.*", re.I)
+_CONTINUED = re.compile(
+    r"\(?\s*(?:table )?continue[ds]\b.*|.*\bcontinued (?:on|from) (?:the )?(?:next|previous) page.*", re.I
+)
 
 
 @dataclass(slots=True)
@@ -227,7 +229,7 @@ class _Flow:
         size = rest[start].size if start < len(rest) else 0
         for index in range(start, len(rest)):
             line = rest[index]
-            below = line.middle > limit and not self.has_key(line, found) and not _begins_in_a_column(line, found.spans)
+            below = line.middle > limit and not self.is_row(line, found)
             if below or self.ends(rest, index, found, size):
                 return index
         return len(rest)
@@ -256,6 +258,14 @@ class _Flow:
         first = runs(line, 0.45)[0]
         return is_key(" ".join(w.text for w in first))
 
+    def is_row(self, line: Line, found: Columns) -> bool:
+        """Whether the line can only be of a table: a key, a cell gone on, or several cells."""
+        return (
+            self.has_key(line, found)
+            or _begins_in_a_column(line, found.spans)
+            or len(runs(line, 0.9)) >= min(3, len(found.spans))
+        )
+
     def reads_on(self, line: Line, spans: list[tuple[float, float]]) -> bool:
         """Whether text runs across three headings or more, as it does in a paragraph and not in a cell."""
         for run in runs(line, 0.9):
@@ -276,11 +286,7 @@ class _Flow:
         if _HEADING.match(line.text) and line.size > self.body.size + 0.6:
             return False
         near = rest[:8]
-        return (
-            any(self.has_key(one, self.open) for one in near)
-            or _begins_in_a_column(line, self.open.spans)
-            or len(runs(line, 0.9)) >= min(3, len(self.open.spans))
-        )
+        return any(self.has_key(one, self.open) for one in near) or self.is_row(line, self.open)
 
     def continuation(self, page: Page, rest: list[Line]) -> tuple[int, Piece]:
         assert self.open is not None

@@ -130,7 +130,9 @@ def _look_over(pages: list[Page], document: Document, name: str) -> None:
         failed = [page for page in pages if page.failed]
         if failed:
             raise _refused(
-                name, f"none of the {len(pages)} pages can be read ({failed[0].failed})", "the file is damaged: fetch it anew"
+                name,
+                f"none of the {len(pages)} pages can be read ({failed[0].failed})",
+                "the file is damaged: fetch it anew",
             )
         what = "pictures of pages" if images else "pages without text"
         help = "run it through a text recognition first, for instance `ocrmypdf`, and check its figures twice"

@@ -64,7 +64,9 @@ class _Reader:
         heading = _HEADING.match(plain(text))
         if caption and (caption["mark"] or not caption["title"]):
             title = _CONTINUED.sub("", caption["title"]).strip()
-            self.blocks.append(_Caption(int(re.split("[-.]", caption["number"])[-1]), title, self.page, number, plain(text)))
+            self.blocks.append(
+                _Caption(int(re.split("[-.]", caption["number"])[-1]), title, self.page, number, plain(text))
+            )
         elif heading and len(text) < 120:
             self.blocks.append(Heading(heading["number"], heading["text"], self.page, number))
         else:

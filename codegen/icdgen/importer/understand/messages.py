@@ -167,7 +167,9 @@ def _field(entry: Entry, table: Table, profile: Profile, troubles: list[Trouble]
     for problem in described.problems:
         severity = "warning"
         text = entry.get("description")
-        troubles.append(Trouble("IMP040", f"{where}: {problem}: `{text[-160:]}`", entry.spot, "read the page", severity))
+        troubles.append(
+            Trouble("IMP040", f"{where}: {problem}: `{text[-160:]}`", entry.spot, "read the page", severity)
+        )
     return ReadField(name, at, bits, kind, described, entry.spot)
 
 
@@ -249,5 +251,3 @@ def gaps(message: ReadMessage) -> list[tuple[int, int]]:
     if at < total:
         free.append((at, total - 1))
     return [(a, b) for a, b in free if b >= a]
-
-

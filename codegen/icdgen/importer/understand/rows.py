@@ -95,5 +95,7 @@ def _tear(entry: Entry, row: Row, header: Header, spot: Spot, table: Table, trou
     text = " | ".join(c for c in row.cells if c)
     about = entry.get("name") or entry.get("id")
     troubles.append(
-        Trouble("IMP020", f"{table.title}: the row `{about}` was torn; joined to it: `{text[:100]}`", spot, _LOOK, "note")
+        Trouble(
+            "IMP020", f"{table.title}: the row `{about}` was torn; joined to it: `{text[:100]}`", spot, _LOOK, "note"
+        )
     )
