@@ -73,7 +73,7 @@ def repeats(cells: list[str], header: Header, profile: Profile) -> bool:
     titles = [folded(title) for title in header.titles if title.strip()]
     if not given or any(number(cell) is not None for cell in cells):
         return False
-    if given == titles or all(text in titles for text in given) and len(given) >= 2:
+    if given == titles or (all(text in titles for text in given) and len(given) >= 2):
         return True
     if len(given) >= 2 and _is_lower_half(given, titles):
         return True

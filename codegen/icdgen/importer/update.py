@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 from icdgen.icd import source
-from icdgen.icd.fmt import read
+from icdgen.icd.fmt import read, scalars
 from icdgen.icd.fmt.tree import Branch, Child, Text
 from icdgen.importer import emit
 
@@ -110,6 +110,8 @@ def _merge(old: Child, item: dict, kind: str, where: str, changes: list[str]) ->
             continue  # ours goes first
         elif key == "source":
             child.value = emit.branch({**_plain(child.value), **value})
+        elif key == "also" and [s.get("table") for s in _plain(child.value)] == [s.get("table") for s in value]:
+            child.value = emit.branch([{**a, **b} for a, b in zip(_plain(child.value), value, strict=True)])
         elif _plain(child.value) != value:
             changes.append(f"~ {where}{kind} {title}: {key} {_shown(_plain(child.value))} -> {_shown(value)}")
             child.value = emit.node(value)
@@ -171,7 +173,7 @@ def _child(branch: Branch, key: str) -> Child | None:
 
 
 def _name(child: Child) -> str:
-    return str(child.key.value) if child.key is not None else ""
+    return scalars.name(child.key) if child.key is not None else ""
 
 
 def _plain(value: object):

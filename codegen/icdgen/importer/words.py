@@ -67,9 +67,7 @@ def join(lines: list[str], known: frozenset[str] = frozenset(), full: list[bool]
         elif len(before) > 1 and before.endswith("-") and after[:1].islower():
             whole = before[:-1] + after
             text = (text[:-1] if _is(whole, known) and not _is(before + after, known) else text) + line
-        elif (len(before) > 1 and before[-1] in "-/_") or (before[-1:] in "*/" and after[:1].isdigit()):
-            text += line
-        elif full and full[index - 1] and _continues(before, after, known):
+        elif (len(before) > 1 and before[-1] in "-/_") or (before[-1:] in "*/" and after[:1].isdigit()) or (full and full[index - 1] and _continues(before, after, known)):
             text += line
         else:
             text += " " + line

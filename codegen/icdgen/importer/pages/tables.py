@@ -120,8 +120,8 @@ class Builder:
             if piece.columns is None:
                 return True
             return (
-                header is None
-                and bool(draft.table.head)
+                (header is None
+                and bool(draft.table.head))
                 or (
                     header is not None
                     and follows

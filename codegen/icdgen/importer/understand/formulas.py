@@ -14,6 +14,10 @@ _TIMES = {"×": "*", "·": "*", "∙": "*", "⋅": "*", "∗": "*", "x": "*", "X
 _OPERATOR = re.compile(r"[*/×·∙⋅∗÷+−–-]|[xX](?=\s*[0-9(.])")
 
 
+# What shows that an expression goes on in a way that is not understood: a power, a decimal comma, a name.
+_GOES_ON = re.compile(r"\s*[*/×·÷^²³]|,[0-9]|[A-Za-z_%]|\s*[+]")
+
+
 class Read(NamedTuple):
     """A formula as the ICD writes it; ``gives`` is what it computes, "raw" or "physical"."""
 
@@ -128,7 +132,7 @@ def _expression(text: str, at: int, variable: re.Pattern, name: str) -> tuple[st
             break
         if depth == 0 and not operand:
             good, end = len(made), at
-    if not seen or name not in made[:good]:
+    if not seen or name not in made[:good] or _GOES_ON.match(text, end):
         return "", at
     return _spelled(made[:good]), end
 

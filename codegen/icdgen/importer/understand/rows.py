@@ -61,7 +61,17 @@ def _by_role(row: Row, header: Header) -> dict[str, str]:
 
 
 def _has_key(cells: dict[str, str], header: Header) -> bool:
-    return any(is_key(cells[role]) for role in KEYS[header.kind] if cells.get(role))
+    if any(is_key(cells[role]) for role in KEYS[header.kind] if cells.get(role)):
+        return True
+    # Whole but for its key: a misprinted one must not let the row pass for the rest of the row above.
+    other = [role for role in _FIGURES[header.kind] if cells.get(role)]
+    if any(is_key(cells[role]) for role in other):
+        return bool(cells.get("name"))
+    spoilt = next((cells[role] for role in KEYS[header.kind] if cells.get(role)), "")
+    return len(spoilt) <= 5 and any(c.isdigit() for c in spoilt) and bool(cells.get("name"))
+
+
+_FIGURES = {"fields": ("bits", "bits_bytes"), "enumeration": (), "list": ("length",), "loggable": ("mask",)}
 
 
 def _group(row: Row, header: Header, made: list[Entry], last_page: int | None) -> str:
