@@ -17,6 +17,7 @@ Channels\tOffset (bits)\tLength (bits)\tName\tData Type\tDescription
 \t16\t8\tMode\tENUM\tMode. Possible values are in Table 8: PumpMode Enumeration Values
 \t24\t1\tValve Open\tBOOL\tValve open
 """
+TITLES = "Channels\tOffset (bits)\tLength (bits)\tName\tData Type\tDescription"
 ENUM = """
 Table 8: PumpMode Enumeration Values
 
@@ -60,9 +61,9 @@ def test_a_message_and_its_enumeration_are_read(tmp_path):
     ("what", "torn"),
     [
         ("a blank line", MESSAGE.replace("\t16\t8", "\n\t16\t8")),
-        ("what a converter puts below the first row of a page", MESSAGE.replace("\t24\t1", "----\t----\t----\t----\t----\t----\n\t24\t1")),
+        ("what a converter puts below the first row of a page", MESSAGE.replace("\t24\t1", "----" + 5 * "\t----" + "\n\t24\t1")),
         ("a lost first cell", MESSAGE.replace("\t24\t1", "24\t1")),
-        ("a repeated heading row", MESSAGE.replace("\t24\t1", "\nChannels\tOffset (bits)\tLength (bits)\tName\tData Type\tDescription\n\t24\t1")),
+        ("a repeated heading row", MESSAGE.replace("\t24\t1", f"\n{TITLES}\n\t24\t1")),
         ("a formula torn before its factor", MESSAGE.replace("= RAWVAL*0.1", "=\n\n\t\t\t\t\tRAWVAL*0.1")),
         ("a rest in the wrong column", MESSAGE.replace("PumpMode Enumeration", "\n\n\tPumpMode Enumeration")),
         ("a rest that is repeated", MESSAGE.replace("\t24\t1", "\n\t\t\t\t\tTable 8: PumpMode Enumeration Values\n\t24\t1")),

@@ -48,7 +48,7 @@ def report(result: Result) -> str:
         f"<style>{_STYLE}</style></head><body>\n<h1>Import of {name}</h1>",
         *(f"<p>{html.escape(line)}</p>" for line in console.summary(result)),
     ]
-    loose = [t for t in about.get(None, [])]
+    loose = list(about.get(None, []))
     if loose:
         parts += ["<h2>About the document</h2>", _list(loose)]
     with _Pictures(result) as pictures:

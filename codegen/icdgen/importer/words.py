@@ -67,16 +67,16 @@ def join(lines: list[str], known: frozenset[str] = frozenset(), full: list[bool]
         elif len(before) > 1 and before.endswith("-") and after[:1].islower():
             whole = before[:-1] + after
             text = (text[:-1] if _is(whole, known) and not _is(before + after, known) else text) + line
-        elif (len(before) > 1 and before[-1] in "-/_") or (before[-1:] in "*/" and after[:1].isdigit()) or (full and full[index - 1] and _continues(before, after, known)):
+        elif _holds_on(before, after) or (full and full[index - 1] and _is(before + after, known)):
             text += line
         else:
             text += " " + line
     return " ".join(text.replace(_SOFT, "").split())
 
 
-def _continues(before: str, after: str, known: frozenset[str]) -> bool:
-    """Whether a line that is full broke off inside a word."""
-    return _is(before + after, known)
+def _holds_on(before: str, after: str) -> bool:
+    """Whether a line may break here without a blank: after a hyphen or a slash in a word, or within a formula."""
+    return (len(before) > 1 and before[-1] in "-/_") or (before[-1:] in "*/" and after[:1].isdigit())
 
 
 def _is(word: str, known: frozenset[str]) -> bool:

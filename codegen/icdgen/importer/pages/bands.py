@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from dataclasses import dataclass, field
 from statistics import median
@@ -64,7 +65,7 @@ def aligned(band: Band, edges: list[float]) -> Band:
         if not part:
             continue
         left, right = band.edges[index], band.edges[index + 1]
-        overlaps = [max(0.0, min(right, b) - max(left, a)) for a, b in zip(edges, edges[1:], strict=False)]
+        overlaps = [max(0.0, min(right, b) - max(left, a)) for a, b in itertools.pairwise(edges)]
         covered = [i for i, o in enumerate(overlaps) if o > 0.5 * (edges[i + 1] - edges[i])]
         target = covered[0] if covered else overlaps.index(max(overlaps))
         a, b = edges[target], edges[target + 1]
@@ -128,10 +129,10 @@ def _text_in(line: Line, edges: list[float], column: int) -> str:
 
 def _stretches(found: list[Line], keyed: list[int]) -> list[tuple[int, int]]:
     """The lines of each row, given those that hold its key; what stands before belongs to a row torn above."""
-    gaps = [b.middle - a.middle for a, b in zip(found, found[1:], strict=False)]
+    gaps = [b.middle - a.middle for a, b in itertools.pairwise(found)]
     usual = median(gaps) if gaps else 0.0
     starts = [_first_start(found, keyed, gaps, usual)]
-    for before, here in zip(keyed, keyed[1:], strict=False):
+    for before, here in itertools.pairwise(keyed):
         starts.append(_start(found, before, here, gaps, starts[-1]))
     ends = [*starts[1:], len(found)]
     lead = [(0, starts[0])] if starts[0] else []

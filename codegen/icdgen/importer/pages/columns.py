@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import NamedTuple
 
 from icdgen.importer import headings
@@ -75,7 +76,7 @@ def boundaries(spans: list[tuple[float, float]], lines: list[Line], x0: float, x
     edges = [min([x0, spans[0][0], *(w.x0 for w in words)]) - 1]
     last = max([x1, spans[-1][1], *(w.x1 for w in words)]) + 1
     centres = [(a + b) / 2 for a, b in spans]
-    for index, (low, high) in enumerate(zip(centres, centres[1:], strict=False)):
+    for index, (low, high) in enumerate(itertools.pairwise(centres)):
         beyond = centres[index + 2] if index + 2 < len(centres) else last
         guess = (spans[index][1] + spans[index + 1][0]) / 2
         edges.append(_river(words, low, high, guess, edges[-1], beyond, spans[index + 1][0]))
@@ -92,7 +93,7 @@ def _river(
     points = sorted({low, high, *(x for span in near for x in span if low < x < high)})
     best, key = guess, None
     pieces: list[list[float]] = []  # [from, to, crossings], neighbours with the same count put together
-    for a, b in zip(points, points[1:], strict=False):
+    for a, b in itertools.pairwise(points):
         middle = (a + b) / 2
         crossings = sum(1 for x0, x1 in near if x0 < middle < x1)
         if pieces and pieces[-1][2] == crossings:

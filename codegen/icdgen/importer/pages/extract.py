@@ -5,6 +5,7 @@ Runs in worker processes, so what it returns is small and plain.
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -134,7 +135,7 @@ def _rectangle(made: Page, rect: dict) -> None:
 def _curve(made: Page, curve: dict) -> None:
     """Rules drawn as paths: the straight pieces of them."""
     points = curve.get("pts") or []
-    for (xa, ya), (xb, yb) in zip(points, points[1:], strict=False):
+    for (xa, ya), (xb, yb) in itertools.pairwise(points):
         _line(made, min(xa, xb), min(ya, yb), max(xa, xb), max(ya, yb))
 
 

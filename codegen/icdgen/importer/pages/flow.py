@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections import Counter
 from dataclasses import dataclass, field
@@ -130,7 +131,7 @@ class _Flow:
         inside = [w for w in page.words if region.holds((w.x0 + w.x1) / 2, w.middle)]
         cuts = region.cuts()
         bands = []
-        for top, bottom in zip(cuts, cuts[1:], strict=False):
+        for top, bottom in itertools.pairwise(cuts):
             if bottom - top < 3:
                 continue
             words = [w for w in inside if top <= w.middle < bottom]

@@ -119,14 +119,8 @@ class Builder:
         if not piece.ruled:
             if piece.columns is None:
                 return True
-            return (
-                (header is None
-                and bool(draft.table.head))
-                or (
-                    header is not None
-                    and follows
-                    and headings.repeats(piece.columns.header.titles, header, self.profile)
-                )
+            return (header is None and bool(draft.table.head)) or (
+                header is not None and follows and headings.repeats(piece.columns.header.titles, header, self.profile)
             )
         own = self.header_of(piece)
         if own is not None:

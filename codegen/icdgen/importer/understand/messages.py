@@ -129,7 +129,7 @@ def _names(caption: str, profile: Profile, message: ReadMessage) -> list[str]:
         same = [f for f in found if f[1] == message.kind] if message.kind else found
     else:
         same = [f for f in found if f[1] == message.kind] or found
-    if same and not (message.kind == "configuration"):
+    if same and message.kind != "configuration":
         message.kind, message.kind_from = same[0][1], "its caption"
     names = [name for _, kind, name in same] if same else []
     return list(dict.fromkeys([*names, plain(caption)])) if caption else names
