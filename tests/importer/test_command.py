@@ -28,7 +28,7 @@ def folder(tmp_path):
 def test_an_import_gives_an_icd_that_checks_formats_and_compiles(folder):
     result = icdgen("import", "pump.txt", cwd=folder)
     assert result.returncode == 0, result.stdout + result.stderr
-    assert "icd/pump.yaml: written; 1 messages with 3 fields, 1 enumerations with 2 members" in result.stdout
+    assert "icd/pump.yaml: written; 1 message with 3 fields, 1 enumeration with 2 members" in result.stdout
     assert result.stderr == ""
     assert icdgen("fmt", "--check", "icd", cwd=folder).returncode == 0
     assert icdgen("check", "icd", cwd=folder).stdout == "no findings\n"

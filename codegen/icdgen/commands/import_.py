@@ -13,6 +13,8 @@ from icdgen.commands.common import PATH, print_findings, say
 from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
 
+ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP004"})
+
 
 @click.command("import")
 @click.argument("manual", type=PATH)
@@ -48,7 +50,7 @@ def import_(manual, out, words, update, dry_run, page, descriptions, form, jobs)
             result, trees = run.run(manual, vocabulary, progress, jobs, descriptions)
         run.aim(result, trees, out, update)
     except Findings as error:
-        print_findings(error.findings, _texts(error), "text", err=True)
+        _refuse(error)
         sys.exit(1)
     if not dry_run:
         run.write(result)
@@ -72,15 +74,21 @@ def import_(manual, out, words, update, dry_run, page, descriptions, form, jobs)
     sys.exit(1 if result.failed else 0)
 
 
-def _texts(error: Findings) -> dict[str, str]:
-    """The files that findings point into, as far as they are text."""
-    texts = {}
-    for name in {finding.place.file for finding in error.findings if finding.code != "IMP002"}:
-        try:
-            texts[name] = Path(name).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError):
-            continue
-    return texts
+def _refuse(error: Findings) -> None:
+    """Says why nothing can be imported: about the manual as a whole, or about lines of a profile or an ICD."""
+    about_lines = [finding for finding in error.findings if finding.code not in ABOUT_FILES]
+    for finding in error.findings:
+        if finding.code in ABOUT_FILES:
+            place = f"{finding.place.file}:{finding.place.line}" if finding.place.line > 1 else finding.place.file
+            say(f"{place}: error[{finding.code}]: {finding.message}\n  = help: {finding.help}", err=True)
+    if about_lines:
+        texts = {}
+        for name in {finding.place.file for finding in about_lines}:
+            try:
+                texts[name] = Path(name).read_text(encoding="utf-8")
+            except (OSError, UnicodeDecodeError):
+                continue
+        print_findings(about_lines, texts, "text", err=True)
 
 
 def _write_page(page: Path, result) -> None:

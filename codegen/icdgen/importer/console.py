@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 
+from icdgen.icd.rules.wording import count
 from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Spot, Trouble
 from icdgen.importer.run import Result
 from icdgen.importer.understand.survey import BACKGROUND, UNKNOWN
@@ -74,7 +75,10 @@ def files(result: Result) -> list[str]:
         messages, enums = tree.get("messages", []), tree.get("enums", [])
         fields = sum(len(m.get("fields", ())) for m in messages)
         members = sum(len(e["members"]) for e in enums)
-        what = f"{len(messages)} messages with {fields} fields, {len(enums)} enumerations with {members} members"
+        what = (
+            f"{count(len(messages), 'message')} with {count(fields, 'field')}, "
+            f"{count(len(enums), 'enumeration')} with {count(members, 'member')}"
+        )
         state = "written" if target.changes is None else "unchanged" if target.same else "updated"
         lines.append(f"{target.path}: {state}; {what}")
         lines += [f"  {change}" for change in target.changes or ()]

@@ -106,6 +106,7 @@ class _Flow:
     def __init__(self, profile: Profile, body: Type) -> None:
         self.profile, self.body = profile, body
         self.open: Columns | None = None  # of a table without vertical rules that the next page may continue
+        self.size = 0.0  # of its type
         self.extent = (0.0, 0.0)  # of that table, from left to right
 
     def page(self, page: Page, ruled: list[Region], loose: list[Line]) -> list[Item]:
@@ -220,7 +221,7 @@ class _Flow:
             _box(page, rest[:end]), [], ruled=False, columns=found, head=head, lines=rest[start:end], page=page,
             top=rest[start - 1].bottom, extent=(x0, x1),
         )  # fmt: skip
-        self.open = found
+        self.open, self.size = found, rest[min(start, end - 1)].size
         self.extent = (min(x0, piece.box.x0), max(x1, piece.box.x1))
         return end, piece
 
@@ -284,7 +285,7 @@ class _Flow:
             return False
         if self.reads_on(line, self.open.spans) and not self.has_key(line, self.open):
             return False
-        if _HEADING.match(line.text) and line.size > self.body.size + 0.6:
+        if _HEADING.match(line.text) and line.size > self.size + 0.6:
             return False
         near = rest[:8]
         return any(self.has_key(one, self.open) for one in near) or self.is_row(line, self.open)

@@ -55,6 +55,10 @@ def list_title(caption: str, profile: Profile) -> tuple[str, str]:
 def enumeration(table: Table, profile: Profile, troubles: list[Trouble]) -> ReadEnum | None:
     """An enumeration."""
     name = enum_name(table.caption, profile)
+    if not name:
+        name = f"Table {table.number}" if table.number else f"Values of page {table.page or 1}"
+        troubles.append(Trouble("IMP025", f"{table.title}: nothing names the enumeration", table.spot,
+                                f"held as `{name}`: name it in the ICD", "error"))  # fmt: skip
     made = ReadEnum(name, [], table)
     for entry in entries(table, troubles):
         value = numbers.whole(entry.get("value"), "the value", table.title, entry.spot, troubles)
