@@ -80,4 +80,4 @@ def _holds_on(before: str, after: str) -> bool:
 
 
 def _is(word: str, known: frozenset[str]) -> bool:
-    return word.strip(".,;:()[]").casefold() in known
+    return word.strip(".,;:()[]") in known

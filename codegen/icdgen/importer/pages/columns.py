@@ -70,6 +70,13 @@ def _clustered(block: list[Line]) -> list[list[Word]]:
     return sorted(cells, key=lambda cell: min(w.x0 for w in cell))
 
 
+def side_by_side(block: list[Line]) -> str:
+    """The text of some lines cell by cell, as if no cell wrapped."""
+    if len(block) == 1:
+        return block[0].text
+    return " ".join(_text(cell) for cell in _clustered(block))
+
+
 def boundaries(spans: list[tuple[float, float]], lines: list[Line], x0: float, x1: float) -> list[float]:
     """Edges of the columns whose headings stand at ``spans``; between two, where the fewest words stand in the way."""
     words = [word for line in lines for word in line.words]

@@ -71,7 +71,7 @@ def items(pages: list[Page], profile: Profile) -> list[Item]:
         words = [w for w in page.words if not any(r.holds((w.x0 + w.x1) / 2, w.middle) for r in inside)]
         loose[page.number] = lines(words)
     body = _body(loose)
-    kept = furniture.without(pages, loose, lambda text: _is_of_a_table(text, profile))
+    kept = furniture.without(pages, loose, lambda line, near: _is_of_a_table(line, near, profile))
     made: list[Item] = []
     flow = _Flow(profile, body)
     for page in pages:
@@ -89,15 +89,15 @@ def _body(loose: dict[int, list[Line]]) -> Type:
     return Type(sizes.most_common(1)[0][0] if sizes else 10.0, styles.most_common(1)[0][0] if styles else "")
 
 
-def _is_of_a_table(text: str, profile: Profile) -> bool:
-    words = text.split()
-    parts = folded(text)
-    return (
-        (bool(parts) and all(part in profile.heading_words for part in parts))
-        or profile.caption.match(text) is not None
-        or headings.segmented(words, profile) is not None
-        or labels.begins(text, profile)
-    )
+def _is_of_a_table(line: Line, near: list[Line], profile: Profile) -> bool:
+    """Whether a line in a margin is surely of a table, however often pages repeat it."""
+    if profile.caption.match(line.text) or labels.begins(line.text, profile):
+        return True
+    if headings.segmented(line.text.split(), profile) is not None:
+        return True
+    parts = folded(line.text)  # a part of headings in several lines: the others stand next to it
+    tight = any(max(line.top - other.bottom, other.top - line.bottom) < 0.5 * line.size for other in near)
+    return tight and bool(parts) and all(part in profile.heading_words for part in parts)
 
 
 class _Flow:
@@ -189,28 +189,43 @@ class _Flow:
         found = columns.find(rest, self.profile)
         if found is not None:
             return 0, found
-        if not labels.begins(rest[0].text, self.profile):
+        first = self.labelled(rest)
+        if not first:
             return 0, None
         at = _value_column(rest[0])
-        taken = 1
-        for index in range(1, min(12, len(rest))):
+        taken = first
+        for index in range(first, min(14, len(rest))):
             line = rest[index]
             found = columns.find(rest[index:], self.profile)
             if found is not None:
                 return index, found
-            if self.is_caption(line) or labels.begins(line.text, self.profile):
+            if self.is_caption(line) or self.labelled(rest[index:]):
                 break
-            labelled = labels.leads(line.text, self.profile)
+            said = labels.leads(line.text, self.profile)
             gap = line.top - rest[index - 1].bottom
-            if not labelled and (line.x0 < at - 3 or gap > 1.5 * line.size):
+            if not said and (line.x0 < at - 3 or gap > 1.5 * line.size):
                 break
-            if labelled == "description":
+            if said == "description":
                 at = _value_column(line)
             taken = index + 1
         return taken, None
 
+    def labelled(self, rest: list[Line]) -> int:
+        """How many lines the first row of a message's table takes that begins here: one, more where its cells wrap."""
+        for count in range(1, min(3, len(rest)) + 1):
+            if count > 1 and rest[count - 1].top - rest[count - 2].bottom > 0.6 * rest[0].size:
+                return 0
+            if labels.begins(columns.side_by_side(rest[:count]), self.profile):
+                return count
+        return 0
+
+    def head(self, lines: list[Line]) -> list[str]:
+        """The rows above the headings as text."""
+        count = self.labelled(lines) if lines else 0
+        return ([columns.side_by_side(lines[:count])] if count else []) + [line.text for line in lines[count:]]
+
     def table(self, page: Page, rest: list[Line], length: int, found: Columns | None) -> tuple[int, Piece]:
-        head = [line.text for line in rest[:length]]
+        head = self.head(rest[:length])
         if found is None:
             self.open = None
             return length, Piece(_box(page, rest[:length]), [], ruled=False, head=head)
@@ -218,12 +233,25 @@ class _Flow:
         end = self.end(page, rest, start, found)
         x0, x1 = min(line.x0 for line in rest[:start]), max(line.x1 for line in rest[:start])
         piece = Piece(
-            _box(page, rest[:end]), [], ruled=False, columns=found, head=head, lines=rest[start:end], page=page,
+            _box(page, rest[:end]), [], ruled=False, columns=found, head=head, lines=self.cells(rest[start:end], found), page=page,
             top=rest[start - 1].bottom, extent=(x0, x1),
         )  # fmt: skip
         self.open, self.size = found, rest[min(start, end - 1)].size
         self.extent = (min(x0, piece.box.x0), max(x1, piece.box.x1))
         return end, piece
+
+    def cells(self, found: list[Line], columns: Columns) -> list[Line]:
+        """The lines without the word that stands beside all fields, left of the headings: it is of no row."""
+        made = []
+        for line in found:
+            first = runs(line, 0.45)[0]
+            text = " ".join(w.text for w in first)
+            if first[-1].x1 <= columns.spans[0][0] and labels.meaning(text, self.profile) == "fields":
+                if len(first) < len(line.words):
+                    made.append(Line(line.words[len(first) :]))
+            else:
+                made.append(line)
+        return made
 
     def end(self, page: Page, rest: list[Line], start: int, found: Columns) -> int:
         """The index of the first line that is no longer of the table."""
@@ -241,7 +269,7 @@ class _Flow:
         in_cell = _begins_in_a_column(line, found.spans)
         if self.is_caption(line) and not in_cell:
             return True
-        if labels.begins(line.text, self.profile) or self.begins_anew(rest[index:], found):
+        if self.labelled(rest[index:]) or self.begins_anew(rest[index:], found):
             return True
         if abs(line.size - size) > 1.2 and not in_cell:
             return True
@@ -294,7 +322,7 @@ class _Flow:
         assert self.open is not None
         end = max(1, self.end(page, rest, 0, self.open))
         piece = Piece(
-            _box(page, rest[:end]), [], ruled=False, lines=rest[:end], page=page, top=rest[0].top - 1, extent=self.extent
+            _box(page, rest[:end]), [], ruled=False, lines=self.cells(rest[:end], self.open), page=page, top=rest[0].top - 1, extent=self.extent
         )  # fmt: skip
         return end, piece
 

@@ -14,7 +14,9 @@ _FIGURES = re.compile("[0-9]+")
 _NUMBERING = re.compile(r"(?:page|p\.|pg\.?|seite)?\s*[-–|]?\s*([0-9]+)\s*(?:(?:of|/|von)\s*[0-9]+)?\s*[-–|]?\Z", re.I)
 
 
-def without(pages: list[Page], lines: dict[int, list[Line]], keep: Callable[[str], bool]) -> dict[int, list[Line]]:
+def without(
+    pages: list[Page], lines: dict[int, list[Line]], keep: Callable[[Line, list[Line]], bool]
+) -> dict[int, list[Line]]:
     """The lines of each page without heads and feet. ``keep`` says which lines are never taken for such."""
     seen: dict[tuple[str, int], set[int]] = defaultdict(set)
     for page in pages:
@@ -27,9 +29,12 @@ def without(pages: list[Page], lines: dict[int, list[Line]], keep: Callable[[str
     kept = {}
     for page in pages:
         rest = []
-        for line in lines[page.number]:
+        found = lines[page.number]
+        for index, line in enumerate(found):
             repeated = any(len(seen[key]) >= needed for key in _keys(line)) if _in_margin(line, page) else False
-            if keep(line.text) or not (repeated or _numbers_the_page(line, page, offset)):
+            if not repeated and not _numbers_the_page(line, page, offset):
+                rest.append(line)
+            elif keep(line, [*found[max(0, index - 1) : index], *found[index + 1 : index + 2]]):
                 rest.append(line)
         kept[page.number] = rest
     return kept

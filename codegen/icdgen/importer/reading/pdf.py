@@ -169,4 +169,4 @@ def _heads(profile: Profile) -> set[str]:
 
 def _known(pages: list[Page]) -> frozenset[str]:
     """All words of the document in one piece."""
-    return frozenset(word.text.strip(".,;:()[]").casefold() for page in pages for word in page.words)
+    return frozenset(word.text.strip(".,;:()[]") for page in pages for word in page.words)
