@@ -321,9 +321,9 @@ class _Flow:
     def continuation(self, page: Page, rest: list[Line]) -> tuple[int, Piece]:
         assert self.open is not None
         end = max(1, self.end(page, rest, 0, self.open))
-        piece = Piece(
-            _box(page, rest[:end]), [], ruled=False, lines=self.cells(rest[:end], self.open), page=page, top=rest[0].top - 1, extent=self.extent
-        )  # fmt: skip
+        body = self.cells(rest[:end], self.open)
+        top = rest[0].top - 1
+        piece = Piece(_box(page, rest[:end]), [], ruled=False, lines=body, page=page, top=top, extent=self.extent)
         return end, piece
 
 

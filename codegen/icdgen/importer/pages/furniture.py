@@ -32,9 +32,8 @@ def without(
         found = lines[page.number]
         for index, line in enumerate(found):
             repeated = any(len(seen[key]) >= needed for key in _keys(line)) if _in_margin(line, page) else False
-            if not repeated and not _numbers_the_page(line, page, offset):
-                rest.append(line)
-            elif keep(line, [*found[max(0, index - 1) : index], *found[index + 1 : index + 2]]):
+            near = [*found[max(0, index - 1) : index], *found[index + 1 : index + 2]]
+            if not (repeated or _numbers_the_page(line, page, offset)) or keep(line, near):
                 rest.append(line)
         kept[page.number] = rest
     return kept
