@@ -21,7 +21,7 @@
 #include "bootloader/copy_to_internal_flash_progress.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-#define BOOTLOADER_ICD_DIGEST "f8f27a83cbd40f69"
+#define BOOTLOADER_ICD_DIGEST "127eddba95dbef6a"
 /** What the node answers when asked for its type. */
 #define BOOTLOADER_NODE_TYPE 110u
 /** Version of the interface that it reports. */

@@ -53,7 +53,7 @@
 #include "common/hole_map_8.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-#define COMMON_ICD_DIGEST "36a1ff8446e426f1"
+#define COMMON_ICD_DIGEST "27ef8f3d73d41275"
 
 /** Any telemetry of Common messages: the member of `as` that goes with the id. */
 typedef struct {
