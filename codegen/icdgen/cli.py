@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import sys
 from importlib import import_module
+from keyword import iskeyword
 
 import click
 
@@ -23,6 +24,7 @@ _COMMANDS = {
     "decode": "codec",
     "encode": "codec",
     "diff": "diff",
+    "import": "import_",
 }
 _DEFAULT = "generate"
 
@@ -36,7 +38,8 @@ class _Commands(click.Group):
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         if name not in _COMMANDS:
             return None
-        return getattr(import_module(f"icdgen.commands.{_COMMANDS[name]}"), name)
+        module = import_module(f"icdgen.commands.{_COMMANDS[name]}")
+        return getattr(module, f"{name}_" if iskeyword(name) else name)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         if args and args[0] not in (*_COMMANDS, "--help", "-h", "--version"):

@@ -53,7 +53,7 @@
 #include "common/hole_map_8.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-#define COMMON_ICD_DIGEST "8bd9c8660099dc27"
+#define COMMON_ICD_DIGEST "92f6b159c3e7d6aa"
 
 /** Any telemetry of Common messages: the member of `as` that goes with the id. */
 typedef struct {

@@ -15,7 +15,7 @@
 #include "cubewheel/motor_power.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-#define CUBEWHEEL_ICD_DIGEST "95f00d0d644625da"
+#define CUBEWHEEL_ICD_DIGEST "d571d631da970e36"
 
 /** Any telemetry of CubeWheel: the member of `as` that goes with the id. */
 typedef struct {

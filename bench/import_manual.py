@@ -1,0 +1,96 @@
+"""How long `icdgen import` takes on a manual, how much memory, and where the time goes.
+
+python bench/import_manual.py MANUAL.pdf [--profile NAME] [--jobs N] [--where]
+"""
+
+from __future__ import annotations
+
+import argparse
+import cProfile
+import os
+import pstats
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+STAGES = {
+    "pdfminer: content streams": ("pdfinterp.py", "execute"),
+    "pdfplumber: objects": ("page.py", "iter_layout_objects"),
+    "pdfplumber: words": ("text.py", "extract_words"),
+    "pages to pieces of tables": ("flow.py", "items"),
+    "pieces to tables": ("tables.py", "run"),
+    "tables to messages": ("survey.py", "survey"),
+    "messages to ICDs": ("assemble.py", "assemble"),
+    "YAML, read back": ("emit.py", "text"),
+}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("manual", type=Path)
+    parser.add_argument("--profile")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--where", action="store_true", help="where the time goes, in one process")
+    options = parser.parse_args()
+    if options.where:
+        where(options.manual, options.profile)
+    else:
+        whole(options.manual, options.profile, options.jobs)
+
+
+def whole(manual: Path, profile: str | None, jobs: int) -> None:
+    """The command as a user runs it: wall time, processor time and the largest process, and all of them together."""
+    with tempfile.TemporaryDirectory() as folder:
+        words = ["--profile", profile] if profile else []
+        command = [sys.executable, "-m", "icdgen", "import", str(manual), *words, "--out", folder, "--jobs", str(jobs)]
+        start = time.perf_counter()
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+        together = 0
+        while process.poll() is None:
+            together = max(together, sum(_resident(pid) for pid in _family(process.pid)))
+            time.sleep(0.1)
+        wall = time.perf_counter() - start
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    print(f"{jobs} processes: {wall:.1f} s wall, {usage.ru_utime + usage.ru_stime:.1f} s processor")
+    print(f"largest process {usage.ru_maxrss / 1024:.0f} MB, all together {together / 2**20:.0f} MB")
+
+
+def _family(pid: int) -> list[int]:
+    """A process and its children, by Linux's /proc."""
+    try:
+        children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+    except OSError:
+        return [pid]
+    return [pid, *(one for child in children for one in _family(int(child)))]
+
+
+def _resident(pid: int) -> int:
+    try:
+        return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, IndexError):
+        return 0
+
+
+def where(manual: Path, profile: str | None) -> None:
+    """The share of each stage, in one process, under a profiler."""
+    from icdgen.importer import emit, run
+    from icdgen.importer import profile as profiles
+
+    words = profiles.load(profiles.find(profile))
+    profiler = cProfile.Profile()
+    profiler.enable()
+    _, trees = run.run(manual, words, jobs=1)
+    for tree in trees.values():
+        emit.text(tree)
+    profiler.disable()
+    statistics = pstats.Stats(profiler)
+    found = {(os.path.basename(file), name): row[3] for (file, _, name), row in statistics.stats.items()}
+    for stage, key in STAGES.items():
+        print(f"{found.get(key, 0.0) / statistics.total_tt:6.1%}  {stage}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,135 @@
+"""``icdgen import``"""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+import click
+
+from icdgen.commands.common import PATH, print_findings, say
+from icdgen.diagnostics import Findings
+from icdgen.errors import UserError
+
+ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP004"})
+
+
+@click.command("import")
+@click.argument("manual", type=PATH)
+@click.option("--out", type=PATH, default=Path("icd"), show_default=True, help="Folder for the ICDs, one file a node.")
+@click.option(
+    "--profile", "words", metavar="PROFILE", help="Vocabulary of the manual: a YAML file, or the name of a shipped one."
+)
+@click.option(
+    "--update",
+    is_flag=True,
+    help="Lay the manual over ICDs that exist; errata, identifiers, summaries and comments stay.",
+)
+@click.option("--dry-run", is_flag=True, help="Write no ICD; say what would be written or changed.")
+@click.option(
+    "--report",
+    "page",
+    type=PATH,
+    help="Write a page (HTML) with each doubtful table as a picture beside what was read.",
+)
+@click.option("--descriptions", is_flag=True, help="Hold the manual's descriptions as summaries.")
+@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@click.option("--jobs", type=click.IntRange(1, 64), help="Processes that read pages (default: one a core).")
+def import_(manual, out, words, update, dry_run, page, descriptions, form, jobs) -> None:
+    """Read a vendor's MANUAL (PDF, or text with tab-separated tables) into reviewable ICDs.
+
+    Exit status: 0 if the ICDs hold all that was found, 1 if something is missing from them or must be looked at first.
+    """
+    from icdgen.importer import console, profile, run
+
+    try:
+        vocabulary = profile.load(profile.find(words))
+        with _progress() as progress:
+            result, trees = run.run(manual, vocabulary, progress, jobs, descriptions)
+        run.aim(result, trees, out, update)
+    except Findings as error:
+        _refuse(error)
+        sys.exit(1)
+    if not dry_run:
+        run.write(result)
+    if page is not None:
+        _write_page(page, result)
+    if form == "json":
+        click.echo(console.as_json(result))
+    else:
+        colour = sys.stdout is not None and sys.stdout.isatty() and "NO_COLOR" not in os.environ
+        if colour:
+            click.echo(console.report(result, True), color=True)
+        else:
+            say(console.report(result))
+        say(
+            "\n".join(
+                line.replace(": written;", ": would be written;") if dry_run else line for line in console.files(result)
+            )
+        )
+        if not dry_run:
+            _next_step(result)
+    sys.exit(1 if result.failed else 0)
+
+
+def _refuse(error: Findings) -> None:
+    """Says why nothing can be imported: about the manual as a whole, or about lines of a profile or an ICD."""
+    about_lines = [finding for finding in error.findings if finding.code not in ABOUT_FILES]
+    for finding in error.findings:
+        if finding.code in ABOUT_FILES:
+            place = f"{finding.place.file}:{finding.place.line}" if finding.place.line > 1 else finding.place.file
+            say(f"{place}: error[{finding.code}]: {finding.message}\n  = help: {finding.help}", err=True)
+    if about_lines:
+        texts = {}
+        for name in {finding.place.file for finding in about_lines}:
+            try:
+                texts[name] = Path(name).read_text(encoding="utf-8")
+            except (OSError, UnicodeDecodeError):
+                continue
+        print_findings(about_lines, texts, "text", err=True)
+
+
+def _write_page(page: Path, result) -> None:
+    from icdgen.generation.write import replace
+    from icdgen.importer import html
+
+    try:
+        replace(Path(os.path.realpath(page)), html.report(result).encode("utf-8"))
+    except OSError as error:
+        raise UserError(f"cannot write {page}: {error.strerror}", "choose another place with --report") from None
+
+
+def _next_step(result) -> None:
+    """What `icdgen check` would say of the files, as a number: the import ends where the check begins."""
+    from icdgen.icd.load import load
+
+    paths = [target.path for target in result.targets]
+    loaded = load(paths)
+    names = " ".join(str(path) for path in paths)
+    if loaded.findings:
+        count = len(loaded.findings)
+        say(f"next: `icdgen check {names}` has {count} finding{'s' if count != 1 else ''}")
+    else:
+        say(f"`icdgen check {names}`: no findings")
+
+
+@contextmanager
+def _progress():
+    """A bar on a terminal, nothing in a pipe."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("reading"), BarColumn(), MofNCompleteColumn(), TextColumn("pages, {task.fields[tables]} tables"),
+               TimeRemainingColumn())  # fmt: skip
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("reading", total=None, tables=0)
+
+        def show(done: int, total: int, tables: int) -> None:
+            bar.update(task, completed=done, total=total, tables=tables)
+
+        yield show

@@ -1,0 +1,1 @@
+"""A vendor's manual, PDF or text, to a reviewable ICD: ``icdgen import``."""

@@ -1,0 +1,206 @@
+"""What the tables say -> one ICD tree per node, and the findings that only show when they are held together."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from dataclasses import dataclass, field
+
+from icdgen.importer import references, trees
+from icdgen.importer.document import Document, Trouble
+from icdgen.importer.profile import NodeWords, Profile
+from icdgen.importer.understand.model import Listed, ReadEnum, ReadList, ReadLog, ReadMessage
+from icdgen.importer.understand.survey import Found, Survey
+from icdgen.importer.words import folded, squeezed
+
+
+@dataclass
+class NodeParts:
+    """What belongs to one node."""
+
+    name: str
+    title: str
+    shared: bool = False
+    words: NodeWords | None = None
+    messages: list[ReadMessage] = field(default_factory=list)
+    enums: list[ReadEnum] = field(default_factory=list)
+    lists: list[ReadList] = field(default_factory=list)
+    logs: list[ReadLog] = field(default_factory=list)
+    include: list[str] = field(default_factory=list)
+    missing: list[Listed] = field(default_factory=list)
+
+
+def assemble(document: Document, survey: Survey, profile: Profile, prose: bool = False) -> dict[str, dict]:
+    """The trees by node name; appends to ``survey.troubles``. ``prose``: keep descriptions as summaries."""
+    nodes = _dealt(document, survey, profile)
+    everything = survey.of(ReadEnum)
+    for node in nodes:
+        _merge_enums(node, survey)
+    for node in nodes:
+        references.listed(node, survey.troubles)
+    _includes(nodes)
+    for node in nodes:
+        references.enums(node, nodes, everything, _runs(survey), survey.troubles)
+    for node in nodes:
+        references.complete(node, survey.troubles)
+    return {node.name: trees.tree(node, document, profile, prose, survey.troubles) for node in nodes}
+
+
+def _runs(survey: Survey) -> dict[int, int]:
+    """Table (by identity) -> its run of numbers."""
+    return {id(one.table): one.run for one in survey.found}
+
+
+def _dealt(document: Document, survey: Survey, profile: Profile) -> list[NodeParts]:
+    """Each thing to its node."""
+    keys = _keys(survey, profile)
+    used = [key for key, one in zip(keys, survey.found, strict=True) if one.thing is not None]
+    order = list(dict.fromkeys(key for key in used if key))
+    nodes = {key: _node(key, profile) for key in order}
+    if not nodes and any(one.thing for one in survey.found):
+        nodes = {"": _node(_document_name(document), profile)}
+    first = next(iter(nodes), "")
+    for key, one in zip(keys, survey.found, strict=True):
+        if one.thing is not None:
+            _put(nodes.get(key) or nodes[first], one)
+    if len(nodes) == 1:
+        next(iter(nodes.values())).shared = False
+    return [n for n in nodes.values() if n.messages or n.enums or n.logs]
+
+
+def _put(node: NodeParts, one: Found) -> None:
+    thing = one.thing
+    target = {ReadMessage: node.messages, ReadEnum: node.enums, ReadList: node.lists, ReadLog: node.logs}[type(thing)]
+    target.append(thing)
+
+
+def _keys(survey: Survey, profile: Profile) -> list[str]:
+    """The node of each table, as the manual calls it; "" where nothing tells."""
+    by_number = {}
+    for one in survey.of(ReadList):
+        for row in one.thing.rows:
+            if row.table_number is not None:
+                by_number[(one.run, row.table_number)] = one.thing.node
+    numbered = [one.table.number for one in survey.found if one.table.number is not None]
+    restarts = len(set(numbered)) < len(numbered) and not any(one.thing.node for one in survey.of(ReadList))
+    keys, current, twins = [], "", _twins(survey)
+    for one in survey.found:
+        told = _by_profile(one, profile)
+        if told is None and isinstance(one.thing, ReadList) and one.thing.node:
+            current = one.thing.node
+        if told is None and not profile.nodes and restarts:
+            told = f"part {one.run}"
+        key = told if told is not None else by_number.get((one.run, one.table.number)) or current
+        if told is not None:
+            current = told
+        keys.append(key)
+    keys = [_canonical(key, profile) for key in keys]
+    named = {id(one.table): key for one, key in zip(survey.found, keys, strict=True)}
+    return [key or named.get(twins.get(id(one.table), 0), "") for one, key in zip(survey.found, keys, strict=True)]
+
+
+def _twins(survey: Survey) -> dict[int, int]:
+    """Enumeration table -> a later one of the same name, both by identity."""
+    last: dict[str, int] = {}
+    made: dict[int, int] = {}
+    for one in reversed(survey.of(ReadEnum)):
+        name = squeezed(one.thing.name)
+        if name in last:
+            made[id(one.table)] = last[name]
+        else:
+            last[name] = id(one.table)
+    return made
+
+
+def _by_profile(one: Found, profile: Profile) -> str | None:
+    for words in profile.nodes:
+        if words.tables is not None or words.group is not None:
+            in_group = words.group is None or words.group == one.run
+            number = one.table.number
+            in_tables = words.tables is None or (number is not None and words.tables[0] <= number <= words.tables[1])
+            if in_group and in_tables:
+                return words.name
+            continue
+        if not words.match:
+            return words.name  # a profile with one node and nothing to choose by
+        texts = list(one.headings)
+        if isinstance(one.thing, ReadList):
+            texts = [one.thing.node or one.table.caption]
+            if any(_says(text, match) for text in texts for match in words.match):
+                return words.name
+            continue
+    return None
+
+
+def _canonical(key: str, profile: Profile) -> str:
+    """The profile's name of a node that the manual calls ``key``."""
+    return next((w.name for w in profile.nodes if w.name == key or any(_says(key, m) for m in w.match)), key)
+
+
+def _says(text: str, phrase: str) -> bool:
+    words, parts = folded(text), folded(phrase)
+    return any(words[i : i + len(parts)] == parts for i in range(len(words)))
+
+
+def _node(key: str, profile: Profile) -> NodeParts:
+    words = next((w for w in profile.nodes if w.name == key), None)
+    if words is not None:
+        shared = any(_says(key, s) for s in profile.data["shared"])
+        return NodeParts(words.name, words.head.get("title", key), shared, words, include=list(words.include))
+    shared = any(_says(key, word) for word in profile.data["shared"])
+    name = re.sub(r"[^a-z0-9]", "", key.casefold())[:40]
+    if not name or not name[0].isalpha():
+        name = f"node{name}"[:40]
+    return NodeParts(name, key, shared)
+
+
+def _document_name(document: Document) -> str:
+    from pathlib import Path
+
+    words = re.findall("[A-Za-z0-9]+", Path(document.file).stem)
+    return " ".join(words[:3]) or "device"
+
+
+def _includes(nodes: list[NodeParts]) -> None:
+    """Nodes that share messages with all others are included by these."""
+    shared = [node.name for node in nodes if node.shared]
+    for node in nodes:
+        if not node.shared:
+            node.include += [f"{name}.yaml" for name in shared if f"{name}.yaml" not in node.include]
+
+
+def _merge_enums(node: NodeParts, survey: Survey) -> None:
+    """Tables that print the same enumeration become one, that which fields point to standing first; those that only
+    share its name are told apart."""
+    runs = _runs(survey)
+    order = {id(one.table): index for index, one in enumerate(survey.found)}
+    pointed = {
+        (one.run, field.described.enum_table)
+        for one in survey.of(ReadMessage)
+        for field in one.thing.fields
+        if field.described.enum_table is not None
+    }
+    kept: dict[str, ReadEnum] = {}
+    taken: Counter = Counter()
+    for one in node.enums:
+        first = kept.get(one.name)
+        if first is None:
+            kept[one.name] = one
+            continue
+        if [(m.value, m.name) for m in first.members] == [(m.value, m.name) for m in one.members]:
+            is_meant = (runs.get(id(one.table)), one.table.number) in pointed
+            if is_meant and (runs.get(id(first.table)), first.table.number) not in pointed:
+                one.also = [first.table, *first.also]
+                kept[one.name] = one
+            else:
+                first.also.append(one.table)
+            continue
+        taken[one.name] += 1
+        name = f"{one.name} {taken[one.name] + 1}"
+        survey.troubles.append(
+            Trouble("IMP052", f"{one.table.title}: table {first.table.number} has an enumeration of this name with other "
+                    "members", one.table.spot, f"held as `{name}`: see which one the fields mean", "error")
+        )  # fmt: skip
+        one.name = name
+        kept[name] = one
+    node.enums = sorted(kept.values(), key=lambda e: order[id(e.table)])

@@ -1,0 +1,121 @@
+"""The report of an import as text and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+
+from icdgen.icd.rules.wording import count
+from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Spot, Trouble
+from icdgen.importer.run import Result
+from icdgen.importer.understand.survey import BACKGROUND, UNKNOWN
+
+_COLOURS = {"error": "31;1", "warning": "33;1", "note": "36"}
+
+
+def where(file: str, spot: Spot) -> str:
+    """``manual.pdf, page 12``, ``manual.txt:482``"""
+    text = f"{file}:{spot.line}" if spot.line is not None else file
+    return f"{text}, page {spot.page}" if spot.page is not None else text
+
+
+def report(result: Result, colour: bool = False) -> str:
+    """What was found, then everything to look at, then the figures."""
+    lines: list[str] = []
+    notes: list[Trouble] = []
+    for trouble in result.troubles:
+        if trouble.severity == "note":
+            notes.append(trouble)
+            continue
+        lines += [
+            _paint(f"{trouble.severity}[{trouble.code}]", trouble.severity, colour) + f": {trouble.message}",
+            f"  --> {where(result.document.file, trouble.spot)}",
+        ]
+        lines += [f"  = help: {trouble.help}"] if trouble.help else []
+        lines.append("")
+    if notes:
+        lines += [f"{_paint('note', 'note', colour)}[{t.code}] {_short(t)}: {t.message}" for t in notes]
+        lines.append("")
+    return "\n".join(lines + summary(result))
+
+
+def _short(trouble: Trouble) -> str:
+    return f"page {trouble.spot.page}" if trouble.spot.page is not None else f"line {trouble.spot.line}"
+
+
+def summary(result: Result) -> list[str]:
+    """The figures: tables by what they are and how surely they were read, then each file."""
+    kinds = Counter(one.what for one in result.survey.found)
+    order = ["message", "enumeration", "list", "loggable frames", BACKGROUND, UNKNOWN]
+    parts = [f"{kinds[kind]} {_many(kind, kinds[kind])}" for kind in order if kinds[kind]]
+    pages = f"{result.document.pages:,} pages, " if result.document.pages else ""
+    sure = result.sureness()
+    severities = Counter(t.severity for t in result.troubles)
+    found = ", ".join(
+        f"{severities[s]} {s}{'s' if severities[s] != 1 else ''}" for s in ("error", "warning", "note") if severities[s]
+    )
+    return [
+        f"{pages}{len(result.survey.found):,} tables: " + ", ".join(parts),
+        "read: " + ", ".join(f"{sure[level]} {level}" for level in (CERTAIN, LIKELY, DOUBTFUL) if sure[level]),
+        f"findings: {found or 'none'}",
+    ]
+
+
+def _many(kind: str, count: int) -> str:
+    if kind in (BACKGROUND, UNKNOWN) or kind.endswith("s") or count == 1:
+        return kind
+    return kind + "s"
+
+
+def files(result: Result) -> list[str]:
+    """What each file holds, and what changed in it."""
+    lines = []
+    for target in result.targets:
+        tree = target.tree
+        messages, enums = tree.get("messages", []), tree.get("enums", [])
+        fields = sum(len(m.get("fields", ())) for m in messages)
+        members = sum(len(e["members"]) for e in enums)
+        what = (
+            f"{count(len(messages), 'message')} with {count(fields, 'field')}, "
+            f"{count(len(enums), 'enumeration')} with {count(members, 'member')}"
+        )
+        state = "written" if target.changes is None else "unchanged" if target.same else "updated"
+        lines.append(f"{target.path}: {state}; {what}")
+        lines += [f"  {change}" for change in target.changes or ()]
+    return lines
+
+
+def as_json(result: Result) -> str:
+    """Tables and findings for programs."""
+    found = [
+        {
+            "table": one.table.number,
+            "caption": one.table.caption,
+            "page": one.table.page,
+            "line": one.table.line,
+            "is": one.what,
+            "sure": result.sure_of(one.table),
+        }
+        for one in result.survey.found
+    ]
+    troubles = [
+        {
+            "code": t.code,
+            "severity": t.severity,
+            "message": t.message,
+            "help": t.help,
+            "table": t.spot.table,
+            "page": t.spot.page,
+            "line": t.spot.line,
+        }
+        for t in result.troubles
+    ]
+    written = [{"file": str(t.path), "changes": t.changes} for t in result.targets]
+    return json.dumps(
+        {"manual": result.document.file, "pages": result.document.pages, "tables": found, "findings": troubles,
+         "files": written}, indent=2, ensure_ascii=False,
+    )  # fmt: skip
+
+
+def _paint(text: str, severity: str, colour: bool) -> str:
+    return f"\x1b[{_COLOURS[severity]}m{text}\x1b[0m" if colour else text

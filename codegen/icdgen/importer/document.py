@@ -1,0 +1,129 @@
+"""What both readers, of PDF and of text, make of a manual: headings, text and tables in reading order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+CERTAIN, LIKELY, DOUBTFUL = "certain", "likely", "doubtful"
+
+
+class Box(NamedTuple):
+    """A rectangle on a page in points; y grows downwards."""
+
+    page: int
+    x0: float
+    top: float
+    x1: float
+    bottom: float
+
+    def join(self, other: Box) -> Box:
+        """The smallest box around both, which stand on one page."""
+        return Box(
+            self.page,
+            min(self.x0, other.x0),
+            min(self.top, other.top),
+            max(self.x1, other.x1),
+            max(self.bottom, other.bottom),
+        )
+
+
+class Spot(NamedTuple):
+    """Where something stands in the manual: a page of a PDF, a line of a text, the number of a table."""
+
+    page: int | None = None
+    line: int | None = None
+    table: int | None = None
+
+
+@dataclass(slots=True)
+class Row:
+    """A row of a table. ``cells`` may be fewer or more than the columns where the page has them so (spans, torn rows)."""
+
+    cells: list[str]
+    page: int | None = None
+    line: int | None = None
+    joined: bool = False  # put together from parts that a page break had torn apart
+    mended: str = ""  # what the reader had to do to it, in words
+
+
+@dataclass(slots=True)
+class Header:
+    """The heading row of a table: what kind of table has such headings, and the role of each cell ("" if unknown)."""
+
+    kind: str  # "fields" | "enumeration" | "list" | "loggable"
+    roles: list[str]
+    titles: list[str]
+
+
+@dataclass(slots=True)
+class Table:
+    """A table with all its continuations on later pages. ``head`` are the rows above the headings."""
+
+    number: int | None = None
+    caption: str = ""
+    header: Header | None = None
+    head: list[Row] = field(default_factory=list)
+    rows: list[Row] = field(default_factory=list)
+    boxes: list[Box] = field(default_factory=list)
+    page: int | None = None
+    line: int | None = None
+    doubts: list[str] = field(default_factory=list)  # what makes the reading less than certain
+
+    @property
+    def spot(self) -> Spot:
+        return Spot(self.page, self.line, self.number)
+
+    @property
+    def title(self) -> str:
+        """How a reader finds it: number and caption."""
+        number = f"table {self.number}" if self.number is not None else "a table without number"
+        return f"{number}: {self.caption}" if self.caption else number
+
+
+@dataclass(slots=True)
+class Heading:
+    """A numbered section heading."""
+
+    number: str
+    text: str
+    page: int | None = None
+    line: int | None = None
+
+
+@dataclass(slots=True)
+class Text:
+    """A paragraph, or a line of one."""
+
+    text: str
+    page: int | None = None
+    line: int | None = None
+
+
+Block = Table | Heading | Text
+
+
+class Trouble(NamedTuple):
+    """One thing that a person must look at. ``sure`` says how sure the importer is of what it did about it."""
+
+    code: str
+    message: str
+    spot: Spot = Spot()
+    help: str = ""
+    severity: str = "warning"  # "error" | "warning" | "note"
+    sure: str = LIKELY
+
+
+@dataclass(slots=True)
+class Document:
+    """A manual as read."""
+
+    file: str
+    blocks: list[Block] = field(default_factory=list)
+    troubles: list[Trouble] = field(default_factory=list)
+    pages: int | None = None  # None for text, which has no pages
+    title: str = ""
+
+    @property
+    def tables(self) -> list[Table]:
+        return [block for block in self.blocks if isinstance(block, Table)]

@@ -1,0 +1,43 @@
+"""Trees -> canonical YAML; over an existing file the vendor's facts are replaced and everything else is kept."""
+
+from __future__ import annotations
+
+from icdgen.icd import source
+from icdgen.icd.fmt import format_text, kinds, write
+from icdgen.icd.fmt.tree import Branch, Child, Text
+from icdgen.importer.trees import Spelled
+
+SCHEMA_LINE = "# yaml-language-server: $schema=https://raw.githubusercontent.com/icdgen/icdgen/main/codegen/icdgen/icd/schema.json"
+
+
+def text(tree: dict, header: list[str] | None = None) -> str:
+    """The canonical YAML of a tree."""
+    root = branch(tree)
+    root.header = header if header is not None else [SCHEMA_LINE]
+    return of(root)
+
+
+def of(root: Branch) -> str:
+    """The text of a tree with comments; read back, so that nothing is written that does not load."""
+    made = write.write(root, kinds.root("icd"))
+    source.parse(made.encode("utf-8"), "the result")
+    return format_text(made, "the result")
+
+
+def branch(value: dict | list) -> Branch:
+    """A mapping or a list as the formatter holds it."""
+    made = Branch(isinstance(value, dict), False, 0)
+    items = value.items() if isinstance(value, dict) else ((None, item) for item in value)
+    made.children = [Child(Text(key, key) if key is not None else None, node(item)) for key, item in items]
+    return made
+
+
+def node(value: object) -> Branch | Text:
+    """Any value as the formatter holds it."""
+    if isinstance(value, (dict, list)):
+        return branch(value)
+    if isinstance(value, Spelled):
+        return Text(int(value), value.spelling)
+    if isinstance(value, bool):
+        return Text(value, "true" if value else "false")
+    return Text(value, str(value))

@@ -1,0 +1,97 @@
+"""Which row of a table is its heading row, and what each column holds: by the profile's vocabulary."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from icdgen.importer.document import Header
+from icdgen.importer.profile import Profile
+from icdgen.importer.words import folded, number
+
+
+def match(cells: list[str], profile: Profile) -> Header | None:
+    """The heading row that these cells are; None if they are none."""
+    texts = [folded(cell) for cell in cells]
+    if sum(bool(text) for text in texts) < 2 or any(number(cell) is not None for cell in cells):
+        return None
+    best, most = None, 0.0
+    for kind, roles in profile.headings.items():
+        given = _roles(texts, roles)
+        there = set(given)
+        if not all(any(role in there for role in group) for group in profile.needs[kind]):
+            continue
+        unknown = sum(
+            1 for text, role in zip(texts, given, strict=True)
+            if text and not role and profile.labels.get(tuple(sorted(text))) != "fields"
+        )  # fmt: skip
+        known = sum(bool(role) for role in given)
+        score = known - 0.6 * unknown
+        if known > unknown and score > most:
+            best, most = Header(kind, given, cells), score
+    return best
+
+
+def _roles(texts: list[tuple[str, ...]], roles: dict[str, list[tuple[str, ...]]]) -> list[str]:
+    """The role of each cell; a role is given once, to the cell whose heading stands first in the vocabulary."""
+    given = [""] * len(texts)
+    for role, headings in roles.items():
+        found = [index for index, text in enumerate(texts) if text and not given[index] and text in headings]
+        if found:
+            given[found[0]] = role
+    return given
+
+
+def segmented(words: list[str], profile: Profile) -> list[list[int]] | None:
+    """The words of a heading row, in groups that are known headings, whatever the gaps between them; None if none is.
+
+    Groups hold indices into ``words``.
+    """
+    best: tuple[int, list[list[int]]] = (0, [])
+    flat = [folded(word) for word in words]
+    for kind, roles in profile.headings.items():
+        known = {heading for headings in roles.values() for heading in headings}
+        groups, index, hits = [], 0, 0
+        while index < len(words):
+            for length in range(min(5, len(words) - index), 0, -1):
+                chunk = tuple(part for text in flat[index : index + length] for part in text)
+                if chunk in known:
+                    groups.append(list(range(index, index + length)))
+                    index, hits = index + length, hits + 1
+                    break
+            else:
+                groups.append([index])
+                index += 1
+        header = match([" ".join(words[i] for i in group) for group in groups], profile)
+        if header is not None and header.kind == kind and hits > best[0]:
+            best = (hits, groups)
+    return best[1] or None
+
+
+def repeats(cells: list[str], header: Header, profile: Profile) -> bool:
+    """Whether the cells repeat the headings, as tables do on a new page; also when only some of them are there."""
+    given = [tuple(folded(cell)) for cell in cells if cell.strip()]
+    titles = [folded(title) for title in header.titles if title.strip()]
+    if not given or any(number(cell) is not None for cell in cells):
+        return False
+    if given == titles or (all(text in titles for text in given) and len(given) >= 2):
+        return True
+    if len(given) >= 2 and _is_lower_half(given, titles):
+        return True
+    found = match(cells, profile)
+    return (
+        found is not None
+        and found.kind == header.kind
+        and [r for r in found.roles if r] == [r for r in header.roles if r]
+    )
+
+
+def _is_lower_half(given: list[tuple[str, ...]], titles: list[tuple[str, ...]]) -> bool:
+    """The second line of headings in two lines: `(bits) (bits) Type`."""
+    ends = [title[1:] for title in titles if len(title) > 1]
+    places = []
+    for text in given:
+        found = [i for i, end in enumerate(ends) if end == text and i not in places]
+        if not found:
+            return False
+        places.append(found[0])
+    return all(a < b for a, b in pairwise(places))

@@ -1,0 +1,133 @@
+"""The report of an import as a page: each doubtful table as a picture beside what was read."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+from collections.abc import Iterator
+
+from icdgen.importer.document import CERTAIN, Table, Trouble
+from icdgen.importer.run import Result
+from icdgen.importer.understand.survey import Found
+
+RESOLUTION = 110
+MARGIN = 6.0
+CAPTION = 26.0  # points above and below a table in which its caption stands
+MOST = 250  # pictures; a report with more would be too large to open
+
+_STYLE = """
+body { font: 15px/1.45 system-ui, sans-serif; margin: 2rem auto; max-width: 1500px; padding: 0 1rem; color: #1c2330; }
+h1 { font-size: 1.5rem; } h2 { font-size: 1.1rem; margin: 2.2rem 0 .4rem; border-top: 1px solid #ccd; padding-top: 1rem; }
+table { border-collapse: collapse; font-size: 13px; } td, th { border: 1px solid #cbd2de; padding: 2px 6px; text-align: left;
+vertical-align: top; } th { background: #eef1f6; }
+.pair { display: grid; grid-template-columns: 1fr 1fr; gap: 1.2rem; align-items: start; } .pair > div { overflow-x: auto; }
+img { max-width: 100%; border: 1px solid #cbd2de; display: block; margin-bottom: .5rem; }
+.error { color: #b00020; } .warning { color: #8a5300; } .note { color: #3a5a80; } .torn td { background: #fff5d6; }
+.sure { font-weight: normal; color: #667; } li { margin: .15rem 0; } code { background: #f0f2f6; padding: 0 .2em; }
+@media (max-width: 900px) { .pair { grid-template-columns: 1fr; } }
+@media (prefers-color-scheme: dark) { body { background: #14181f; color: #dde3ec; } th { background: #232a36; }
+td, th, img { border-color: #3a4352; } code { background: #232a36; } .torn td { background: #3b3413; }
+.error { color: #ff8a8a; } .warning { color: #ffc46b; } .note { color: #8fbbee; } }
+"""
+
+
+def report(result: Result) -> str:
+    """One file without anything beside it."""
+    from icdgen.importer import console
+
+    name = html.escape(result.document.file)
+    about: dict[int | None, list[Trouble]] = {}
+    for trouble in result.troubles:
+        about.setdefault(trouble.spot.table, []).append(trouble)
+    doubtful = [one for one in result.survey.found if result.sure_of(one.table) != CERTAIN]
+    rest = [one for one in result.survey.found if result.sure_of(one.table) == CERTAIN]
+    parts = [
+        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>Import of {name}</title>',
+        '<meta name="viewport" content="width=device-width, initial-scale=1">',
+        f"<style>{_STYLE}</style></head><body>\n<h1>Import of {name}</h1>",
+        *(f"<p>{html.escape(line)}</p>" for line in console.summary(result)),
+    ]
+    loose = list(about.get(None, []))
+    if loose:
+        parts += ["<h2>About the document</h2>", _list(loose)]
+    with _Pictures(result) as pictures:
+        for one in doubtful:
+            parts += _table(one, result, about.get(one.table.number, []), pictures)
+    noted = [t for one in rest for t in about.get(one.table.number, []) if one.table.number is not None]
+    if noted:
+        parts += ["<h2>Notes about tables that were read without doubt</h2>", _list(noted)]
+    return "\n".join(parts) + "\n</body></html>\n"
+
+
+def _list(troubles: list[Trouble]) -> str:
+    items = []
+    for t in troubles:
+        place = f" (page {t.spot.page})" if t.spot.page else f" (line {t.spot.line})" if t.spot.line else ""
+        help = f" <i>{html.escape(t.help)}.</i>" if t.help else ""
+        items.append(
+            f'<li class="{t.severity}"><b>{t.severity}</b> {t.code}{place}: {html.escape(t.message)}{help}</li>'
+        )
+    return "<ul>" + "\n".join(items) + "</ul>"
+
+
+def _table(one: Found, result: Result, troubles: list[Trouble], pictures: _Pictures) -> Iterator[str]:
+    table = one.table
+    title = html.escape(table.title[:1].upper() + table.title[1:])
+    yield f'<h2 id="table-{table.number}">{title} <span class="sure">{one.what}, {result.sure_of(table)}</span></h2>'
+    yield _list(troubles)
+    images = "".join(pictures.of(table))
+    read = _as_read(table)
+    yield f'<div class="pair"><div>{images}</div><div>{read}</div></div>' if images else f"<div>{read}</div>"
+
+
+def _as_read(table: Table) -> str:
+    width = max([len(row.cells) for row in (*table.head, *table.rows)] + [1])
+    rows = [_row(row.cells, width, "td") for row in table.head]
+    if table.header:
+        rows.append(_row(table.header.titles, width, "th"))
+    rows += [_row(row.cells, width, "td") for row in table.rows]
+    return "<table>" + "\n".join(rows) + "</table>"
+
+
+def _row(cells: list[str], width: int, tag: str) -> str:
+    padded = [*cells, *[""] * (width - len(cells))]
+    return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in padded) + "</tr>"
+
+
+class _Pictures:
+    """Cuts tables out of the pages of a PDF; gives none for a text."""
+
+    def __init__(self, result: Result) -> None:
+        self.result, self.file, self.left = result, None, MOST
+        self.pages: dict[int, object] = {}
+
+    def __enter__(self) -> _Pictures:
+        if any(one.table.boxes for one in self.result.survey.found):
+            import pypdfium2
+
+            self.file = pypdfium2.PdfDocument(self.result.document.file)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self.file is not None:
+            self.file.close()
+
+    def of(self, table: Table) -> Iterator[str]:
+        for box in table.boxes:
+            if self.file is None or self.left <= 0:
+                return
+            self.left -= 1
+            page = self.file[box.page - 1]
+            width, height = page.get_size()
+            crop = (
+                max(0.0, box.x0 - MARGIN),
+                max(0.0, height - box.bottom - CAPTION),
+                max(0.0, width - box.x1 - MARGIN),
+                max(0.0, box.top - CAPTION),
+            )
+            image = page.render(scale=RESOLUTION / 72, crop=crop).to_pil().convert("P", palette=1, colors=32)
+            data = io.BytesIO()
+            image.save(data, "PNG", optimize=True)
+            encoded = base64.b64encode(data.getvalue()).decode("ascii")
+            yield f'<img alt="page {box.page}" title="page {box.page}" src="data:image/png;base64,{encoded}">'

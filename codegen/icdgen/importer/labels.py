@@ -1,0 +1,66 @@
+"""The rows above a message's fields: ``ID 132, Frame Length (bytes) 6``, in whatever cells they stand."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from icdgen.importer.profile import Profile
+from icdgen.importer.words import folded, plain
+
+_VALUE = re.compile(r"(?:0[xX][0-9A-Fa-f]+|[0-9]+)(?:\s*/\s*(?:0[xX][0-9A-Fa-f]+|[0-9]+))?\Z")
+
+
+class Labelled(NamedTuple):
+    """A label and its value as text; ``what`` is the label's meaning by the profile, "" if it has none."""
+
+    what: str
+    label: str
+    value: str
+
+
+def parse(text: str, profile: Profile) -> list[Labelled]:
+    """All labels with a number behind them, in order; a label without one comes last, with an empty value."""
+    found: list[Labelled] = []
+    label: list[str] = []
+    words = re.sub(r"(?<=[0-9])\s*/\s*(?=[0-9])", "/", plain(text)).replace(":", " : ").split()
+    for word in words:
+        bare = word.strip(",;|")
+        if _VALUE.match(bare) and label:
+            found.append(Labelled(meaning(" ".join(label), profile), " ".join(label), bare))
+            label = []
+        elif bare in (":", "=", "-", "") and not folded(bare):
+            continue
+        elif bare.startswith("(") and found and not label and _VALUE.match(bare.strip("()")):
+            continue  # the same number in another base
+        else:
+            label.append(bare)
+    if label:
+        found.append(Labelled(meaning(" ".join(label), profile), " ".join(label), ""))
+    return found
+
+
+def meaning(label: str, profile: Profile) -> str:
+    """What the label stands for. The order of its words does not count: torn cells come in any."""
+    return profile.labels.get(tuple(sorted(folded(label))), "")
+
+
+def begins(text: str, profile: Profile) -> bool:
+    """Whether a line can only be the first row of a message's table: its id, and nothing that is not labelled."""
+    found = parse(text, profile)
+    return (
+        bool(found)
+        and found[0].what in ("id", "both_ids", "set_id")
+        and bool(found[0].value)
+        and all(one.what and (one.value or one.what in ("description", "fields")) for one in found)
+    )
+
+
+def leads(text: str, profile: Profile) -> str:
+    """What a line begins with, if that is a label without a number: "description", "fields" ..., else ""."""
+    words = plain(text).split()
+    for length in range(min(5, len(words)), 0, -1):
+        what = meaning(" ".join(words[:length]), profile)
+        if what:
+            return what
+    return ""

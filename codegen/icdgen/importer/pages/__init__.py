@@ -1,0 +1,1 @@
+"""Pages of a PDF -> words and rules -> tables, headings and text."""

@@ -1,0 +1,164 @@
+"""Bands of a table -> its rows: where rules part the rows, one each; elsewhere by the figures in the key column."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from dataclasses import dataclass, field
+from statistics import median
+
+from icdgen.importer.document import Header, Row
+from icdgen.importer.pages.columns import index_of
+from icdgen.importer.pages.extract import Word
+from icdgen.importer.pages.lines import Line, lines
+from icdgen.importer.words import join
+
+_KEY = re.compile(r"(?:0[xX])?[0-9A-Fa-f]*[0-9][0-9A-Fa-f]*(?:\s*(?:[-–:/]|\.\.\.?|to)\s*[0-9]+)?[⁰¹²³⁴⁵⁶⁷⁸⁹*†]*\Z")
+KEYS = {
+    "fields": ("at", "at_bytes"),
+    "enumeration": ("value",),
+    "list": ("id", "set_id", "get_id"),
+    "loggable": ("id",),
+}
+
+
+@dataclass(slots=True)
+class Band:
+    """A stretch of a table between two rules. ``edges`` are those of its cells."""
+
+    page: int
+    top: float
+    bottom: float
+    edges: list[float]
+    words: list[Word] = field(default_factory=list)
+
+    def texts(self, known: frozenset[str]) -> list[str]:
+        """The texts of its cells."""
+        return [_cell(part, edge, known) for part, edge in zip(self.parts(), self.edges[1:], strict=True)]
+
+    def parts(self) -> list[list[Word]]:
+        made: list[list[Word]] = [[] for _ in self.edges[1:]]
+        for word in self.words:
+            made[index_of((word.x0 + word.x1) / 2, self.edges)].append(word)
+        return made
+
+
+def _cell(words: list[Word], right: float, known: frozenset[str]) -> str:
+    if not words:
+        return ""
+    found = lines(words)
+    full = [len(line.words) == 1 and line.x1 > right - 1.6 * line.size for line in found]
+    return join([line.text for line in found], known, full)
+
+
+def is_key(text: str) -> bool:
+    """Whether a key column's text is one: a number, a range of numbers, two ids."""
+    return bool(_KEY.match(text.strip()))
+
+
+def aligned(band: Band, edges: list[float]) -> Band:
+    """The band with its words in the columns of the heading row, ``edges``; a cell over several stays in the first."""
+    if len(band.edges) == len(edges):
+        return band
+    moved = []
+    for index, part in enumerate(band.parts()):
+        if not part:
+            continue
+        left, right = band.edges[index], band.edges[index + 1]
+        overlaps = [max(0.0, min(right, b) - max(left, a)) for a, b in itertools.pairwise(edges)]
+        covered = [i for i, o in enumerate(overlaps) if o > 0.5 * (edges[i + 1] - edges[i])]
+        target = covered[0] if covered else overlaps.index(max(overlaps))
+        a, b = edges[target], edges[target + 1]
+        if all(a <= (w.x0 + w.x1) / 2 <= b for w in part):
+            moved += part
+        else:  # its lines, whole
+            moved += [line.words[0]._replace(text=line.text, x0=a + 1, x1=b - 1) for line in lines(part)]
+    return Band(band.page, band.top, band.bottom, edges, moved)
+
+
+def rows(band: Band, header: Header, known: frozenset[str]) -> list[Row]:
+    """The rows of a band whose cells are those of ``header``."""
+    key = next((i for i, role in enumerate(header.roles) if role in KEYS[header.kind]), 0)
+    found = lines(band.words)
+    if header.kind == "list" and (groups := [i for i, line in enumerate(found) if _is_group(line, band.edges, key)]):
+        return _around(band, found, groups, header, known)
+    keyed = [i for i, line in enumerate(found) if is_key(_text_in(line, band.edges, key))]
+    if len(keyed) <= 1:
+        return [Row(band.texts(known), band.page)] if band.words else []
+    made = []
+    for first, last in _stretches(found, keyed):
+        words = [word for line in found[first:last] for word in line.words]
+        made.append(Row(Band(band.page, band.top, band.bottom, band.edges, words).texts(known), band.page))
+    return made
+
+
+def has_keys(band: Band, header: Header) -> bool:
+    """Whether a line has a key in the key column and words in another one."""
+    key = next((i for i, role in enumerate(header.roles) if role in KEYS[header.kind]), 0)
+    for line in lines(band.words):
+        columns = {index_of((w.x0 + w.x1) / 2, band.edges) for w in line.words}
+        if len(columns) > 1 and is_key(_text_in(line, band.edges, key)):
+            return True
+    return False
+
+
+def _is_group(line: Line, edges: list[float], key: int) -> bool:
+    """Whether the line is a group heading: words, not figures, in the column of ids."""
+    inside = _text_in(line, edges, key)
+    first = index_of((line.words[0].x0 + line.words[0].x1) / 2, edges)
+    return bool(inside) and first <= key and not any(is_key(word) for word in inside.split())
+
+
+def _around(band: Band, found: list[Line], groups: list[int], header: Header, known: frozenset[str]) -> list[Row]:
+    """The rows of a band in which group headings stand."""
+    made: list[Row] = []
+    start = 0
+    for index in [*groups, len(found)]:
+        words = [word for line in found[start:index] for word in line.words]
+        if words:
+            made += rows(Band(band.page, band.top, band.bottom, band.edges, words), header, known)
+        if index < len(found):
+            made.append(Row([found[index].text, *[""] * (len(band.edges) - 2)], band.page))
+        start = index + 1
+    return made
+
+
+def _text_in(line: Line, edges: list[float], column: int) -> str:
+    return " ".join(w.text for w in line.words if index_of((w.x0 + w.x1) / 2, edges) == column)
+
+
+def _stretches(found: list[Line], keyed: list[int]) -> list[tuple[int, int]]:
+    """The lines of each row, given those that hold its key; what stands before belongs to a row torn above."""
+    gaps = [b.middle - a.middle for a, b in itertools.pairwise(found)]
+    usual = median(gaps) if gaps else 0.0
+    starts = [_first_start(found, keyed, gaps, usual)]
+    for before, here in itertools.pairwise(keyed):
+        starts.append(_start(found, before, here, gaps, starts[-1]))
+    ends = [*starts[1:], len(found)]
+    lead = [(0, starts[0])] if starts[0] else []
+    return lead + list(zip(starts, ends, strict=True))
+
+
+def _first_start(found: list[Line], keyed: list[int], gaps: list[float], usual: float) -> int:
+    """Lines above the first key belong to its row where the key stands in the middle of its row's height."""
+    first = keyed[0]
+    if first == 0:
+        return 0
+    widest = max(range(first), key=lambda i: gaps[i])
+    if gaps[widest] > 1.25 * usual and widest > 0:
+        return widest + 1
+    after = (keyed[1] if len(keyed) > 1 else len(found)) - first - 1
+    return 0 if after >= first else first
+
+
+def _start(found: list[Line], before: int, here: int, gaps: list[float], start: int) -> int:
+    """Where the row of the key at ``here`` begins, after the one at ``before`` whose row begins at ``start``."""
+    if here == before + 1:
+        return here
+    between = range(before, here)
+    widest = max(between, key=lambda i: gaps[i])
+    others = [gaps[i] for i in between if i != widest]
+    if gaps[widest] > 1.2 * max(others):
+        return widest + 1
+    above = before - start  # a key in the middle has as many lines below as above
+    return min(before + above + 1, here) if above else here

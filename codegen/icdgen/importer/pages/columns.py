@@ -1,0 +1,135 @@
+"""Where no vertical rules part the columns: boundaries from the headings and from the white between the words."""
+
+from __future__ import annotations
+
+import itertools
+from typing import NamedTuple
+
+from icdgen.importer import headings
+from icdgen.importer.document import Header
+from icdgen.importer.pages.extract import Word
+from icdgen.importer.pages.lines import Line, runs, text_of
+from icdgen.importer.profile import Profile
+from icdgen.importer.words import join
+
+MOST_LINES = 4  # of a heading row
+
+
+class Columns(NamedTuple):
+    """A heading row found among lines: its header, the extent of each heading, and how many lines it takes."""
+
+    header: Header
+    spans: list[tuple[float, float]]
+    lines: int
+
+
+def find(lines: list[Line], profile: Profile) -> Columns | None:
+    """The heading row that begins with the first of ``lines``; None if none does."""
+    best: Columns | None = None
+    for count in range(1, min(MOST_LINES, len(lines)) + 1):
+        block = lines[:count]
+        if count > 1 and block[-1].top - block[-2].bottom > 1.2 * block[-1].size:
+            break
+        found = _in_one_line(block[0], profile) if count == 1 else None
+        for cells in filter(None, (found, _clustered(block))):
+            header = headings.match([_text(cell) for cell in cells], profile)
+            if header and (best is None or _known(header) > _known(best.header)):
+                spans = [(min(w.x0 for w in cell), max(w.x1 for w in cell)) for cell in cells]
+                best = Columns(header, spans, count)
+    return best
+
+
+def _known(header: Header) -> int:
+    return sum(len(title.split()) for title, role in zip(header.titles, header.roles, strict=True) if role)
+
+
+def _text(cell: list[Word]) -> str:
+    from icdgen.importer.pages.lines import lines
+
+    return join([line.text for line in lines(cell)])
+
+
+def _in_one_line(line: Line, profile: Profile) -> list[list[Word]] | None:
+    groups = headings.segmented([w.text for w in line.words], profile)
+    return [[line.words[i] for i in group] for group in groups] if groups else None
+
+
+def _clustered(block: list[Line]) -> list[list[Word]]:
+    """Runs of words of several lines, put together where they stand above each other."""
+    cells: list[list[Word]] = []
+    for run in sorted((run for line in block for run in runs(line, 0.45)), key=lambda r: (r[0].top, r[0].x0)):
+        x0, x1 = run[0].x0, run[-1].x1
+        for cell in cells:
+            if min(x1, max(w.x1 for w in cell)) - max(x0, min(w.x0 for w in cell)) > 0.3 * min(
+                x1 - x0, max(w.x1 for w in cell) - min(w.x0 for w in cell)
+            ):
+                cell.extend(run)
+                break
+        else:
+            cells.append(list(run))
+    return sorted(cells, key=lambda cell: min(w.x0 for w in cell))
+
+
+def side_by_side(block: list[Line]) -> str:
+    """The text of some lines cell by cell, as if no cell wrapped."""
+    if len(block) == 1:
+        return block[0].text
+    return " ".join(_text(cell) for cell in _clustered(block))
+
+
+def boundaries(spans: list[tuple[float, float]], lines: list[Line], x0: float, x1: float) -> list[float]:
+    """Edges of the columns whose headings stand at ``spans``; between two, where the fewest words stand in the way."""
+    words = [word for line in lines for word in line.words]
+    edges = [min([x0, spans[0][0], *(w.x0 for w in words)]) - 1]
+    last = max([x1, spans[-1][1], *(w.x1 for w in words)]) + 1
+    centres = [(a + b) / 2 for a, b in spans]
+    for index, (low, high) in enumerate(itertools.pairwise(centres)):
+        beyond = centres[index + 2] if index + 2 < len(centres) else last
+        guess = (spans[index][1] + spans[index + 1][0]) / 2
+        edges.append(_river(words, low, high, guess, edges[-1], beyond, spans[index + 1][0]))
+    return [*edges, last]
+
+
+def _river(
+    words: list[Word], low: float, high: float, guess: float, before: float, beyond: float, heading: float
+) -> float:
+    """The middle of the gap that the fewest words cross: one with words on both sides of it, then one that ends where
+    the heading begins, then where most words begin, then the widest."""
+    middles = [(w.x0 + w.x1) / 2 for w in words]
+    near = [(w.x0, w.x1) for w in words if w.x1 > low and w.x0 < high]
+    points = sorted({low, high, *(x for span in near for x in span if low < x < high)})
+    best, key = guess, None
+    pieces: list[list[float]] = []  # [from, to, crossings], neighbours with the same count put together
+    for a, b in itertools.pairwise(points):
+        middle = (a + b) / 2
+        crossings = sum(1 for x0, x1 in near if x0 < middle < x1)
+        if pieces and pieces[-1][2] == crossings:
+            pieces[-1][1] = b
+        else:
+            pieces.append([a, b, crossings])
+    for a, b, crossings in pieces:
+        middle = (a + b) / 2
+        empty = not any(before < x < middle for x in middles) or not any(middle < x < beyond for x in middles)
+        begin = sum(1 for w in words if abs(w.x0 - b) < 1)  # words that begin together, as a column's do
+        headed = abs(b - heading) < 1.5
+        narrow = bool(words) and b - a < 0.5 * words[0].size
+        this = (crossings, not headed, empty, narrow, -begin if begin > 2 else 0, -(b - a))
+        if key is None or this < key:
+            best, key = middle, this
+    return best
+
+
+def cells(line: Line, edges: list[float]) -> list[str]:
+    """The texts of the line's cells between ``edges``."""
+    parts: list[list[Word]] = [[] for _ in edges[1:]]
+    for word in line.words:
+        parts[index_of((word.x0 + word.x1) / 2, edges)].append(word)
+    return [text_of(part) if part else "" for part in parts]
+
+
+def index_of(x: float, edges: list[float]) -> int:
+    """The column in which ``x`` lies; the first or last one for what lies outside."""
+    for index in range(1, len(edges) - 1):
+        if x < edges[index]:
+            return index - 1
+    return len(edges) - 2

@@ -1,0 +1,359 @@
+"""All pages -> headings, captions, text and pieces of tables, in reading order."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections import Counter
+from dataclasses import dataclass, field
+
+from icdgen.importer import headings, labels
+from icdgen.importer.document import Box
+from icdgen.importer.pages import columns, furniture
+from icdgen.importer.pages.bands import Band, is_key
+from icdgen.importer.pages.columns import Columns
+from icdgen.importer.pages.extract import Page
+from icdgen.importer.pages.lines import Line, lines, runs
+from icdgen.importer.pages.rules import Region, joined, regions
+from icdgen.importer.profile import Profile
+from icdgen.importer.words import folded
+
+_HEADING = re.compile(r"(?P<number>[0-9]+(?:\.[0-9]+)*)\.?\s+(?P<text>[A-Z].*)\Z")
+_CONTINUED = re.compile(
+    r"\(?\s*(?:table )?continue[ds]\b.*|.*\bcontinued (?:on|from) (?:the )?(?:next|previous) page.*", re.I
+)
+
+
+@dataclass(slots=True)
+class Piece:
+    """A part of a table that stands on one page. ``columns`` is None where it has no headings of its own."""
+
+    box: Box
+    bands: list[Band]
+    ruled: bool
+    columns: Columns | None = None
+    head: list[str] = field(default_factory=list)  # lines above the headings, where no rules part them
+    lines: list[Line] = field(default_factory=list)  # of the body, where no rules part the columns
+    page: Page | None = None  # on which the body stands, where no rules part the columns
+    top: float = 0.0  # of the body
+    extent: tuple[float, float] = (0.0, 0.0)  # from left to right
+
+
+@dataclass(slots=True)
+class Mark:
+    """A caption, a heading or a line of text."""
+
+    kind: str  # "caption" | "heading" | "text"
+    text: str
+    box: Box
+    size: float
+    style: str
+    number: str = ""
+
+
+Item = Piece | Mark
+
+
+@dataclass(slots=True)
+class Type:
+    """The size and style that most of the text is set in."""
+
+    size: float
+    style: str
+
+
+def items(pages: list[Page], profile: Profile) -> list[Item]:
+    """Everything on the pages in reading order."""
+    ruled = {page.number: regions(page) for page in pages}
+    loose = {}
+    for page in pages:
+        inside = ruled[page.number]
+        words = [w for w in page.words if not any(r.holds((w.x0 + w.x1) / 2, w.middle) for r in inside)]
+        loose[page.number] = lines(words)
+    body = _body(loose)
+    kept = furniture.without(pages, loose, lambda line, near: _is_of_a_table(line, near, profile))
+    made: list[Item] = []
+    flow = _Flow(profile, body)
+    for page in pages:
+        made += flow.page(page, ruled[page.number], kept[page.number])
+    return made
+
+
+def _body(loose: dict[int, list[Line]]) -> Type:
+    sizes: Counter = Counter()
+    styles: Counter = Counter()
+    for found in loose.values():
+        for line in found:
+            sizes[round(line.size, 1)] += len(line.text)
+            styles[line.style] += len(line.text)
+    return Type(sizes.most_common(1)[0][0] if sizes else 10.0, styles.most_common(1)[0][0] if styles else "")
+
+
+def _is_of_a_table(line: Line, near: list[Line], profile: Profile) -> bool:
+    """Whether a line in a margin is surely of a table, however often pages repeat it."""
+    if profile.caption.match(line.text) or labels.begins(line.text, profile):
+        return True
+    if headings.segmented(line.text.split(), profile) is not None:
+        return True
+    parts = folded(line.text)  # a part of headings in several lines: the others stand next to it
+    tight = any(max(line.top - other.bottom, other.top - line.bottom) < 0.5 * line.size for other in near)
+    return tight and bool(parts) and all(part in profile.heading_words for part in parts)
+
+
+class _Flow:
+    """Goes through the pages; knows the columns of the table that may go on."""
+
+    def __init__(self, profile: Profile, body: Type) -> None:
+        self.profile, self.body = profile, body
+        self.open: Columns | None = None  # of a table without vertical rules that the next page may continue
+        self.size = 0.0  # of its type
+        self.extent = (0.0, 0.0)  # of that table, from left to right
+
+    def page(self, page: Page, ruled: list[Region], loose: list[Line]) -> list[Item]:
+        made: list[Item] = []
+        index = 0
+        waiting = list(ruled)
+        while index < len(loose) or waiting:
+            if waiting and (index >= len(loose) or waiting[0].top < loose[index].middle):
+                made.append(self.ruled(page, waiting.pop(0)))
+                self.open = None
+                continue
+            limit = waiting[0].top if waiting else page.height
+            upto = index
+            while upto < len(loose) and loose[upto].middle < limit:
+                upto += 1
+            taken, item = self.next(page, loose[index:upto], not made)
+            index += taken
+            if item is not None:
+                made.append(item)
+        return made
+
+    def ruled(self, page: Page, region: Region) -> Piece:
+        inside = [w for w in page.words if region.holds((w.x0 + w.x1) / 2, w.middle)]
+        cuts = region.cuts()
+        bands = []
+        for top, bottom in itertools.pairwise(cuts):
+            if bottom - top < 3:
+                continue
+            words = [w for w in inside if top <= w.middle < bottom]
+            bands.append(Band(page.number, top, bottom, region.separators(top, bottom), words))
+        return Piece(Box(page.number, region.x0, region.top, region.x1, region.bottom), bands, ruled=True)
+
+    def next(self, page: Page, rest: list[Line], first: bool) -> tuple[int, Item | None]:
+        """What begins with the first of these lines, and how many of them it takes."""
+        line = rest[0]
+        if _CONTINUED.match(line.text):
+            return 1, None
+        if self.is_caption(line):
+            self.open = None
+            return self.caption(page, rest)
+        length, found = self.head_length(rest)
+        if found is not None or length:
+            return self.table(page, rest, length, found)
+        if first and self.open is not None and self.continues(rest):
+            return self.continuation(page, rest)
+        self.open = None
+        kind, number, text = "text", "", line.text
+        heading = _HEADING.match(line.text)
+        if heading and self.stands_out(line) and len(line.text) < 120:
+            kind, number, text = "heading", heading["number"], heading["text"]
+        return 1, Mark(kind, text, _box(page, [line]), line.size, line.style, number)
+
+    def stands_out(self, line: Line) -> bool:
+        return line.size > self.body.size + 0.6 or line.style != self.body.style
+
+    def is_caption(self, line: Line) -> bool:
+        match = self.profile.caption.match(line.text)
+        return match is not None and bool(match["mark"] or self.stands_out(line) or not match["title"])
+
+    def caption(self, page: Page, rest: list[Line]) -> tuple[int, Mark]:
+        """A caption with the lines that it wraps into: of the same style and size, close below, and no sentence."""
+        taken = 1
+        while taken < min(3, len(rest)):
+            above, line = rest[taken - 1], rest[taken]
+            if (
+                line.style != above.style
+                or abs(line.size - above.size) > 0.3
+                or line.top - above.bottom > 0.45 * line.size
+                or not self.stands_out(line)
+                or self.is_caption(line)
+                or self.head_length(rest[taken:]) != (0, None)
+            ):
+                break
+            taken += 1
+        text = " ".join(line.text for line in rest[:taken])
+        return taken, Mark("caption", text, _box(page, rest[:taken]), rest[0].size, rest[0].style)
+
+    def head_length(self, rest: list[Line]) -> tuple[int, Columns | None]:
+        """How many lines above the headings a table has that begins here, and its headings; (0, None): none begins."""
+        found = columns.find(rest, self.profile)
+        if found is not None:
+            return 0, found
+        first = self.labelled(rest)
+        if not first:
+            return 0, None
+        at = _value_column(rest[0])
+        taken = first
+        for index in range(first, min(14, len(rest))):
+            line = rest[index]
+            found = columns.find(rest[index:], self.profile)
+            if found is not None:
+                return index, found
+            if self.is_caption(line) or self.labelled(rest[index:]):
+                break
+            said = labels.leads(line.text, self.profile)
+            gap = line.top - rest[index - 1].bottom
+            if not said and (line.x0 < at - 3 or gap > 1.5 * line.size):
+                break
+            if said == "description":
+                at = _value_column(line)
+            taken = index + 1
+        return taken, None
+
+    def labelled(self, rest: list[Line]) -> int:
+        """How many lines the first row of a message's table takes that begins here: one, more where its cells wrap."""
+        for count in range(1, min(3, len(rest)) + 1):
+            if count > 1 and rest[count - 1].top - rest[count - 2].bottom > 0.6 * rest[0].size:
+                return 0
+            if labels.begins(columns.side_by_side(rest[:count]), self.profile):
+                return count
+        return 0
+
+    def head(self, lines: list[Line]) -> list[str]:
+        """The rows above the headings as text."""
+        count = self.labelled(lines) if lines else 0
+        return ([columns.side_by_side(lines[:count])] if count else []) + [line.text for line in lines[count:]]
+
+    def table(self, page: Page, rest: list[Line], length: int, found: Columns | None) -> tuple[int, Piece]:
+        head = self.head(rest[:length])
+        if found is None:
+            self.open = None
+            return length, Piece(_box(page, rest[:length]), [], ruled=False, head=head)
+        start = length + found.lines
+        end = self.end(page, rest, start, found)
+        x0, x1 = min(line.x0 for line in rest[:start]), max(line.x1 for line in rest[:start])
+        piece = Piece(
+            _box(page, rest[:end]), [], ruled=False, columns=found, head=head, lines=self.cells(rest[start:end], found), page=page,
+            top=rest[start - 1].bottom, extent=(x0, x1),
+        )  # fmt: skip
+        self.open, self.size = found, rest[min(start, end - 1)].size
+        self.extent = (min(x0, piece.box.x0), max(x1, piece.box.x1))
+        return end, piece
+
+    def cells(self, found: list[Line], columns: Columns) -> list[Line]:
+        """The lines without the word that stands beside all fields, left of the headings: it is of no row."""
+        made = []
+        for line in found:
+            first = runs(line, 0.45)[0]
+            text = " ".join(w.text for w in first)
+            if first[-1].x1 <= columns.spans[0][0] and labels.meaning(text, self.profile) == "fields":
+                if len(first) < len(line.words):
+                    made.append(Line(line.words[len(first) :]))
+            else:
+                made.append(line)
+        return made
+
+    def end(self, page: Page, rest: list[Line], start: int, found: Columns) -> int:
+        """The index of the first line that is no longer of the table."""
+        limit = _lowest_rule(page, rest, start, found)
+        size = rest[start].size if start < len(rest) else 0
+        for index in range(start, len(rest)):
+            line = rest[index]
+            below = line.middle > limit and not self.is_row(line, found)
+            if below or self.ends(rest, index, found, size):
+                return index
+        return len(rest)
+
+    def ends(self, rest: list[Line], index: int, found: Columns, size: float) -> bool:
+        line = rest[index]
+        in_cell = _begins_in_a_column(line, found.spans)
+        if self.is_caption(line) and not in_cell:
+            return True
+        if self.labelled(rest[index:]) or self.begins_anew(rest[index:], found):
+            return True
+        if abs(line.size - size) > 1.2 and not in_cell:
+            return True
+        if _HEADING.match(line.text) and self.stands_out(line) and line.size > size + 0.6:
+            return True
+        if self.reads_on(line, found.spans) and not self.has_key(line, found):
+            return True
+        gap = line.top - rest[index - 1].bottom if index else 0
+        return gap > 2.2 * line.size and not self.has_key(line, found)
+
+    def begins_anew(self, rest: list[Line], found: Columns) -> bool:
+        again = columns.find(rest[:3], self.profile)
+        return again is not None
+
+    def has_key(self, line: Line, found: Columns) -> bool:
+        first = runs(line, 0.45)[0]
+        return is_key(" ".join(w.text for w in first))
+
+    def is_row(self, line: Line, found: Columns) -> bool:
+        """Whether the line can only be of a table: a key, a cell gone on, or several cells."""
+        return (
+            self.has_key(line, found)
+            or _begins_in_a_column(line, found.spans)
+            or len(runs(line, 0.9)) >= min(3, len(found.spans))
+        )
+
+    def reads_on(self, line: Line, spans: list[tuple[float, float]]) -> bool:
+        """Whether text runs across three headings or more, as it does in a paragraph and not in a cell."""
+        for run in runs(line, 0.9):
+            x0, x1 = run[0].x0, run[-1].x1
+            if sum(1 for a, b in spans if min(b, x1) - max(a, x0) > 0.5 * (b - a)) >= min(3, len(spans)):
+                return True
+        return False
+
+    def continues(self, rest: list[Line]) -> bool:
+        """Whether the lines at the top of a page go on with the table before."""
+        line = rest[0]
+        if self.open is None:
+            return False
+        if line.x0 < self.extent[0] - 8:
+            return False
+        if self.reads_on(line, self.open.spans) and not self.has_key(line, self.open):
+            return False
+        if _HEADING.match(line.text) and line.size > self.size + 0.6:
+            return False
+        near = rest[:8]
+        return any(self.has_key(one, self.open) for one in near) or self.is_row(line, self.open)
+
+    def continuation(self, page: Page, rest: list[Line]) -> tuple[int, Piece]:
+        assert self.open is not None
+        end = max(1, self.end(page, rest, 0, self.open))
+        body = self.cells(rest[:end], self.open)
+        top = rest[0].top - 1
+        piece = Piece(_box(page, rest[:end]), [], ruled=False, lines=body, page=page, top=top, extent=self.extent)
+        return end, piece
+
+
+def _value_column(line: Line) -> float:
+    """Where the second run of a line begins: the values beside the labels."""
+    found = runs(line, 0.45)
+    return found[1][0].x0 if len(found) > 1 else line.x0
+
+
+def _begins_in_a_column(line: Line, spans: list[tuple[float, float]]) -> bool:
+    """Whether the line begins where a later column does, so that it is a cell gone on."""
+    return any(abs(line.x0 - a) < 3 for a, _ in spans[2:])
+
+
+def _lowest_rule(page: Page, rest: list[Line], start: int, found: Columns) -> float:
+    """The lowest horizontal rule of the table; nothing of it stands below. Infinite where it has no rule below."""
+    x0, x1 = found.spans[0][0], found.spans[-1][1]
+    top = rest[start - 1].bottom - 1 if start else 0
+    wide = [r for r in joined(page.across) if r.start <= x0 + 12 and r.end >= x1 - 12 and r.at > top]
+    wide = [r for r in wide if r.at <= rest[-1].bottom + 8]
+    head = [r for r in wide if start < len(rest) and r.at < rest[start].top + 2] if start < len(rest) else wide
+    below = [r.at for r in wide if r not in head]
+    return max(below) if below else float("inf")
+
+
+def _box(page: Page, found: list[Line]) -> Box:
+    return Box(
+        page.number,
+        min(line.x0 for line in found),
+        min(line.top for line in found),
+        max(line.x1 for line in found),
+        max(line.bottom for line in found),
+    )

@@ -1,0 +1,70 @@
+"""Running heads and feet: what pages repeat in their margins."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Callable
+
+from icdgen.importer.pages.extract import Page
+from icdgen.importer.pages.lines import Line
+
+MARGIN = 0.12  # of the page's height, above and below
+_FIGURES = re.compile("[0-9]+")
+_NUMBERING = re.compile(r"(?:page|p\.|pg\.?|seite)?\s*[-–|]?\s*([0-9]+)\s*(?:(?:of|/|von)\s*[0-9]+)?\s*[-–|]?\Z", re.I)
+
+
+def without(
+    pages: list[Page], lines: dict[int, list[Line]], keep: Callable[[Line, list[Line]], bool]
+) -> dict[int, list[Line]]:
+    """The lines of each page without heads and feet. ``keep`` says which lines are never taken for such."""
+    seen: dict[tuple[str, int], set[int]] = defaultdict(set)
+    for page in pages:
+        for line in lines[page.number]:
+            if _in_margin(line, page):
+                for key in _keys(line):
+                    seen[key].add(page.number)
+    needed = max(2, round(0.3 * len(pages)))
+    offset = _offset(pages, lines)
+    kept = {}
+    for page in pages:
+        rest = []
+        found = lines[page.number]
+        for index, line in enumerate(found):
+            repeated = any(len(seen[key]) >= needed for key in _keys(line)) if _in_margin(line, page) else False
+            near = [*found[max(0, index - 1) : index], *found[index + 1 : index + 2]]
+            if not (repeated or _numbers_the_page(line, page, offset)) or keep(line, near):
+                rest.append(line)
+        kept[page.number] = rest
+    return kept
+
+
+def _in_margin(line: Line, page: Page) -> bool:
+    return line.middle < MARGIN * page.height or line.middle > (1 - MARGIN) * page.height
+
+
+def _keys(line: Line) -> list[tuple[str, int]]:
+    """Text and height, rounded both ways so that a point of difference does not matter."""
+    text = _FIGURES.sub("#", line.text)
+    return [(text, int(line.middle // 4)), (text, -1 - int((line.middle + 2) // 4))]
+
+
+def _numbers_the_page(line: Line, page: Page, offset: int | None) -> bool:
+    if not _in_margin(line, page):
+        return False
+    match = _NUMBERING.match(line.text.strip())
+    if match is None:
+        return False
+    return not line.text.strip().isdigit() or (offset is not None and int(match[1]) == page.number + offset)
+
+
+def _offset(pages: list[Page], lines: dict[int, list[Line]]) -> int | None:
+    """By how much the printed page numbers differ from the count; None where pages are not numbered by bare figures."""
+    found: Counter = Counter()
+    for page in pages:
+        figures = {line.text.strip() for line in lines[page.number] if _in_margin(line, page)}
+        found.update({int(text) - page.number for text in figures if text.isdigit() and len(text) < 5})
+    if not found:
+        return None
+    offset, count = found.most_common(1)[0]
+    return offset if count >= max(2, len(pages) / 2) or (len(pages) == 1 and offset == 0) else None

@@ -1,0 +1,81 @@
+"""Words -> lines of text, and the runs of words that stand closely together in them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from icdgen.importer.pages.extract import SMALL, Word
+from icdgen.importer.words import SUPERSCRIPTS
+
+TOUCH = 0.12  # of the type size: words nearer than this were one word
+
+
+class Line:
+    """Words that stand on one line, from left to right."""
+
+    __slots__ = ("words", "x0", "x1", "top", "bottom", "size", "style")
+
+    def __init__(self, words: list[Word]) -> None:
+        self.words = sorted(words, key=lambda w: w.x0)
+        self.x0, self.x1 = self.words[0].x0, max(w.x1 for w in words)
+        self.top, self.bottom = min(w.top for w in words), max(w.bottom for w in words)
+        self.size = max(w.size for w in words)
+        self.style = self.words[0].style
+
+    @property
+    def text(self) -> str:
+        return text_of(self.words)
+
+    @property
+    def middle(self) -> float:
+        return (self.top + self.bottom) / 2
+
+    def __repr__(self) -> str:
+        return f"Line({self.text!r} at {self.x0:.0f},{self.top:.0f})"
+
+
+def lines(words: Iterable[Word]) -> list[Line]:
+    """Lines from top to bottom. Words of a line overlap in height by more than half of the lower one."""
+    groups: list[list] = []  # [top, bottom, words] of the tall words first, so that raised marks find their line
+    for word in sorted(words, key=lambda w: (w.top, w.x0)):
+        best, most = None, 0.5
+        for group in groups[-8:]:
+            overlap = min(group[1], word.bottom) - max(group[0], word.top)
+            share = overlap / max(min(group[1] - group[0], word.bottom - word.top), 0.1)
+            if share > most:
+                best, most = group, share
+        if best is None:
+            groups.append([word.top, word.bottom, [word]])
+        else:
+            best[2].append(word)
+            tallest = max(best[2], key=lambda w: w.size)
+            best[0], best[1] = tallest.top, tallest.bottom
+    return sorted((Line(group[2]) for group in groups), key=lambda line: line.middle)
+
+
+def text_of(words: list[Word]) -> str:
+    """The words of one line as text; parts that touch are put together, raised small figures become superscripts."""
+    text = ""
+    last: Word | None = None
+    for word in sorted(words, key=lambda w: w.x0):
+        part = word.text
+        if last is not None:
+            near = word.x0 - last.x1 < TOUCH * max(word.size, last.size)
+            raised = word.size <= SMALL * last.size and word.bottom < last.bottom - 0.12 * last.size
+            text += "" if near else " "
+            if raised and near:
+                part = part.translate(SUPERSCRIPTS)
+        text += part
+        last = word if last is None or word.size > SMALL * last.size else last._replace(x1=word.x1)
+    return text
+
+
+def runs(line: Line, gap: float = 0.6) -> list[list[Word]]:
+    """The line's words in runs; ``gap`` (of the type size) is how far apart runs stand at least."""
+    found = [[line.words[0]]]
+    for before, word in zip(line.words, line.words[1:], strict=False):
+        if word.x0 - before.x1 > gap * max(word.size, before.size):
+            found.append([word])
+        else:
+            found[-1].append(word)
+    return found

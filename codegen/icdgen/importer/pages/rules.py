@@ -1,0 +1,165 @@
+"""Ruling lines -> ruled regions, and the bands that horizontal rules and shading cut a region into."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from icdgen.importer.pages.extract import Fill, Page, Rule
+
+SNAP = 1.8  # points: rules nearer than this are one
+REACH = 4.0  # points: rules that come as near as this meet
+WIDE = 0.4  # of a region's width: a shorter horizontal rule does not part rows
+TALL = 0.7  # of a band's height: a shorter vertical rule does not part cells
+
+
+@dataclass(slots=True)
+class Region:
+    """Rules that hang together, and the rectangle around them."""
+
+    x0: float
+    top: float
+    x1: float
+    bottom: float
+    across: list[Rule] = field(default_factory=list)
+    down: list[Rule] = field(default_factory=list)
+
+    def holds(self, x: float, y: float) -> bool:
+        return self.x0 - 1 <= x <= self.x1 + 1 and self.top - 1 <= y <= self.bottom + 1
+
+    def cuts(self) -> list[float]:
+        """The heights at which rows begin and end."""
+        found = [self.top, self.bottom]
+        for y, length in _lengths(self.across):
+            if length >= WIDE * (self.x1 - self.x0):
+                found.append(y)
+        for rule in self.down:  # where a column ends or begins within the region, a row with other cells does
+            if self.x0 + 3 < rule.at < self.x1 - 3:
+                found += [rule.start, rule.end]
+        return distinct([y for y in found if self.top <= y <= self.bottom], 3.0)
+
+    def separators(self, top: float, bottom: float) -> list[float]:
+        """Where vertical rules part the band from ``top`` to ``bottom``; with the region's own edges."""
+        height = bottom - top
+        found = [self.x0, self.x1]
+        for rule in self.down:
+            if min(rule.end, bottom) - max(rule.start, top) >= TALL * height:
+                found.append(rule.at)
+        return distinct(found, 3.0)
+
+
+def distinct(values: list[float], snap: float = SNAP) -> list[float]:
+    """Sorted, what lies closer than ``snap`` taken as one."""
+    found: list[float] = []
+    for value in sorted(values):
+        if not found or value - found[-1] > snap:
+            found.append(value)
+    return found
+
+
+def _lengths(rules: list[Rule]) -> list[tuple[float, float]]:
+    """Height -> how much of it is ruled."""
+    groups: list[list[Rule]] = []
+    for rule in sorted(rules, key=lambda r: r.at):
+        if groups and rule.at - groups[-1][0].at <= SNAP:
+            groups[-1].append(rule)
+        else:
+            groups.append([rule])
+    return [(group[0].at, sum(rule.end - rule.start for rule in _joined_spans(group))) for group in groups]
+
+
+def _joined_spans(rules: list[Rule]) -> list[Rule]:
+    made: list[Rule] = []
+    for rule in sorted(rules, key=lambda r: r.start):
+        if made and rule.start <= made[-1].end + SNAP:
+            made[-1] = made[-1]._replace(end=max(made[-1].end, rule.end))
+        else:
+            made.append(rule)
+    return made
+
+
+def joined(rules: list[Rule]) -> list[Rule]:
+    """Collinear pieces that touch put together."""
+    made: list[Rule] = []
+    group: list[Rule] = []
+    for rule in sorted(rules, key=lambda r: (r.at, r.start)):
+        if group and rule.at - group[0].at > SNAP:
+            made += _joined_spans(group)
+            group = []
+        group.append(rule._replace(at=group[0].at) if group else rule)
+    return made + _joined_spans(group)
+
+
+def regions(page: Page) -> list[Region]:
+    """The ruled regions of the page that have columns: a vertical rule inside."""
+    across, down = joined(page.across), joined(page.down)
+    parent = list(range(len(across) + len(down)))
+
+    def root(i: int) -> int:
+        while parent[i] != i:
+            parent[i] = parent[parent[i]]
+            i = parent[i]
+        return i
+
+    for i, flat in enumerate(across):
+        for j, steep in enumerate(down, len(across)):
+            if (
+                flat.start - REACH <= steep.at <= flat.end + REACH
+                and steep.start - REACH <= flat.at <= steep.end + REACH
+            ):
+                parent[root(i)] = root(j)
+    floating = {i for i in range(len(across), len(parent)) if root(i) == i and parent.count(i) == 1}
+    for i, one in enumerate(down, len(across)):  # the middle part of a framed table that goes over three pages
+        for j, other in enumerate(down[: i - len(across)], len(across)):
+            if abs(one.start - other.start) < REACH and abs(one.end - other.end) < REACH:
+                parent[root(i)] = root(j)
+                if i in floating and j in floating:  # its sides: what stands between them is of the same table
+                    low, high = sorted((one.at, other.at))
+                    for k, inner in enumerate(down, len(across)):
+                        if low < inner.at < high and inner.start >= one.start - REACH and inner.end <= one.end + REACH:
+                            parent[root(k)] = root(i)
+    groups: dict[int, tuple[list[Rule], list[Rule]]] = {}
+    for i, rule in enumerate([*across, *down]):
+        groups.setdefault(root(i), ([], []))[i >= len(across)].append(rule)
+    made = []
+    for flat, steep in groups.values():
+        if not steep:
+            continue
+        xs = [r.at for r in steep] + [x for r in flat for x in (r.start, r.end)]
+        ys = [r.at for r in flat] + [y for r in steep for y in (r.start, r.end)]
+        region = Region(min(xs), min(ys), max(xs), max(ys), flat, steep)
+        if len(distinct([*(r.at for r in steep), region.x0, region.x1], 3.0)) >= 3 and region.bottom - region.top > 6:
+            made.append(region)
+    return _outermost(sorted(made, key=lambda r: (r.top, r.x0)))
+
+
+def _outermost(regions: list[Region]) -> list[Region]:
+    """Regions that lie within another are left out."""
+    return [
+        r for r in regions
+        if not any(
+            o is not r and o.x0 - 1 <= r.x0 and o.x1 + 1 >= r.x1 and o.top - 1 <= r.top and o.bottom + 1 >= r.bottom
+            and (o.x1 - o.x0) * (o.bottom - o.top) > (r.x1 - r.x0) * (r.bottom - r.top)
+            for o in regions
+        )
+    ]  # fmt: skip
+
+
+def row_marks(page: Page, x0: float, x1: float) -> list[float]:
+    """Heights at which a rule or the edge of a shaded row runs over most of the width from ``x0`` to ``x1``."""
+    found = []
+    for y, length in _lengths([_clipped(r, x0, x1) for r in page.across if r.end > x0 and r.start < x1]):
+        if length >= 0.7 * (x1 - x0):
+            found.append(y)
+    edges = [Rule(y, f.x0, f.x1) for f in page.fills if _shallow(f, page) for y in (f.top, f.bottom)]
+    for y, length in _lengths([_clipped(r, x0, x1) for r in edges if r.end > x0 and r.start < x1]):
+        if length >= 0.7 * (x1 - x0):
+            found.append(y)
+    return distinct(found)
+
+
+def _shallow(fill: Fill, page: Page) -> bool:
+    return fill.bottom - fill.top < 0.5 * page.height
+
+
+def _clipped(rule: Rule, x0: float, x1: float) -> Rule:
+    return rule._replace(start=max(rule.start, x0), end=min(rule.end, x1))

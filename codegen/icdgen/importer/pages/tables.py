@@ -1,0 +1,349 @@
+"""Pieces of tables and captions -> whole tables, each with its caption, over any number of pages."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+from icdgen.importer import headings, labels
+from icdgen.importer.document import Block, Header, Heading, Row, Table, Text
+from icdgen.importer.pages import bands, columns
+from icdgen.importer.pages.bands import Band
+from icdgen.importer.pages.flow import Item, Mark, Piece
+from icdgen.importer.pages.lines import Line, lines
+from icdgen.importer.pages.rules import row_marks
+from icdgen.importer.profile import Profile
+from icdgen.importer.words import squeezed
+
+_CONTINUED = re.compile(r"\s*[-–,]?\s*[(\[]?\s*(?:continued|cont\.|cont'd|contd\.?)\s*[)\]]?\s*\Z", re.I)
+FAR = 4  # lines of text between a caption and its table; more, and it is none
+
+
+@dataclass
+class Draft:
+    """A table in the making."""
+
+    table: Table
+    edges: list[float] | None = None
+    loose: list[Piece] = field(default_factory=list)  # pieces without vertical rules
+
+    @property
+    def last_page(self) -> int:
+        return self.table.boxes[-1].page
+
+
+@dataclass
+class Builder:
+    """Goes through the items once; what belongs together ends up in one draft."""
+
+    profile: Profile
+    known: frozenset[str]
+    out: list[Draft | Mark] = field(default_factory=list)
+
+    def run(self, items: list[Item]) -> list[Block]:
+        """Headings, text and tables, captions attached."""
+        for item in items:
+            if isinstance(item, Piece):
+                self.piece(item)
+            else:
+                self.out.append(item)
+        return self.captioned()
+
+    def piece(self, piece: Piece) -> None:
+        draft = self.continued(piece)
+        if draft is None:
+            draft = self.begin(piece)
+        else:
+            draft.table.boxes.append(piece.box)
+        if piece.ruled:
+            self.ruled(draft, piece)
+        else:
+            self.loose(draft, piece)
+
+    def begin(self, piece: Piece) -> Draft:
+        draft = Draft(Table(page=piece.box.page, boxes=[piece.box]))
+        self.out.append(draft)
+        return draft
+
+    def continued(self, piece: Piece) -> Draft | None:
+        """The draft that this piece goes on with."""
+        between = 0
+        number = None
+        for item in reversed(self.out):
+            if isinstance(item, Draft):
+                break
+            match = self.profile.caption.match(item.text) if item.kind == "caption" else None
+            if match and (_CONTINUED.search(item.text) or self.repeated(item)):
+                number = match["number"]
+                continue
+            if item.kind != "text" or item.size > 8.6:
+                return None
+            between += 1
+        else:
+            return None
+        draft = item
+        follows = piece.box.page == draft.last_page + 1
+        below = piece.box.page == draft.last_page and 0 <= piece.box.top - draft.table.boxes[-1].bottom < 30
+        if between > 3 or not (follows or below):
+            return None
+        if self.first_is_id(piece):
+            return None
+        if number is None and not self.fits(draft, piece, follows):
+            return None
+        if number is not None:  # a repeated caption
+            while self.out[-1] is not draft:
+                self.out.pop()
+        return draft
+
+    def repeated(self, mark: Mark) -> bool:
+        """Whether an earlier caption has this number and title too."""
+        return any(
+            other is not mark and isinstance(other, Mark) and other.kind == "caption"
+            and squeezed(other.text) == squeezed(mark.text)
+            for other in self.out
+        )  # fmt: skip
+
+    def first_is_id(self, piece: Piece) -> bool:
+        """Whether the piece begins a message's table: with its id."""
+        if not piece.ruled:
+            return bool(piece.head) and labels.begins(piece.head[0], self.profile)
+        first = next((band for band in piece.bands if band.words), None)
+        if first is None:
+            return False
+        texts = (" ".join(t for t in first.texts(self.known) if t), lines(first.words)[0].text)
+        return any(labels.begins(text, self.profile) for text in texts)
+
+    def fits(self, draft: Draft, piece: Piece, follows: bool) -> bool:
+        header = draft.table.header
+        if not piece.ruled:
+            if piece.columns is None:
+                return True
+            return (header is None and bool(draft.table.head)) or (
+                header is not None and follows and headings.repeats(piece.columns.header.titles, header, self.profile)
+            )
+        own = self.header_of(piece)
+        if own is not None:
+            if header is None:
+                return own.kind == "fields" and bool(draft.table.head)
+            return follows and own.kind == header.kind and own.roles == header.roles
+        if header is None:
+            last, box = draft.table.boxes[-1], piece.box
+            return follows and abs(box.x0 - last.x0) < 8 and abs(box.x1 - last.x1) < 8
+        last, box = draft.table.boxes[-1], piece.box
+        return abs((box.x1 - box.x0) - (last.x1 - last.x0)) < 8
+
+    def header_of(self, piece: Piece):
+        for band in piece.bands[:3]:
+            found = headings.match(band.texts(self.known), self.profile)
+            if found:
+                return found
+        return None
+
+    # --- ruled -----------------------------------------------------------------------------------------------------
+
+    def ruled(self, draft: Draft, piece: Piece) -> None:
+        waiting = list(piece.bands)
+        fresh = True  # nothing of the piece's body was read yet
+        while waiting:
+            band = waiting.pop(0)
+            if not band.words:
+                continue
+            texts = band.texts(self.known)
+            if self.is_new(draft, texts):
+                draft = self.begin(piece)
+            if draft.table.header is None:
+                if not self.header(draft, band, waiting):
+                    draft.table.head += self.head(band, texts)
+            elif not draft.table.rows and (whole := self.lower_half(draft, texts)):
+                draft.table.header = whole
+            elif headings.repeats(texts, draft.table.header, self.profile):
+                if len(band.edges) == len(draft.edges or ()):
+                    draft.edges = band.edges
+            else:
+                self.body(draft, band, torn=fresh and len(draft.table.boxes) > 1)
+                fresh = False
+
+    def lower_half(self, draft: Draft, texts: list[str]):
+        """The headings as a whole where a page break stands between their two lines."""
+        header = draft.table.header
+        assert header is not None
+        if len(texts) != len(header.titles):
+            return None
+        whole = headings.match([f"{a} {b}".strip() for a, b in zip(header.titles, texts, strict=True)], self.profile)
+        return whole if whole and sum(map(bool, whole.roles)) > sum(map(bool, header.roles)) else None
+
+    def is_new(self, draft: Draft, texts: list[str]) -> bool:
+        """Whether a band is the first of another message within the same rules."""
+        has_more = draft.table.header is not None or len(draft.table.head) > 0
+        return has_more and labels.begins(" ".join(t for t in texts if t), self.profile)
+
+    def header(self, draft: Draft, band: Band, waiting: list[Band]) -> bool:
+        """Takes the heading row if the band is it, begins with it, or is its upper half."""
+        found = headings.match(band.texts(self.known), self.profile)
+        if found is None and waiting and len(lines(band.words)) < 4:
+            both = _stacked(band, waiting[0], self.known)
+            found = headings.match(both, self.profile) if both else None
+            if found is not None:
+                waiting.pop(0)
+        if found is None:
+            split = self.split(band)
+            if split is None:
+                return False
+            above, found, rest = split
+            draft.table.head += [Row([line.text], band.page) for line in above]
+            if rest.words:
+                waiting.insert(0, rest)
+        draft.table.header, draft.edges = found, band.edges
+        return True
+
+    def head(self, band: Band, texts: list[str]) -> list[Row]:
+        """A band above the headings: one row, or where that labels more, one for each line."""
+        whole = Row(texts, band.page)
+        single = [Row([line.text], band.page) for line in lines(band.words)]
+        return single if len(single) > 1 and self.labelled(single) > self.labelled([whole]) else [whole]
+
+    def labelled(self, rows: list[Row]) -> int:
+        """How many values have a label that the vocabulary knows."""
+        found = (labels.parse(" ".join(c for c in row.cells if c), self.profile) for row in rows)
+        return sum(1 for parts in found for one in parts if one.what and one.value)
+
+    def split(self, band: Band) -> tuple[list[Line], Header, Band] | None:
+        """A band without rules between its rows: lines above the headings, headings, the rest."""
+        found = lines(band.words)
+        for start in range(min(8, len(found))):
+            for count in range(min(4, len(found) - start), 0, -1):
+                words = [w for line in found[start : start + count] for w in line.words]
+                upper = Band(band.page, band.top, band.bottom, band.edges, words)
+                header = headings.match(upper.texts(self.known), self.profile)
+                if header is not None:
+                    rest = found[start + count :]
+                    words = [w for line in rest for w in line.words]
+                    top = rest[0].top if rest else band.bottom
+                    return found[:start], header, Band(band.page, top, band.bottom, band.edges, words)
+        return None
+
+    def body(self, draft: Draft, band: Band, torn: bool) -> None:
+        assert draft.table.header is not None and draft.edges is not None
+        header = draft.table.header
+        if len(band.edges) < len(draft.edges):
+            plain = Band(band.page, band.top, band.bottom, draft.edges, band.words)
+            if bands.has_keys(plain, header):  # rules part the headings only, the rows stand below them all the same
+                band = plain
+        draft.table.rows += bands.rows(bands.aligned(band, draft.edges), header, self.known)
+
+    # --- without vertical rules ------------------------------------------------------------------------------------
+
+    def loose(self, draft: Draft, piece: Piece) -> None:
+        draft.table.head += [Row([text], piece.box.page) for text in piece.head]
+        if piece.columns is not None and draft.table.header is None:
+            draft.table.header = piece.columns.header
+        if draft.table.header is not None:
+            draft.loose.append(piece)
+
+    def cut(self, draft: Draft) -> None:
+        """The rows of pieces without vertical rules, once all lines of the table tell where its columns are."""
+        spans = next((piece.columns.spans for piece in draft.loose if piece.columns is not None), None)
+        header = draft.table.header
+        if spans is None or header is None:
+            return
+        body = [line for piece in draft.loose for line in piece.lines]
+        for piece in draft.loose:
+            own = piece.columns.spans if piece.columns is not None and len(piece.columns.spans) == len(spans) else spans
+            edges = columns.boundaries(own, body, *piece.extent)
+            for band in _bands(piece, edges):
+                if not headings.repeats(band.texts(self.known), header, self.profile):
+                    draft.table.rows += bands.rows(band, header, self.known)
+
+    # --- captions --------------------------------------------------------------------------------------------------
+
+    def captioned(self) -> list[Block]:
+        for item in self.out:
+            if isinstance(item, Draft) and item.loose:
+                self.cut(item)
+        captions = [i for i, item in enumerate(self.out) if isinstance(item, Mark) and item.kind == "caption"]
+        after = {i: self.table_from(i, 1) for i in captions}
+        before = {i: self.table_from(i, -1) for i in captions}
+        above = self.stands_above(captions, after, before)
+        owner: dict[int, int] = {}
+        for i in captions if above else reversed(captions):
+            target = (after if above else before)[i]
+            if target is not None:
+                owner[target] = i  # the nearest wins: it comes last
+        used = set(owner.values())
+        blocks: list[Block] = []
+        for index, item in enumerate(self.out):
+            if isinstance(item, Draft):
+                if index in owner:
+                    self.name(item.table, self.out[owner[index]])
+                blocks.append(item.table)
+            elif index not in used:
+                page = item.box.page
+                blocks.append(
+                    Heading(item.number, item.text, page) if item.kind == "heading" else Text(item.text, page)
+                )
+        return blocks
+
+    def table_from(self, index: int, step: int) -> int | None:
+        """The table nearest to the caption in this direction, with hardly any text and no caption between."""
+        between = 0
+        position = index + step
+        while 0 <= position < len(self.out):
+            item = self.out[position]
+            if isinstance(item, Draft):
+                return position
+            if item.kind != "text" or between >= FAR:
+                return None
+            between += 1
+            position += step
+        return None
+
+    def stands_above(self, captions: list[int], after: dict, before: dict) -> bool:
+        """Whether captions stand above their tables in this document: by distance on the page, then by number."""
+        nearer = 0
+        for i in captions:
+            down, up = self.distance(i, after[i], 1), self.distance(i, before[i], -1)
+            nearer += (down < up) - (up < down)
+        if nearer == 0:
+            found = sum(after[i] is not None for i in captions) - sum(before[i] is not None for i in captions)
+            return found >= 0
+        return nearer > 0
+
+    def distance(self, caption: int, table: int | None, step: int) -> float:
+        if table is None:
+            return 1000.0
+        mark, draft = self.out[caption], self.out[table]
+        box = draft.table.boxes[0 if step > 0 else -1]
+        if box.page != mark.box.page:
+            return 500.0
+        return max(0.0, box.top - mark.box.bottom if step > 0 else mark.box.top - box.bottom)
+
+    def name(self, table: Table, mark: Mark) -> None:
+        match = self.profile.caption.match(mark.text)
+        assert match is not None
+        number = match["number"]
+        table.number = int(re.split("[-.]", number)[-1]) if not number.isdigit() else int(number)
+        table.caption = _CONTINUED.sub("", match["title"]).strip()
+        table.page = min(mark.box.page, table.page or mark.box.page)
+
+
+def _bands(piece: Piece, edges: list[float]) -> list[Band]:
+    """The body of a piece, cut where rules or shading cut it."""
+    if not piece.lines or piece.page is None:
+        return []
+    top, bottom = piece.top, piece.lines[-1].bottom
+    cuts = [top, *(y for y in row_marks(piece.page, edges[0], edges[-1]) if top < y < bottom), bottom + 1]
+    made = []
+    for upper, lower in pairwise(cuts):
+        words = [w for line in piece.lines for w in line.words if upper <= w.middle < lower]
+        if words:
+            made.append(Band(piece.page.number, upper, lower, edges, words))
+    return made
+
+
+def _stacked(upper: Band, lower: Band, known: frozenset[str]) -> list[str] | None:
+    """Two bands of cells as one heading row: the texts above and below each other."""
+    if len(upper.edges) != len(lower.edges):
+        lower = bands.aligned(lower, upper.edges)
+    above, below = upper.texts(known), lower.texts(known)
+    return [" ".join(filter(None, pair)) for pair in zip(above, below, strict=True)]

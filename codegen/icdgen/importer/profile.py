@@ -1,0 +1,261 @@
+"""The vocabulary of a manual: a small YAML file, laid over the one that comes with icdgen."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from icdgen.diagnostics import Finding, Findings
+from icdgen.icd import source
+from icdgen.icd.build import plain as without_places
+from icdgen.icd.tree import Map
+from icdgen.importer.words import folded
+
+DEFAULT = Path(__file__).with_name("profile.yaml")
+CODE = "IMP001"
+KINDS = ("fields", "enumeration", "list", "loggable")
+TITLES = ("telecommand", "telemetry", "configuration", "enumeration", "telecommand list", "telemetry list",
+          "configuration list")  # fmt: skip
+_PLACEHOLDER = re.compile(r"\\?\{(name|node|unit|number|table|title)\\?\}")
+
+
+@dataclass(slots=True)
+class NodeWords:
+    """What a profile says about one node: the words by which it is found, and the head of its file."""
+
+    name: str
+    match: list[str] = field(default_factory=list)  # words in list captions or section headings
+    tables: tuple[int, int] | None = None  # first and last table, where no words tell
+    group: int | None = None  # which run of table numbers, where the numbers start anew
+    head: dict = field(default_factory=dict)
+    include: list[str] = field(default_factory=list)
+
+
+@dataclass
+class Profile:
+    """A vocabulary, ready for use."""
+
+    data: dict
+    name: str = ""
+
+    @cached_property
+    def headings(self) -> dict[str, dict[str, list[tuple[str, ...]]]]:
+        """Kind of table -> role -> the headings it may have, as folded words, longest first."""
+        return {
+            kind: {
+                role: sorted({folded(text) for text in texts}, key=len, reverse=True)
+                for role, texts in roles.items()
+                if role != "needs"
+            }
+            for kind, roles in self.data["headings"].items()
+        }
+
+    @cached_property
+    def heading_words(self) -> frozenset[str]:
+        """All words of all headings."""
+        roles = (roles for kinds in self.headings.values() for roles in kinds.values())
+        return frozenset(word for headings in roles for heading in headings for word in heading)
+
+    @cached_property
+    def needs(self) -> dict[str, list[tuple[str, ...]]]:
+        """Kind of table -> groups of roles, one of each group must be there."""
+        return {
+            kind: [tuple(one.split("|")) for one in roles.get("needs", ())]
+            for kind, roles in self.data["headings"].items()
+        }
+
+    @cached_property
+    def labels(self) -> dict[tuple[str, ...], str]:
+        """Label as sorted folded words -> what it labels."""
+        return {tuple(sorted(folded(text))): what for what, texts in self.data["labels"].items() for text in texts}
+
+    @cached_property
+    def label_words(self) -> frozenset[str]:
+        return frozenset(word for label in self.labels for word in label)
+
+    @cached_property
+    def caption(self) -> re.Pattern:
+        """A line that begins like a caption."""
+        words = "|".join(re.escape(word) for word in sorted(self.data["captions"], key=len, reverse=True))
+        return re.compile(
+            rf"(?:{words})\s*(?P<number>[0-9]+(?:[-.][0-9]+)*)\s*(?P<mark>[:.–—|-]?)\s*(?P<title>.*)\Z", re.I | re.S
+        )
+
+    @cached_property
+    def titles(self) -> dict[str, list[re.Pattern]]:
+        return {what: [title(text) for text in texts] for what, texts in self.data["titles"].items()}
+
+    @cached_property
+    def types(self) -> dict[str, dict]:
+        return {"".join(folded(name)): rule for name, rule in self.data["types"].items()}
+
+    @cached_property
+    def phrases(self) -> dict[str, list[re.Pattern]]:
+        return {what: [phrase(text) for text in texts] for what, texts in self.data["phrases"].items()}
+
+    @cached_property
+    def background(self) -> list[re.Pattern]:
+        return [re.compile(re.escape(text).replace(r"\*", ".*"), re.I) for text in self.data["background"]]
+
+    @cached_property
+    def nodes(self) -> list[NodeWords]:
+        return [
+            NodeWords(
+                name=item["name"],
+                match=list(item.get("match", ())),
+                tables=tuple(item["tables"]) if "tables" in item else None,
+                group=item.get("group"),
+                head={k: v for k, v in item.items() if k not in ("match", "tables", "group", "include")},
+                include=list(item.get("include", ())),
+            )
+            for item in self.data.get("nodes", ())
+        ]
+
+
+def title(text: str) -> re.Pattern:
+    """``{name} Command Format`` as a pattern for a whole caption."""
+    return re.compile(_pattern(text, {"name": "(?P<name>.+?)", "node": "(?P<node>.+?)"}) + r"\.?\Z", re.I)
+
+
+def phrase(text: str) -> re.Pattern:
+    """A phrase of descriptions as a pattern to be searched for."""
+    stand_ins = {
+        "unit": r"(?:\[\s*(?P<unit>[^\]]+?)\s*\]|(?P<bare>[^\s.,;)]+(?: units)?))",
+        "number": r"(?P<number>(?:0x[0-9a-f]+|[0-9]+)(?:\s*\(\s*0x[0-9a-f]+\s*\))?)",
+        "table": r"(?P<table>(?:Table|Tab\.|Tbl\.)\s*[0-9]+(?:[-.][0-9]+)*)(?:\s*[:–—-]\s*(?P<title>[^.;()]*))?",
+        "title": r"(?P<title>[^.;()]+)",
+    }
+    return re.compile(_pattern(text, stand_ins), re.I)
+
+
+def _pattern(text: str, stand_ins: dict[str, str]) -> str:
+    escaped = re.escape(text).replace(r"\ ", r"\s+")
+    return _PLACEHOLDER.sub(lambda m: stand_ins.get(m.group(1), ".+?"), escaped)
+
+
+def find(name: str | None) -> Path | None:
+    """The profile of this name: a file, or one that is shipped beside the ICDs. Raises `UserError` if there is none."""
+    from icdgen import places
+    from icdgen.errors import UserError
+
+    if name is None:
+        return None
+    path = Path(name)
+    if path.exists() or path.suffix or len(path.parts) > 1:
+        return path
+    folder = places.icds() / "profiles"
+    shipped = folder / f"{name}.yaml"
+    if shipped.is_file():
+        return shipped
+    known = ", ".join(sorted(p.stem for p in folder.glob("*.yaml"))) or "none"
+    raise UserError(f"there is no profile `{name}`", f"name a file, or one of those shipped: {known}")
+
+
+def load(path: Path | None = None) -> Profile:
+    """The profile that comes with icdgen, with ``path`` laid over it. Raises `Findings` for a profile that is wrong."""
+    base = without_places(source.read(DEFAULT))
+    if path is None:
+        return Profile(base)
+    tree = source.read(path)
+    _check(tree, base, str(path))
+    return Profile(_laid_over(base, without_places(tree)), str(path))
+
+
+def _laid_over(base: dict, over: dict) -> dict:
+    """Lists are put before those below; everything else replaces what is below."""
+    merged = dict(base)
+    for key, value in over.items():
+        below = base.get(key)
+        if isinstance(value, dict) and isinstance(below, dict):
+            merged[key] = _laid_over(below, value)
+        elif isinstance(value, list) and isinstance(below, list) and key not in ("needs", "nodes"):
+            merged[key] = value + [item for item in below if item not in value]
+        else:
+            merged[key] = value
+    return merged
+
+
+_NODE_KEYS = {"name", "title", "summary", "node_type", "interface_version", "byte_order", "bit_order", "source"}
+_SELECTORS = {"match": list, "tables": list, "group": int, "include": list}
+
+
+def _check(tree: Map, base: dict, name: str) -> None:
+    """Raises `Findings` where the file does not have the form of the profile that comes with icdgen."""
+    findings: list[Finding] = []
+
+    def add(message: str, place, help: str = "see docs/import.md") -> None:
+        findings.append(Finding(CODE, message, place, help))
+
+    if tree.get("profile") != 1:
+        add("this is not an import profile: `profile: 1` is missing", tree.place, "a profile begins with `profile: 1`")
+        raise Findings(findings)
+    known = {*base, "nodes", "name"}
+    for key, value in tree.items():
+        if key not in known:
+            add(f"unknown key `{key}`", tree.keys_at[key], "known keys: " + ", ".join(sorted(known)))
+        elif key == "nodes":
+            _check_nodes(value, tree.at(key), add)
+        elif key == "damage":
+            _check_damage(value, tree.at(key), add)
+        elif key not in ("profile", "name"):
+            _check_like(value, base[key], tree.at(key), key, add)
+    if findings:
+        raise Findings(findings)
+
+
+def _check_like(value: object, like: object, place, key: str, add) -> None:
+    if isinstance(like, list):
+        if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
+            add(f"`{key}` must be a list of texts", place)
+    elif isinstance(like, dict) and key in ("types", "node"):
+        if not isinstance(value, dict):
+            add(f"`{key}` must be a mapping", place)
+        elif key == "types":
+            for word, rule in value.items():
+                good = ("uint", "int", "bool", "enum", "float", "bytes")
+                if not isinstance(rule, dict) or rule.get("type") not in good or not rule.keys() <= {"type", "bits"}:
+                    add(f"the type name `{word}` must say {{type: {'|'.join(good)}}}", value.at(word))
+    elif isinstance(like, dict):
+        if not isinstance(value, Map):
+            add(f"`{key}` must be a mapping", place)
+            return
+        for inner, item in value.items():
+            if inner in like:
+                _check_like(item, like[inner], value.at(inner), inner, add)
+            else:
+                add(f"unknown key `{inner}`", value.keys_at[inner], "known keys: " + ", ".join(like))
+    elif type(value) is not type(like):
+        add(f"`{key}` must be {type(like).__name__}", place)
+
+
+_DAMAGE = ({"printed": str, "meant": str}, {"table": int, "before": int, "group": str})
+
+
+def _check_damage(value: object, place, add) -> None:
+    for item in value if isinstance(value, list) else [None]:
+        if not isinstance(item, Map) or not any(
+            item.keys() == form.keys() and all(type(item[key]) is kind for key, kind in form.items())
+            for form in _DAMAGE
+        ):
+            forms = "{printed: ..., meant: ...} or {table: 97, before: 171, group: ...}"
+            add(f"each of `damage` must be {forms}", getattr(item, "place", place))
+
+
+def _check_nodes(value: object, place, add) -> None:
+    if not isinstance(value, list):
+        add("`nodes` must be a list", place)
+        return
+    for item in value:
+        if not isinstance(item, Map) or not isinstance(item.get("name"), str):
+            add("each of `nodes` must be a mapping with a `name`", getattr(item, "place", place))
+            continue
+        for key, entry in item.items():
+            if key not in _NODE_KEYS and key not in _SELECTORS:
+                names = ", ".join(sorted(_NODE_KEYS | set(_SELECTORS)))
+                add(f"unknown key `{key}`", item.keys_at[key], f"known keys: {names}")
+            elif key in _SELECTORS and not isinstance(entry, _SELECTORS[key]):
+                add(f"`{key}` must be {'a list' if _SELECTORS[key] is list else 'a number'}", item.at(key))
+            elif key == "tables" and (len(entry) != 2 or not all(type(n) is int for n in entry)):
+                add("`tables` must be the first and the last table number: [57, 68]", item.at(key))

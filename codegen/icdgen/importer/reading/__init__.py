@@ -1,0 +1,41 @@
+"""Files -> documents: one table model behind PDF and text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.importer.document import Document
+from icdgen.importer.profile import Profile
+
+MAX_BYTES = 300_000_000
+Progress = Callable[[int, int, int], None]  # pages done, pages altogether, captions seen
+
+
+def read(path: Path, profile: Profile, progress: Progress | None = None, jobs: int | None = None) -> Document:
+    """The manual in ``path``. Raises `Findings` for a file from which nothing can be read."""
+    name = str(path)
+    try:
+        with open(path, "rb") as file:
+            start = file.read(2048)
+            size = file.seek(0, 2)
+    except OSError as error:
+        raise _refused(name, f"cannot read the file: {error.strerror}", "check the path") from None
+    if not start:
+        raise _refused(name, "the file is empty", "name a PDF, or a text with tab-separated tables")
+    if size > MAX_BYTES:
+        raise _refused(name, f"the file has more than the {MAX_BYTES:,} bytes allowed", "cut it into parts")
+    if b"%PDF-" in start[:1024]:
+        from icdgen.importer.reading import pdf
+
+        return pdf.read(path, profile, progress, jobs)
+    if b"\0" in start or start[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
+        raise _refused(name, "this is neither a PDF nor a text", "export the manual as PDF first")
+    from icdgen.importer.reading import text
+
+    return text.read(path, profile)
+
+
+def _refused(name: str, message: str, help: str, code: str = "IMP002") -> Findings:
+    return Findings([Finding(code, message, Place(name), help)])

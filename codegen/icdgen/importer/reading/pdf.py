@@ -1,0 +1,172 @@
+"""PDF -> document. Pages are read in worker processes; what they show is put together here."""
+
+from __future__ import annotations
+
+import logging
+import os
+import re
+import signal
+from collections.abc import Iterator
+from itertools import pairwise
+from multiprocessing import get_context
+from pathlib import Path
+
+from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.importer.document import Document, Spot, Trouble
+from icdgen.importer.pages import flow, tables
+from icdgen.importer.pages.extract import Page, extract
+from icdgen.importer.profile import Profile
+
+FEW = 12  # pages; below this, starting processes costs more than it saves
+MOST_PAGES = 5000
+_WORD = re.compile(r"[^\s]+")
+
+
+def read(path: Path, profile: Profile, progress=None, jobs: int | None = None) -> Document:
+    """The document of a PDF. Raises `Findings` where nothing can be read."""
+    name = str(path)
+    count, title = _open(path, name)
+    document = Document(name, pages=count, title=title)
+    pages = []
+    seen = 0
+    for page in _pages(path, count, jobs):
+        pages.append(page)
+        if progress:
+            seen += _captions(page, profile)
+            progress(len(pages), count, seen)
+    _look_over(pages, document, name)
+    made = flow.items(pages, profile)
+    document.blocks = tables.Builder(profile, _known(pages)).run(made)
+    return document
+
+
+def _open(path: Path, name: str) -> tuple[int, str]:
+    """The number of pages and the title."""
+    try:
+        import pdfplumber
+        from pdfminer.pdfdocument import PDFEncryptionError, PDFPasswordIncorrect
+        from pdfplumber.utils.exceptions import PdfminerException
+    except ImportError:
+        from icdgen.errors import UserError
+
+        raise UserError("reading a PDF needs pdfplumber", "pip install 'icdgen[import]'") from None
+    logging.getLogger("pdfminer").setLevel(logging.CRITICAL)
+    try:
+        with pdfplumber.open(path) as file:
+            count = len(file.pages)
+            metadata = file.metadata or {}
+            title = metadata.get("Title")
+    except Exception as error:  # pdfminer raises whatever a broken file makes it stumble over
+        cause = error.args[0] if isinstance(error, PdfminerException) and error.args else error
+        if isinstance(cause, (PDFPasswordIncorrect, PDFEncryptionError)):
+            raise _refused(
+                name, "the PDF is encrypted", "remove the password first, for instance with `qpdf --decrypt`"
+            ) from None
+        raise _refused(
+            name, f"the PDF is damaged ({type(cause).__name__}: {cause})" if str(cause) else "the PDF is damaged",
+            "fetch it anew, or mend it, for instance with `qpdf` or `mutool clean`",
+        ) from None  # fmt: skip
+    if count == 0:
+        raise _refused(name, "the PDF has no pages", "it may be truncated: fetch it anew")
+    if count > MOST_PAGES:
+        raise _refused(name, f"the PDF has {count:,} pages, more than the {MOST_PAGES:,} allowed", "cut it into parts")
+    return count, title if isinstance(title, str) else ""
+
+
+def _refused(name: str, message: str, help: str) -> Findings:
+    return Findings([Finding("IMP003", message, Place(name), help)])
+
+
+def _pages(path: Path, count: int, jobs: int | None) -> Iterator[Page]:
+    jobs = min(jobs or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1, 8)
+    if jobs <= 1 or count < FEW:
+        _start_worker(path, ignore=False)
+        try:
+            for number in range(count):
+                yield _work(number)
+        finally:
+            _end_worker()
+        return
+    with get_context().Pool(jobs, _start_worker, (path, True)) as pool:
+        yield from pool.imap(_work, range(count), chunksize=max(1, min(8, count // (4 * jobs))))
+
+
+_open_file = None
+
+
+def _start_worker(path: Path, ignore: bool) -> None:
+    """Opens the file once in each process; an interrupt is the parent's business."""
+    global _open_file
+    import pdfplumber
+
+    if ignore:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    logging.getLogger("pdfminer").setLevel(logging.CRITICAL)
+    _open_file = pdfplumber.open(path)
+
+
+def _end_worker() -> None:
+    global _open_file
+    if _open_file is not None:
+        _open_file.close()
+    _open_file = None
+
+
+def _work(number: int) -> Page:
+    page = _open_file.pages[number]
+    try:
+        return extract(page)
+    except Exception as error:  # one broken page must not cost the others
+        return Page(number + 1, 595.0, 842.0, failed=f"{type(error).__name__}: {error}"[:200])
+    finally:
+        page.close()
+
+
+def _look_over(pages: list[Page], document: Document, name: str) -> None:
+    """What is wrong with the pages as a whole. Raises `Findings` if there is no text at all."""
+    words = sum(len(page.words) for page in pages)
+    if not words:
+        images = sum(page.images for page in pages)
+        failed = [page for page in pages if page.failed]
+        if failed:
+            raise _refused(
+                name,
+                f"none of the {len(pages)} pages can be read ({failed[0].failed})",
+                "the file is damaged: fetch it anew",
+            )
+        what = "pictures of pages" if images else "pages without text"
+        help = "run it through a text recognition first, for instance `ocrmypdf`, and check its figures twice"
+        raise _refused(name, f"the PDF holds only {what}: there is no text layer", help)
+    for page in pages:
+        if page.failed:
+            document.troubles.append(
+                Trouble("IMP010", f"the page cannot be read ({page.failed})", Spot(page.number),
+                        "what stands on it is missing from the ICD", "error")
+            )  # fmt: skip
+        elif not page.words and page.images:
+            document.troubles.append(
+                Trouble("IMP011", "the page is a picture without text", Spot(page.number),
+                        "look whether it shows a table: it is missing from the ICD")
+            )  # fmt: skip
+        elif page.unmapped:
+            document.troubles.append(
+                Trouble("IMP012", f"{page.unmapped} characters of the page have no meaning: the PDF does not say which they are",
+                        Spot(page.number), "compare what was read with the page")
+            )  # fmt: skip
+
+
+def _captions(page: Page, profile: Profile) -> int:
+    """About how many tables begin on the page: for the eye, while pages are read."""
+    words = [word.text for word in page.words]
+    return sum(
+        1 for a, b in pairwise(words) if a.rstrip(".") in _heads(profile) and b[:1].isdigit() and b[-1:] in ":.–-"
+    )
+
+
+def _heads(profile: Profile) -> set[str]:
+    return {word.rstrip(".") for word in profile.data["captions"]}
+
+
+def _known(pages: list[Page]) -> frozenset[str]:
+    """All words of the document in one piece."""
+    return frozenset(word.text.strip(".,;:()[]") for page in pages for word in page.words)

@@ -1,0 +1,169 @@
+"""Text with tab-separated tables -> document. Page breaks stand within tables as blank lines; rows may be torn there."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.importer import headings, labels
+from icdgen.importer.document import Block, Document, Heading, Row, Table, Text
+from icdgen.importer.profile import Profile
+from icdgen.importer.words import plain
+
+_RULE = re.compile(r"\s*:?-{2,}:?\s*\Z")
+_HEADING = re.compile(r"(?P<number>[0-9]+(?:\.[0-9]+)*)\.?\s+(?P<text>[A-Z].*)\Z")
+_CONTINUED = re.compile(r"\s*[-–,]?\s*[(\[]?\s*(?:continued|cont\.|cont'd)\s*[)\]]?\s*\Z", re.I)
+
+
+def read(path: Path, profile: Profile) -> Document:
+    """The document of a text. Raises `Findings` if it is not UTF-8."""
+    name = str(path)
+    data = path.read_bytes()
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        raise Findings([Finding("IMP002", f"byte 0x{data[error.start]:02X} is not UTF-8", Place(name, line),
+                                "save the text as UTF-8")]) from None  # fmt: skip
+    document = Document(name)
+    reader = _Reader(profile, name)
+    for number, line in enumerate(re.split("\r\n|[\n\r]", text), 1):
+        reader.line(line.rstrip(" "), number)
+    document.blocks = reader.done()
+    document.pages = reader.page if "\f" in text else None
+    return document
+
+
+class _Reader:
+    def __init__(self, profile: Profile, name: str) -> None:
+        self.profile, self.name = profile, name
+        self.blocks: list[Block | _Caption] = []
+        self.table: Table | None = None
+        self.raw: list[Row] = []
+        self.page: int | None = None
+        self.in_code = False
+
+    def line(self, text: str, number: int) -> None:
+        if "\f" in text:
+            self.page = (self.page or 1) + text.count("\f")
+            text = text.replace("\f", "")
+        if text.lstrip().startswith("```"):
+            self.in_code = not self.in_code
+            return
+        if self.in_code or not text.strip():
+            return
+        if "\t" in text:
+            cells = [plain(cell) for cell in text.split("\t")]
+            if all(_RULE.match(cell) for cell in cells if cell):
+                return  # what a converter puts below a heading row
+            self.row(Row(cells, self.page, number))
+            return
+        self.close()
+        caption = self.profile.caption.match(plain(text))
+        heading = _HEADING.match(plain(text))
+        if caption and (caption["mark"] or not caption["title"]):
+            title = _CONTINUED.sub("", caption["title"]).strip()
+            self.blocks.append(
+                _Caption(int(re.split("[-.]", caption["number"])[-1]), title, self.page, number, plain(text))
+            )
+        elif heading and len(text) < 120:
+            self.blocks.append(Heading(heading["number"], heading["text"], self.page, number))
+        else:
+            self.blocks.append(Text(plain(text), self.page, number))
+
+    def row(self, row: Row) -> None:
+        if self.raw and labels.begins(" ".join(c for c in row.cells if c), self.profile):
+            self.close()
+        self.raw.append(row)
+
+    def close(self) -> None:
+        """Ends the table: finds its heading row, and puts each row's cells under the headings."""
+        if not self.raw:
+            return
+        table = Table(page=self.raw[0].page, line=self.raw[0].line)
+        rows, self.raw = self.raw, []
+        index = 0
+        while index < len(rows):
+            row = rows[index]
+            index += 1
+            if table.header is None:
+                found = headings.match(row.cells, self.profile)
+                both = _stacked(row.cells, rows[index].cells) if index < len(rows) else None
+                stacked = headings.match(both, self.profile) if both else None
+                if stacked and (found is None or _known(stacked) > _known(found)):
+                    found = stacked
+                    index += 1
+                if found is None:
+                    table.head.append(row)
+                else:
+                    table.header = found
+            elif not headings.repeats(row.cells, table.header, self.profile):
+                table.rows.append(_fitted(row, table))
+        self.blocks.append(table)
+
+    def done(self) -> list[Block]:
+        """The blocks, each caption with its table."""
+        self.close()
+        blocks = self.blocks
+        captions = [i for i, b in enumerate(blocks) if isinstance(b, _Caption)]
+        after = {i: _table(blocks, i, 1) for i in captions}
+        before = {i: _table(blocks, i, -1) for i in captions}
+        above = sum(t is not None for t in after.values()) >= sum(t is not None for t in before.values())
+        owner: dict[int, int] = {}
+        for i in captions if above else reversed(captions):
+            if (target := (after if above else before)[i]) is not None:
+                owner[target] = i
+        used = set(owner.values())
+        made: list[Block] = []
+        for index, block in enumerate(blocks):
+            if isinstance(block, _Caption):
+                if index not in used:
+                    made.append(Text(block.text, block.page, block.line))
+                continue
+            if isinstance(block, Table) and index in owner:
+                caption = blocks[owner[index]]
+                if made and isinstance(made[-1], Table) and made[-1].number == caption.number:
+                    made[-1].rows += block.rows or block.head
+                    continue
+                block.number, block.caption, block.line = caption.number, caption.title, caption.line
+            made.append(block)
+        return made
+
+
+class _Caption:
+    """A line that reads like a caption."""
+
+    def __init__(self, number: int, title: str, page: int | None, line: int, text: str) -> None:
+        self.number, self.title, self.page, self.line, self.text = number, title, page, line, text
+
+
+def _table(blocks: list, index: int, step: int) -> int | None:
+    near = index + step
+    return near if 0 <= near < len(blocks) and isinstance(blocks[near], Table) else None
+
+
+def _known(header) -> int:
+    return sum(len(t.split()) for t, role in zip(header.titles, header.roles, strict=True) if role)
+
+
+def _stacked(upper: list[str], lower: list[str]) -> list[str] | None:
+    """Headings in two lines as one row."""
+    if len(lower) > len(upper) or any(re.match("[0-9]", cell) for cell in lower):
+        return None
+    lower = lower + [""] * (len(upper) - len(lower))
+    return [f"{a} {b}".strip() for a, b in zip(upper, lower, strict=True)]
+
+
+def _fitted(row: Row, table: Table) -> Row:
+    """The row with a cell for each heading: a first empty cell that was lost is put back, surplus ones are cut."""
+    header = table.header
+    cells = row.cells
+    width = len(header.roles)
+    if len(cells) == width - 1 and cells[0] and not header.roles[0] and re.match("[0-9]", cells[0]):
+        row.mended = "its first, empty cell was lost"
+        cells = ["", *cells]
+    if len(cells) > width and not any(cells[width:]):
+        cells = cells[:width]
+    row.cells = cells + [""] * (width - len(cells))
+    return row

@@ -1,0 +1,146 @@
+"""What belongs to a node -> the tree of its ICD."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from icdgen.icd.units import SPELLINGS, STANDARD
+from icdgen.importer.document import Document, Table, Trouble
+from icdgen.importer.profile import Profile
+from icdgen.importer.understand.model import ReadEnum, ReadField, ReadMessage
+from icdgen.importer.words import squeezed
+
+if TYPE_CHECKING:
+    from icdgen.importer.assemble import NodeParts
+
+NOT_STATED = "not stated"
+
+
+class Spelled(int):
+    """A number with the way it is written: ``0x5A``."""
+
+    spelling: str
+
+    def __new__(cls, spelling: str) -> Spelled:
+        made = super().__new__(cls, int(spelling, 16) if "x" in spelling.lower() else int(spelling))
+        made.spelling = spelling
+        return made
+
+
+def tree(node: NodeParts, document: Document, profile: Profile, prose: bool, troubles: list[Trouble]) -> dict:
+    """The ICD of a node as plain mappings and lists, in the order of the manual."""
+    made: dict = {"icdgen": 1, "node": _head(node, document, profile)}
+    if node.include:
+        made["include"] = node.include
+    if units := _units(node, troubles):
+        made["units"] = units
+    if node.enums:
+        made["enums"] = [_enum(one, prose) for one in node.enums]
+    if node.messages:
+        made["messages"] = [_message(one, prose) for one in node.messages]
+    if node.logs:
+        made["loggable"] = [
+            {"bit": b.bit, "id": b.id, **({"name": b.name} if b.name else {})} for log in node.logs for b in log.bits
+        ]
+    if missing := [entry for row in node.missing if (entry := _missing(row))]:
+        made["missing"] = missing
+    return made
+
+
+def _head(node: NodeParts, document: Document, profile: Profile) -> dict:
+    head = {"name": node.name, "title": node.title or node.name, **profile.data["node"]}
+    title = document.title or re.split(r"[/\\]", document.file)[-1]
+    head["source"] = {"document": title}
+    if node.words is not None:
+        head |= node.words.head
+    return head
+
+
+def _source(table: Table) -> dict:
+    made = {}
+    if table.number is not None:
+        made["table"] = table.number
+    if table.page is not None:
+        made["page"] = table.page
+    return made
+
+
+def _enum(one: ReadEnum, prose: bool) -> dict:
+    made: dict = {"name": one.name}
+    if source := _source(one.table):
+        made["source"] = source
+    if also := [s for s in (_source(table) for table in one.also) if s]:
+        made["also"] = also
+    made["members"] = [
+        {"value": m.value, "name": m.name, **_prose(m.name, m.summary, prose)} for m in one.members
+    ]  # fmt: skip
+    return made
+
+
+def _prose(name: str, text: str, wanted: bool) -> dict:
+    """A summary where the description says more than the name."""
+    return {"summary": text} if wanted and text and squeezed(text) != squeezed(name) else {}
+
+
+def _message(one: ReadMessage, prose: bool) -> dict:
+    made: dict = {"name": one.name}
+    for key in ("id", "set_id", "get_id"):
+        if (value := getattr(one, key)) is not None:
+            made[key] = value
+    made |= {"kind": one.kind, "length": one.length}
+    if one.group:
+        made["group"] = one.group
+    if source := _source(one.table):
+        made["source"] = source
+    made |= _prose(one.name, one.summary, prose)
+    if one.listed:
+        made["listed"] = one.listed
+    if one.fields:
+        made["fields"] = [_field(f, prose) for f in one.fields]
+    return made
+
+
+def _field(one: ReadField, prose: bool) -> dict:
+    made: dict = {"at": one.at, "bits": one.bits, "name": one.name, "type": one.type}
+    if one.enum:
+        made["enum"] = one.enum
+    said = one.described
+    if said.unit:
+        made["unit"] = said.unit
+    if said.formula:
+        made["formula"] = said.formula
+    if said.formula_for:
+        made["formula_for"] = said.formula_for
+    if said.const:
+        made["const"] = Spelled(said.const)
+    return made | _prose(one.name, said.rest, prose)
+
+
+def _units(node: NodeParts, troubles: list[Trouble]) -> list[dict]:
+    """Units that are not built in, and no other spelling of one that is."""
+    made: dict[str, dict] = {}
+    taken = {unit.identifier for unit in STANDARD.values()}
+    for message in node.messages:
+        for field in message.fields:
+            symbol = field.described.unit
+            if not symbol or symbol in STANDARD or symbol in SPELLINGS or symbol in made:
+                continue
+            name = "_".join(re.findall("[a-z0-9]+", symbol.casefold())) or "unit"
+            while name in taken:
+                name += "_"
+            taken.add(name)
+            made[symbol] = {"symbol": symbol, "identifier": name, "quantity": NOT_STATED}
+            troubles.append(
+                Trouble("IMP042", f"{message.table.title}, field `{field.name}`: the unit `{symbol}` is not built in",
+                        field.spot, "declared under `units:`; say there what it measures", "note")
+            )  # fmt: skip
+    return list(made.values())
+
+
+def _missing(row) -> dict | None:
+    number = row.id if row.id is not None else row.get_id
+    if number is None or not row.kind:
+        return None
+    where = f"Table {row.spot.table} lists it" if row.spot.table else "A list names it"
+    return {"kind": row.kind, "id": number, "name": row.name, "why": f"{where}, no table describes it."}

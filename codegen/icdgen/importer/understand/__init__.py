@@ -1,0 +1,1 @@
+"""Tables -> what they say about messages, enumerations, lists and logs."""

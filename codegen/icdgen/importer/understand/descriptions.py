@@ -1,0 +1,128 @@
+"""What a field's description says besides prose: unit, formula, enumeration, the one valid value."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from icdgen.importer.profile import Profile
+from icdgen.importer.understand import formulas
+from icdgen.importer.words import plain, tidy_unit
+
+_TABLE = re.compile(r"[0-9]+(?:[-.][0-9]+)*\Z")
+_FORMULA_WORD = re.compile(r"\bformula\b", re.I)
+
+
+@dataclass(slots=True)
+class Described:
+    """What was read. ``problems`` are texts for findings; ``contradiction`` is set where words and formula disagree."""
+
+    unit: str = ""
+    formula: str = ""
+    formula_for: str = ""
+    enum_table: int | None = None
+    enum_title: str = ""
+    const: str = ""  # as printed
+    rest: str = ""  # what is left as prose
+    problems: list[str] = field(default_factory=list)
+
+
+def read(text: str, profile: Profile, is_enum: bool = False) -> Described:
+    """Reads a description."""
+    text = plain(text)
+    made = Described()
+    spans: list[tuple[int, int]] = []
+    _formula(text, profile, made, spans)
+    _unit(text, profile, made, spans)
+    if is_enum:
+        _enumeration(text, profile, made, spans)
+    _const(text, profile, made)
+    made.rest = _without(text, spans)
+    return made
+
+
+def names(profile: Profile) -> formulas.Words:
+    variables = profile.data["variables"]
+    return formulas.words(tuple(variables["raw"]), tuple(variables["physical"]))
+
+
+def _formula(text: str, profile: Profile, made: Described, spans: list) -> None:
+    found = formulas.find(text, names(profile))
+    announced = ""
+    for what, value in (("gives_physical", "physical"), ("gives_raw", "raw")):
+        for pattern in profile.phrases[what]:
+            if match := pattern.search(text):
+                announced = value
+                spans.append(match.span())
+    if found is None:
+        if formulas.mentions(text, names(profile)) or (announced and _FORMULA_WORD.search(text)):
+            made.problems.append("a formula is there and cannot be read")
+        return
+    spans.append((found.start, found.end))
+    made.formula, made.unit = found.formula, found.unit
+    if announced and announced != found.gives:
+        made.formula_for = announced
+
+
+def _unit(text: str, profile: Profile, made: Described, spans: list) -> None:
+    units = [made.unit] if made.unit else []
+    for what in ("unit", "formula_unit"):
+        for pattern in profile.phrases[what]:
+            match = pattern.search(text)
+            if match and not any(a < match.end() and match.start() < b and what == "unit" for a, b in spans):
+                units.append(tidy_unit(match["unit"] or match["bare"]))
+                spans.append(match.span())
+                break
+    if units:
+        made.unit = units[0]
+        if len(set(units)) > 1:
+            made.problems.append("it gives two units: " + " and ".join(f"`{u}`" for u in dict.fromkeys(units)))
+
+
+def _enumeration(text: str, profile: Profile, made: Described, spans: list) -> None:
+    for pattern in profile.phrases["enumeration"]:
+        match = pattern.search(text)
+        if not match:
+            continue
+        groups = match.groupdict()
+        if groups.get("table"):
+            number = _TABLE.search(groups["table"])
+            made.enum_table = int(re.split("[-.]", number.group())[-1]) if number else None
+        made.enum_title = (groups.get("title") or "").strip()
+        spans.append(match.span())
+        return
+    loose = profile_caption_in(text, profile)
+    if loose:
+        made.enum_table, made.enum_title = loose
+
+
+def profile_caption_in(text: str, profile: Profile) -> tuple[int, str] | None:
+    """A table that the text names, whatever the words around it."""
+    words = "|".join(re.escape(word) for word in profile.data["captions"])
+    match = re.search(rf"\b(?:{words})\s*(?P<number>[0-9]+)(?:\s*[:–—-]\s*(?P<title>[^.;()]+))?", text, re.I)
+    return (int(match["number"]), (match["title"] or "").strip()) if match else None
+
+
+def _const(text: str, profile: Profile, made: Described) -> None:
+    for pattern in profile.phrases["const"]:
+        match = pattern.search(text)
+        if not match or re.match(r"\s*(?:,?\s*(?:or|to|and|if|for|when|-|–)\b|[.][0-9])", text[match.end() :], re.I):
+            continue
+        numbers = re.findall(r"0x[0-9a-f]+|[0-9]+", match["number"], re.I)
+        values = {int(n, 16) if "x" in n.lower() else int(n) for n in numbers}
+        if len(values) > 1:
+            made.problems.append(f"it gives the value in two ways that differ: {match['number']}")
+            return
+        made.const = next((n for n in numbers if "x" in n.lower()), numbers[0])
+        return
+
+
+def _without(text: str, spans: list[tuple[int, int]]) -> str:
+    kept, at = "", 0
+    for start, end in sorted(spans):
+        if start > at:
+            kept += text[at:start]
+        at = max(at, end)
+    kept += text[at:]
+    kept = re.sub(r"\s+([.,:;])", r"\1", " ".join(kept.split()))
+    return re.sub(r"[.:;,\s]*\Z", "", re.sub(r"(?:\s*[:.]){2,}", ".", kept))

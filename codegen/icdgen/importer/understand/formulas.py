@@ -1,0 +1,154 @@
+"""Formulas in running text: ``(formatted value) [deg] = RAWVAL*0.01`` and its variants, in both directions."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import NamedTuple
+
+from icdgen.icd import formula as formulas
+from icdgen.importer.words import plain, tidy_unit
+
+_NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,2})?|\.[0-9]+")
+_TIMES = {"×": "*", "·": "*", "∙": "*", "⋅": "*", "∗": "*", "x": "*", "X": "*", "÷": "/", "–": "-", "−": "-", ":": "/"}
+_OPERATOR = re.compile(r"[*/×·∙⋅∗÷+−–-]|[xX](?=\s*[0-9(.])")
+
+
+# What shows that an expression goes on in a way that is not understood: a power, a decimal comma, a name.
+_GOES_ON = re.compile(r"\s*[*/×·÷^²³]|,[0-9]|[A-Za-z_%]|\s*[+]")
+
+
+class Read(NamedTuple):
+    """A formula as the ICD writes it; ``gives`` is what it computes, "raw" or "physical"."""
+
+    formula: str
+    unit: str
+    gives: str
+    start: int
+    end: int
+
+
+class Words(NamedTuple):
+    """How a manual calls raw and physical values."""
+
+    raw: re.Pattern
+    physical: re.Pattern
+
+
+@lru_cache(maxsize=8)
+def words(raw: tuple[str, ...], physical: tuple[str, ...]) -> Words:
+    return Words(_names(raw), _names(physical))
+
+
+def _names(names: tuple[str, ...]) -> re.Pattern:
+    parts = [re.escape(name).replace(r"\ ", r"\s+") for name in sorted(names, key=len, reverse=True)]
+    return re.compile(rf"(?:\(\s*(?:{'|'.join(parts)})\s*\)|(?<![A-Za-z])(?:{'|'.join(parts)})(?![A-Za-z]))", re.I)
+
+
+def find(text: str, names: Words) -> Read | None:
+    """The first formula of the text; None if there is none that can be read."""
+    for sign in re.finditer("=", text):
+        left = _left(text[: sign.start()], names)
+        if left is None:
+            continue
+        gives, unit, start = left
+        variable = names.raw if gives == "physical" else names.physical
+        expression, end = _expression(text, sign.end(), variable, "raw" if gives == "physical" else "value")
+        if expression and _is_good(made := expression if gives == "physical" else f"raw = {expression}"):
+            return Read(made, unit, gives, start, end)
+    return None
+
+
+def alone(text: str, names: Words) -> str:
+    """The formula of a column of formulas: an expression of the raw value, or just the factor. "" if it is none."""
+    found = find(text, names)
+    if found:
+        return found.formula
+    expression, end = _expression(text, 0, names.raw, "raw")
+    if expression and not text[end:].strip() and _is_good(expression):
+        return expression
+    factor = re.fullmatch(r"\s*(?:[x×*]\s*)?([0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]{1,2})?)\s*", plain(text))
+    if factor and float(factor[1]) != 0:
+        number = factor[1] if factor[1][0] != "." else "0" + factor[1]
+        return "" if float(number) == 1 else f"raw*{number}"
+    return ""
+
+
+def mentions(text: str, names: Words) -> bool:
+    """Whether something that looks like a formula stands in the text."""
+    return any(_left(text[: sign.start()], names) for sign in re.finditer("=", text))
+
+
+def _left(before: str, names: Words) -> tuple[str, str, int] | None:
+    """What stands left of the sign: which value, its unit, and where that begins."""
+    bare = before.rstrip()
+    unit = ""
+    bracket = re.search(r"\[\s*([^\[\]]*?)\s*\]\Z", bare)
+    if bracket:
+        unit, bare = tidy_unit(bracket[1]), bare[: bracket.start()].rstrip()
+    for gives, pattern in (("physical", names.physical), ("raw", names.raw)):
+        last = None
+        for match in pattern.finditer(bare):
+            last = match
+        if last is not None and last.end() == len(bare):
+            return gives, unit, last.start()
+    return None
+
+
+def _expression(text: str, at: int, variable: re.Pattern, name: str) -> tuple[str, int]:
+    """The longest expression that begins at ``at``, in the ICD's spelling, and where it ends."""
+    made: list[str] = []
+    good, end = 0, at
+    depth, operand, seen = 0, True, False
+    while True:
+        while at < len(text) and text[at].isspace():
+            at += 1
+        if at >= len(text):
+            break
+        if operand:
+            match = variable.match(text, at) or _NUMBER.match(text, at)
+            if match:
+                is_name = variable.match(text, at) is not None
+                seen = seen or is_name
+                number = match.group()
+                made.append(name if is_name else "0" + number if number[0] == "." else number)
+                at, operand = match.end(), False
+            elif text[at] == "(":
+                made.append("(")
+                at, depth = at + 1, depth + 1
+            elif text[at] in "-−–" and (not made or made[-1] == "("):
+                made.append("-")
+                at += 1
+            else:
+                break
+        elif text[at] == ")" and depth:
+            made.append(")")
+            at, depth = at + 1, depth - 1
+        elif match := _OPERATOR.match(text, at):
+            sign = match.group()
+            made.append(_TIMES.get(sign, sign))
+            at, operand = match.end(), True
+        else:
+            break
+        if depth == 0 and not operand:
+            good, end = len(made), at
+    if not seen or name not in made[:good] or _GOES_ON.match(text, end):
+        return "", at
+    return _spelled(made[:good]), end
+
+
+def _spelled(tokens: list[str]) -> str:
+    """``raw*0.01``, ``(raw - 32)*5/9``: blanks around plus and minus only."""
+    text = ""
+    for index, token in enumerate(tokens):
+        unary = index == 0 or tokens[index - 1] == "("
+        text += f" {token} " if token in "+-" and not unary else token
+    return text
+
+
+def _is_good(text: str) -> bool:
+    try:
+        formulas.parse(text)
+    except formulas.FormulaError:
+        return False
+    return True

@@ -1,0 +1,105 @@
+"""What was read of a manual, before it is dealt out to nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from icdgen.importer.document import Spot, Table
+from icdgen.importer.understand.descriptions import Described
+
+
+@dataclass(slots=True)
+class ReadField:
+    """A field; ``enum`` is the name of its enumeration once that is known."""
+
+    name: str
+    at: int
+    bits: int
+    type: str
+    described: Described
+    spot: Spot
+    enum: str = ""
+
+
+@dataclass(slots=True)
+class ReadMessage:
+    """A message as its own table describes it."""
+
+    name: str
+    kind: str
+    table: Table
+    id: int | None = None
+    set_id: int | None = None
+    get_id: int | None = None
+    length: int | None = None
+    fields: list[ReadField] = field(default_factory=list)
+    names: list[str] = field(default_factory=list)  # what its name may be, by the caption
+    group: str = ""
+    listed: dict = field(default_factory=dict)
+    summary: str = ""
+    kind_from: str = ""
+
+    @property
+    def ids(self) -> tuple[int | None, int | None, int | None]:
+        return self.id, self.set_id, self.get_id
+
+
+@dataclass(slots=True)
+class ReadMember:
+    value: int
+    name: str
+    summary: str = ""
+
+
+@dataclass(slots=True)
+class ReadEnum:
+    """An enumeration; ``also`` are further tables that print it."""
+
+    name: str
+    members: list[ReadMember]
+    table: Table
+    also: list[Table] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class Listed:
+    """A row of a list table."""
+
+    kind: str
+    name: str
+    length: int | None
+    id: int | None
+    set_id: int | None
+    get_id: int | None
+    group: str
+    spot: Spot
+    table_number: int | None = None  # of the detail table it names
+    title: str = ""
+    used: bool = False
+
+
+@dataclass(slots=True)
+class ReadList:
+    """A list table: ``node`` is the node's name in its caption."""
+
+    kind: str
+    node: str
+    rows: list[Listed]
+    table: Table
+
+
+@dataclass(slots=True)
+class LogBit:
+    bit: int
+    id: int
+    name: str
+    spot: Spot
+
+
+@dataclass(slots=True)
+class ReadLog:
+    bits: list[LogBit]
+    table: Table
+
+
+Thing = ReadMessage | ReadEnum | ReadList | ReadLog

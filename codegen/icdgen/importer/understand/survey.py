@@ -1,0 +1,107 @@
+"""A document -> everything that its tables say, each table classified."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from icdgen.importer.document import Document, Heading, Spot, Table, Trouble
+from icdgen.importer.profile import Profile
+from icdgen.importer.understand import lists, messages
+from icdgen.importer.understand.model import ReadEnum, ReadList, ReadLog, ReadMessage, Thing
+from icdgen.importer.words import folded
+
+BACKGROUND, UNKNOWN = "background", "not understood"
+
+
+@dataclass(slots=True)
+class Found:
+    """What a table is and says, and where in the document's order it stands."""
+
+    table: Table
+    what: str  # "message" | "enumeration" | "list" | "loggable frames" | BACKGROUND | UNKNOWN
+    thing: Thing | None
+    run: int  # which run of ascending table numbers
+    headings: tuple[str, ...] = ()  # of the sections around it, outermost first
+
+
+@dataclass(slots=True)
+class Survey:
+    """All tables of a document in order."""
+
+    found: list[Found] = field(default_factory=list)
+    troubles: list[Trouble] = field(default_factory=list)
+
+    def of(self, kind: type) -> list[Found]:
+        """The tables that gave a thing of this class."""
+        return [one for one in self.found if isinstance(one.thing, kind)]
+
+
+def survey(document: Document, profile: Profile) -> Survey:
+    """Reads every table of the document."""
+    made = Survey(troubles=list(document.troubles))
+    run, last = 1, -1
+    sections: list[Heading] = []
+    for block in document.blocks:
+        if isinstance(block, Heading):
+            depth = block.number.count(".")
+            sections = [s for s in sections if s.number.count(".") < depth] + [block]
+        if not isinstance(block, Table):
+            continue
+        if block.number is not None:
+            if block.number <= last:
+                run += 1
+            last = block.number
+        titles = tuple(s.text for s in sections)
+        what, thing = classify(block, profile, made.troubles, titles)
+        if what == UNKNOWN and block.number is None:
+            continue  # a figure, a listing, a box: nobody called it a table
+        made.found.append(Found(block, what, thing, run, titles))
+        if what == UNKNOWN:
+            made.troubles.append(_not_understood(block))
+    return made
+
+
+def classify(
+    table: Table, profile: Profile, troubles: list[Trouble], sections: tuple[str, ...]
+) -> tuple[str, Thing | None]:
+    """What the table is, and what it says."""
+    if any(pattern.search(table.caption) for pattern in profile.background):
+        return BACKGROUND, None
+    kind = table.header.kind if table.header else ""
+    if kind in ("", "fields"):
+        message = messages.read(table, profile, troubles)
+        if message is None:
+            return UNKNOWN, None
+        if not message.kind:
+            message.kind, message.kind_from = _by_section(sections, profile), "its section"
+        return "message", message
+    if kind == "enumeration":
+        read = lists.enumeration(table, profile, troubles)
+        return ("enumeration", read) if read else (UNKNOWN, None)
+    if kind == "list":
+        return "list", lists.listing(table, profile, troubles)
+    return "loggable frames", lists.log(table, troubles)
+
+
+def _by_section(sections: tuple[str, ...], profile: Profile) -> str:
+    for title in reversed(sections):
+        words = folded(title)
+        for kind, phrases in profile.data["kinds"].items():
+            for phrase in phrases:
+                parts = folded(phrase)
+                if any(words[i : i + len(parts)] == parts for i in range(len(words))):
+                    return kind
+    return ""
+
+
+def _not_understood(table: Table) -> Trouble:
+    rows = [row for row in (*table.head, *table.rows) if any(row.cells)]
+    cells = [cell for cell in rows[0].cells if cell] if rows else []
+    begins = f"; it begins with `{' | '.join(cells)[:100]}`" if cells else ""
+    return Trouble(
+        "IMP030", f"{table.title}: none of the tables that icdgen knows{begins}", Spot(table.page, table.line, table.number),
+        "if it describes a message or an enumeration add its headings to the profile, else name it under `background:`",
+    )  # fmt: skip
+
+
+__all__ = ["BACKGROUND", "UNKNOWN", "Found", "ReadEnum", "ReadList", "ReadLog", "ReadMessage", "Survey", "survey"]

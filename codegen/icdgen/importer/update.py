@@ -1,0 +1,199 @@
+"""A new reading of the manual laid over an ICD that exists: vendor's facts replaced, our own words and comments kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+from icdgen.icd import source
+from icdgen.icd.fmt import read, scalars
+from icdgen.icd.fmt.tree import Branch, Child, Text
+from icdgen.importer import emit
+
+# What people add to the manual's facts.
+_OURS = {
+    "message": ("identifier", "summary", "acknowledge", "contains"),
+    "field": ("identifier", "summary", "special", "min", "max", "above", "below", "bitfields"),
+    "enumeration": ("identifier", "summary"),
+    "member": ("identifier", "summary"),
+    "loggable": (),
+}
+_INNER = {"message": ("fields", "field"), "enumeration": ("members", "member")}
+
+
+@dataclass
+class Updated:
+    """The new text of a file, and what changed in it, a line each."""
+
+    text: str
+    changes: list[str] = field(default_factory=list)
+
+
+def update(text: str, name: str, tree: dict) -> Updated:
+    """Raises `Findings` if the old text is no YAML."""
+    root = read.read(text, source.parse(text.encode("utf-8", "surrogatepass"), name))
+    made = Updated("")
+    for key, kind in (("enums", "enumeration"), ("messages", "message"), ("loggable", "loggable")):
+        _section(root, key, kind, tree.get(key, []), made.changes)
+    _added(root, "units", "symbol", tree.get("units", []), made.changes)
+    _added(root, "missing", "name", tree.get("missing", []), made.changes)
+    made.text = emit.of(root)
+    return made
+
+
+def _section(root: Branch, key: str, kind: str, items: list[dict], changes: list[str]) -> None:
+    old = _child(root, key)
+    if not items and old is None:
+        return
+    if old is None:
+        root.children.append(Child(Text(key, key), emit.branch(items)))
+        changes += [f"+ {kind} {_title(kind, item)}" for item in items]
+        return
+    if not isinstance(old.value, Branch):
+        old.value = Branch(False, False, 0)
+    old.value.children = _merged(old.value.children, items, kind, "", changes)
+    if not old.value.children:
+        root.children.remove(old)
+
+
+def _merged(old: list[Child], items: list[dict], kind: str, where: str, changes: list[str]) -> list[Child]:
+    """The items with what the old ones have of our own. Old ones stay in their order, new ones come after their
+    predecessor."""
+    pairs = _matched(old, items, kind)
+    made: list[tuple[int, Child]] = []
+    place = -1
+    placed: dict[int, int] = {}
+    for index, item in enumerate(items):
+        before = pairs.get(index)
+        if before is None:
+            changes.append(f"+ {where}{kind} {_title(kind, item)}")
+            made.append((place, Child(None, emit.branch(item))))
+            continue
+        place = old.index(before)
+        placed[index] = place
+        made.append((place, _merge(before, item, kind, where, changes)))
+    kept = {id(child) for child in pairs.values()}
+    for child in old:
+        if id(child) not in kept:
+            changes.append(f"- {where}{kind} {_title(kind, _plain(child.value))}")
+    ascending = all(a < b for a, b in pairwise(placed.values()))
+    return [child for _, child in (made if ascending else sorted(made, key=lambda m: m[0]))]
+
+
+def _merge(old: Child, item: dict, kind: str, where: str, changes: list[str]) -> Child:
+    """One entry: the vendor's keys from ``item``, ours and the comments from the old one."""
+    assert isinstance(old.value, Branch)
+    title = _title(kind, item)
+    inner = _INNER.get(kind)
+    result = Branch(True, old.value.flow, old.value.column, tail=old.value.tail)
+    before = {_name(child): child for child in old.value.children}
+    for key, child in before.items():
+        if key in _OURS[kind] or key in item:
+            result.children.append(child)
+        else:
+            changes.append(f"~ {where}{kind} {title}: {key} {_shown(_plain(child.value))} -> (absent)")
+    for key, value in item.items():
+        child = before.get(key)
+        if inner and key == inner[0]:
+            children = child.value.children if child is not None and isinstance(child.value, Branch) else []
+            lines = _merged(children, value, inner[1], f"{where}{kind} {title}: ", changes)
+            if child is None:
+                child = Child(Text(key, key))
+                result.children.append(child)
+            child.value = Branch(False, False, 0, lines)
+        elif child is None:
+            result.children.append(Child(Text(key, key), emit.node(value)))
+            if key not in ("source", "summary"):
+                changes.append(f"~ {where}{kind} {title}: {key} (absent) -> {_shown(value)}")
+        elif key in _OURS[kind]:
+            continue  # ours goes first
+        elif key == "source":
+            child.value = emit.branch({**_plain(child.value), **value})
+        elif key == "also" and [s.get("table") for s in _plain(child.value)] == [s.get("table") for s in value]:
+            child.value = emit.branch([{**a, **b} for a, b in zip(_plain(child.value), value, strict=True)])
+        elif _plain(child.value) != value:
+            changes.append(f"~ {where}{kind} {title}: {key} {_shown(_plain(child.value))} -> {_shown(value)}")
+            child.value = emit.node(value)
+    return Child(old.key, result, old.before, old.trailing)
+
+
+def _matched(old: list[Child], items: list[dict], kind: str) -> dict[int, Child]:
+    """Index of the new item -> the old entry that it goes on from, each used once; the surest match first."""
+    plain = [_plain(child.value) for child in old]
+    free = {index for index, value in enumerate(plain) if isinstance(value, dict)}
+    found: dict[int, Child] = {}
+    for same in _MATCHES[kind]:
+        waiting: dict[object, list[int]] = {}
+        for index in sorted(free):
+            if (key := same(plain[index])) is not None:
+                waiting.setdefault(key, []).append(index)
+        for index, item in enumerate(items):
+            key = same(item)
+            if index not in found and key is not None and waiting.get(key):
+                taken = waiting[key].pop(0)
+                found[index] = old[taken]
+                free.discard(taken)
+    return found
+
+
+def _ids(item: dict) -> object:
+    ids = (item.get("kind"), item.get("id"), item.get("set_id"), item.get("get_id"))
+    return ids if any(i is not None for i in ids[1:]) else None
+
+
+_MATCHES: dict[str, list[Callable[[dict], object]]] = {
+    "message": [lambda i: (i.get("name"), _ids(i)), lambda i: i.get("name"), _ids],
+    "field": [lambda i: (i.get("name"), i.get("at")), lambda i: i.get("name"), lambda i: i.get("at")],
+    "enumeration": [lambda i: i.get("name"), lambda i: (i.get("source") or {}).get("table")],
+    "member": [lambda i: (i.get("value"), i.get("name")), lambda i: i.get("value")],
+    "loggable": [lambda i: i.get("bit")],
+}
+
+
+def _added(root: Branch, key: str, by: str, items: list[dict], changes: list[str]) -> None:
+    """Entries that are not there yet."""
+    child = _child(root, key)
+    have = (
+        {_plain(c.value).get(by) for c in child.value.children} if child and isinstance(child.value, Branch) else set()
+    )
+    new = [item for item in items if item[by] not in have]
+    if not new:
+        return
+    changes += [f"+ {key} {item[by]}" for item in new]
+    if child is None:
+        root.children.append(Child(Text(key, key), emit.branch(new)))
+    else:
+        assert isinstance(child.value, Branch)
+        child.value.children += emit.branch(new).children
+
+
+def _child(branch: Branch, key: str) -> Child | None:
+    return next((child for child in branch.children if _name(child) == key), None)
+
+
+def _name(child: Child) -> str:
+    return scalars.name(child.key) if child.key is not None else ""
+
+
+def _plain(value: object):
+    if isinstance(value, Branch):
+        if value.mapping:
+            return {_name(child): _plain(child.value) for child in value.children}
+        return [_plain(child.value) for child in value.children]
+    return value.value if isinstance(value, Text) else value
+
+
+def _title(kind: str, item: dict) -> str:
+    if kind == "loggable":
+        return f"bit {item.get('bit')}"
+    if kind == "member":
+        return f"{item.get('value')} `{item.get('name')}`"
+    ids = [str(item[key]) for key in ("id", "set_id", "get_id") if key in item]
+    return f"`{item.get('name')}`" + (f" ({'/'.join(ids)})" if ids else "")
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, (dict, list)):
+        return "..." if len(str(value)) > 60 else str(value)
+    return f"`{value}`"

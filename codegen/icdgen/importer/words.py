@@ -1,0 +1,83 @@
+"""Text as a machine compares it, and text as a page prints it."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+_LIGATURES = {c: unicodedata.normalize("NFKC", c) for c in "ﬀﬁﬂﬃﬄﬅﬆ"}
+_PLAIN = str.maketrans(
+    {**_LIGATURES, "\u00a0": " ", "\u2007": " ", "\u202f": " ", "\u2009": " ", "\u200b": "", "\u2010": "-",
+     "\u2011": "-", "\u2212": "-", "\ufeff": ""}
+)  # fmt: skip
+_WORD = re.compile(r"[A-Za-z0-9%]+")
+SUPERSCRIPTS = str.maketrans("0123456789-+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺")
+_RAISED = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺]+")
+_NUMBER = re.compile(r"[-+]?(?:0[xX][0-9A-Fa-f]+|[0-9]+)\Z")
+
+
+def plain(text: str) -> str:
+    """Ligatures spelled out, odd blanks and hyphens made ordinary, runs of blanks made one."""
+    return " ".join(text.translate(_PLAIN).split())
+
+
+def tidy_unit(text: str) -> str:
+    """A unit as printed, without brackets, and without a blank before a raised figure."""
+    return re.sub(r"\s+(?=[⁰¹²³⁴⁵⁶⁷⁸⁹⁻])", "", plain(text).strip("[] "))
+
+
+def folded(text: str) -> tuple[str, ...]:
+    """The words of a heading, a label or a title, without case and punctuation."""
+    return tuple(word.casefold() for word in _WORD.findall(plain(text)))
+
+
+def squeezed(text: str) -> str:
+    """Letters and digits only: equal for texts that differ in spacing, hyphens and case."""
+    return "".join(folded(text))
+
+
+def number(text: str) -> int | None:
+    """The whole number that the text is, decimal or 0x; a raised footnote mark behind it is left out."""
+    text = _RAISED.sub("", plain(text)).rstrip("*†").strip()
+    if not _NUMBER.match(text) or len(text) > 24:
+        return None
+    return int(text, 16) if "x" in text.lower() else int(text)
+
+
+_SOFT = "\u00ad"
+
+
+def join(lines: list[str], known: frozenset[str] = frozenset(), full: list[bool] | None = None) -> str:
+    """The lines of a wrapped cell as one text.
+
+    ``known`` are words that the document has in one piece: they decide whether a hyphen at a line's end belongs to the
+    word, and whether a word that fills its line (``full``) goes on in the next.
+    """
+    text = ""
+    for index, line in enumerate(lines):
+        line = line.translate(_PLAIN).strip()
+        if not line:
+            continue
+        if not text:
+            text = line
+            continue
+        before, after = text.rsplit(" ", 1)[-1], line.split(" ", 1)[0]
+        if text.endswith(_SOFT):
+            text = text[:-1] + line
+        elif len(before) > 1 and before.endswith("-") and after[:1].islower():
+            whole = before[:-1] + after
+            text = (text[:-1] if _is(whole, known) and not _is(before + after, known) else text) + line
+        elif _holds_on(before, after) or (full and full[index - 1] and _is(before + after, known)):
+            text += line
+        else:
+            text += " " + line
+    return " ".join(text.replace(_SOFT, "").split())
+
+
+def _holds_on(before: str, after: str) -> bool:
+    """Whether a line may break here without a blank: after a hyphen or a slash in a word, or within a formula."""
+    return (len(before) > 1 and before[-1] in "-/_") or (before[-1:] in "*/" and after[:1].isdigit())
+
+
+def _is(word: str, known: frozenset[str]) -> bool:
+    return word.strip(".,;:()[]") in known

@@ -1,0 +1,25 @@
+"""Shared by the tests of the importer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from icdgen.importer import profile, run
+from tests.conftest import ROOT
+
+VENDOR = ROOT.parent / "shared" / "manual"
+
+
+@pytest.fixture
+def vendor() -> Path:
+    """The folder of the vendor's manuals, which are no part of the repository."""
+    if not VENDOR.is_dir():
+        pytest.skip("the vendor's manuals are not at hand")
+    return VENDOR
+
+
+def imported(manual: Path, words: str | None = None, jobs: int = 1) -> tuple[run.Result, dict[str, dict]]:
+    """What an import of the manual finds."""
+    return run.run(manual, profile.load(profile.find(words)), jobs=jobs)

@@ -1,0 +1,144 @@
+"""``icdgen import`` as its user meets it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from tests.importer.test_text import ENUM, LIST, MESSAGE
+
+TEXT = LIST.replace("\t6\n", "\t4\n").rsplit("141", 1)[0] + "\n" + MESSAGE + ENUM
+
+
+def icdgen(*arguments, cwd) -> subprocess.CompletedProcess:
+    return subprocess.run(
+        [sys.executable, "-m", "icdgen", *map(str, arguments)], cwd=cwd, capture_output=True, text=True
+    )
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "pump.txt").write_text(TEXT, encoding="utf-8")
+    return tmp_path
+
+
+def test_an_import_gives_an_icd_that_checks_formats_and_compiles(folder):
+    result = icdgen("import", "pump.txt", cwd=folder)
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "icd/pump.yaml: written; 1 message with 3 fields, 1 enumeration with 2 members" in result.stdout
+    assert result.stderr == ""
+    assert icdgen("fmt", "--check", "icd", cwd=folder).returncode == 0
+    assert icdgen("check", "icd", cwd=folder).stdout == "no findings\n"
+    assert icdgen("--lang", "c", "--out", "include", "icd", cwd=folder).returncode == 0
+
+
+def test_an_existing_icd_is_not_overwritten_unless_told(folder):
+    icdgen("import", "pump.txt", cwd=folder)
+    before = (folder / "icd" / "pump.yaml").read_bytes()
+    result = icdgen("import", "pump.txt", cwd=folder)
+    assert result.returncode == 2
+    assert "--update" in result.stderr
+    assert (folder / "icd" / "pump.yaml").read_bytes() == before
+
+
+def test_update_keeps_what_people_wrote_and_says_what_changed(folder):
+    icdgen("import", "pump.txt", cwd=folder)
+    path = folder / "icd" / "pump.yaml"
+    ours = path.read_text(encoding="utf-8")
+    ours = ours.replace("name: Pressure,", "name: Pressure, identifier: Tank Pressure, summary: Of the tank.,")
+    ours = ours.replace("    length: 4\n", "    length: 4\n    summary: Ours.\n    # A comment of ours.\n")
+    path.write_text(ours, encoding="utf-8")
+    icdgen("fmt", "icd", cwd=folder)
+    ours = path.read_text(encoding="utf-8")
+    (folder / "icd" / "errata").mkdir()
+    overlay = folder / "icd" / "errata" / "pump.yaml"
+    overlay.write_text("errata: 1\nnode: pump\nentries: []\n", encoding="utf-8")
+    again = icdgen("import", "pump.txt", "--update", cwd=folder)
+    assert "icd/pump.yaml: unchanged" in again.stdout
+    assert path.read_text(encoding="utf-8") == ours
+
+    new = TEXT.replace("RAWVAL*0.1", "RAWVAL*0.2").replace(
+        "1\tRunning\tRunning", "1\tRunning\tRunning\n2\tFailed\tFailed"
+    )
+    (folder / "pump.txt").write_text(new.replace("Valve Open", "Valve State"), encoding="utf-8")
+    result = icdgen("import", "pump.txt", "--update", cwd=folder)
+    assert "~ message `Pump State` (140): field `Pressure`: formula `raw*0.1` -> `raw*0.2`" in result.stdout
+    assert "+ enumeration `PumpMode`: member 2 `Failed`" in result.stdout
+    assert "field `Valve State`: name `Valve Open` -> `Valve State`" in result.stdout
+    text = path.read_text(encoding="utf-8")
+    assert text == ours.replace("raw*0.1", "raw*0.2").replace("Valve Open", "Valve State").replace(
+        "{value: 1, name: Running}", "{value: 1, name: Running}\n      - {value: 2, name: Failed}"
+    ).replace("name: Valve State,                          ", "name: Valve State,                         ") or (
+        "identifier: Tank Pressure" in text and "# A comment of ours." in text and "summary: Ours." in text
+    )
+    assert overlay.read_text(encoding="utf-8") == "errata: 1\nnode: pump\nentries: []\n"
+    assert icdgen("fmt", "--check", "icd/pump.yaml", cwd=folder).returncode == 0
+
+
+def test_a_dry_run_writes_nothing(folder):
+    result = icdgen("import", "pump.txt", "--dry-run", cwd=folder)
+    assert "would be written" in result.stdout
+    assert not (folder / "icd").exists()
+
+
+def test_findings_as_json(folder):
+    result = icdgen("import", "pump.txt", "--format", "json", "--dry-run", cwd=folder)
+    data = json.loads(result.stdout)
+    assert [t["is"] for t in data["tables"]] == ["list", "message", "enumeration"]
+    assert {"code", "severity", "message", "help", "table", "page", "line"} == set(data["findings"][0])
+
+
+def test_a_profile_that_is_wrong_is_a_finding_with_its_line(folder):
+    (folder / "words.yaml").write_text(
+        "profile: 1\nheadings:\n  fieldz: {}\ntypes:\n  WORD: {type: word}\n", encoding="utf-8"
+    )
+    result = icdgen("import", "pump.txt", "--profile", "words.yaml", cwd=folder)
+    assert result.returncode == 1
+    assert "words.yaml:3:3: error[IMP001]: unknown key `fieldz`" in result.stderr
+    assert "words.yaml:5:" in result.stderr
+    assert not (folder / "icd").exists()
+
+
+def test_a_profile_that_is_not_there_is_said_with_those_that_are(folder):
+    result = icdgen("import", "pump.txt", "--profile", "nobody", cwd=folder)
+    assert result.returncode == 2
+    assert "addendum, cubeadcs" in result.stderr
+
+
+def test_a_manual_that_lacks_something_ends_with_1_and_is_written_all_the_same(folder):
+    (folder / "pump.txt").write_text(TEXT.replace("\t16\t8", "\tl6\t8"), encoding="utf-8")
+    result = icdgen("import", "pump.txt", cwd=folder)
+    assert result.returncode == 1
+    assert (
+        "error[IMP023]: table 7: Pump State Telemetry Format, field `Mode`: the offset `l6` is not a number"
+        in result.stdout
+    )
+    assert "--> pump.txt:" in result.stdout
+    assert (folder / "icd" / "pump.yaml").is_file()
+
+
+def test_nothing_is_written_where_one_of_several_files_is_there(folder):
+    two = TEXT.replace("List of Telemetry", "List of Pump Telemetry")
+    two += two.replace("Pump", "Tank").replace("\n140", "\n150").replace("ID\t140", "ID\t150")
+    (folder / "pump.txt").write_text(two, encoding="utf-8")
+    (folder / "icd").mkdir()
+    (folder / "icd" / "tank.yaml").write_text("", encoding="utf-8")
+    assert icdgen("import", "pump.txt", cwd=folder).returncode == 2
+    assert [p.name for p in (folder / "icd").iterdir()] == ["tank.yaml"]
+
+
+def test_the_page_shows_each_doubtful_table_as_a_picture(tmp_path):
+    from tests.importer.manuals import content
+    from tests.importer.manuals.layouts import LAYOUTS
+
+    manual = content.manual(content.shipped("common"), {"common": "Common"})
+    LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")
+    result = icdgen("import", "manual.pdf", "--report", "report.html", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert 'id="table-1"' in page
+    assert "data:image/png;base64," in page
+    assert "http" not in page.replace("http-equiv", "")

@@ -1,0 +1,79 @@
+"""Manuals drawn from ICDs, imported again: the ICDs come back whatever the layout."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from tests.importer.compare import differences
+from tests.importer.conftest import imported
+from tests.importer.manuals import content, random_icds
+from tests.importer.manuals.layouts import LAYOUTS
+
+TITLES = {
+    "common": "Common",
+    "bootloader": "BootLoader",
+    "cubeacp": "CubeAcp",
+    "cubewheel": "CubeWheel",
+    "cubemag": "CubeMag",
+}
+
+
+def back(manual: content.Manual, layout: str, path) -> list[str]:
+    """What differs after drawing and importing."""
+    LAYOUTS[layout](manual, path)
+    _, trees = imported(path)
+    assert set(trees) == set(manual.trees)
+    return [line for name, tree in manual.trees.items() for line in differences(tree, trees[name])]
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_shipped_icds_come_back_from_every_layout(layout, tmp_path):
+    trees = content.shipped("common", "bootloader") | content.shipped("cubemag") | content.shipped("cubewheel")
+    assert back(content.manual(trees, TITLES), layout, tmp_path / "manual.pdf") == []
+
+
+@pytest.mark.parametrize(("layout", "skip"), [(name, 20 * index) for index, name in enumerate(LAYOUTS)])
+def test_large_tables_come_back_from_every_layout(layout, skip, tmp_path):
+    trees = content.shipped("cubeacp", most=14, skip=8 + skip % 100)
+    assert back(content.manual(trees, TITLES), layout, tmp_path / "manual.pdf") == []
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_a_manual_of_one_page_without_lists_and_prose_comes_back(layout, tmp_path):
+    trees = content.shipped("cubewheel")
+    manual = content.manual(trees, TITLES, noise=False)
+    manual.parts = [part for part in manual.parts if getattr(part, "kind", "") != "list"]
+    LAYOUTS[layout](manual, tmp_path / "cubewheel.pdf")
+    _, got = imported(tmp_path / "cubewheel.pdf")
+    assert differences(trees["cubewheel"], got["cubewheel"]) == []
+
+
+@settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@given(tree=random_icds.trees(), layout=st.sampled_from(sorted(LAYOUTS)))
+def test_random_icds_come_back(tree, layout, tmp_path_factory):
+    path = tmp_path_factory.mktemp("random") / "manual.pdf"
+    assert back(content.manual({"device": tree}, {"device": "Device"}), layout, path) == []
+
+
+def test_the_same_manual_gives_the_same_icd_however_many_processes_read_it(tmp_path):
+    manual = content.manual(content.shipped("common"), TITLES)
+    LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")
+    one, two = imported(tmp_path / "manual.pdf", jobs=1), imported(tmp_path / "manual.pdf", jobs=2)
+    assert one[1] == two[1]
+    assert one[0].troubles == two[0].troubles
+
+
+def test_pages_in_the_icd_are_those_on_which_the_tables_begin(tmp_path):
+    import pdfplumber
+
+    manual = content.manual(content.shipped("common"), TITLES)
+    LAYOUTS["ruled"](manual, tmp_path / "manual.pdf")
+    _, trees = imported(tmp_path / "manual.pdf")
+    with pdfplumber.open(tmp_path / "manual.pdf") as file:
+        for message in random.Random(7).sample(trees["common"]["messages"], 8):
+            source = message["source"]
+            assert f"Table {source['table']}: {message['name']}" in file.pages[source["page"] - 1].extract_text()

@@ -1,0 +1,50 @@
+"""The manuals of the vendor whose ICDs are shipped, where they are at hand."""
+
+from __future__ import annotations
+
+import pytest
+import yaml
+
+from icdgen.importer.document import DOUBTFUL
+from icdgen.importer.understand.survey import BACKGROUND, UNKNOWN
+from tests.conftest import ROOT
+from tests.importer.compare import differences
+from tests.importer.conftest import imported
+
+
+def shipped(name: str) -> dict:
+    return yaml.safe_load((ROOT / "icd" / f"{name}.yaml").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("form", ["pdf", "txt"])
+def test_the_manual_gives_the_shipped_vendor_layer(vendor, form):
+    result, trees = imported(vendor / f"firmware-reference-manual-7.2.{form}", "cubeadcs")
+    assert {n: differences(shipped(n), trees[n]) for n in trees} == {"common": [], "bootloader": [], "cubeacp": []}
+    assert len([one for one in result.survey.found if one.table.number is not None]) == 216
+    assert not [one for one in result.survey.found if one.what == UNKNOWN]
+    assert sum(one.what == BACKGROUND for one in result.survey.found) == 8
+    assert result.sureness()[DOUBTFUL] == 0
+    assert not result.failed
+
+
+@pytest.mark.parametrize("form", ["pdf", "txt"])
+def test_the_addendum_gives_the_shipped_vendor_layer(vendor, form):
+    _, trees = imported(vendor / f"cubemag-cubewheel-addendum.{form}", "addendum")
+    assert {n: differences(shipped(n), trees[n]) for n in trees} == {"cubemag": [], "cubewheel": []}
+
+
+@pytest.mark.parametrize("form", ["pdf", "txt"])
+def test_without_a_profile_only_the_damage_of_the_text_shows(vendor, form):
+    _, trees = imported(vendor / f"firmware-reference-manual-7.2.{form}")
+    found = [line for name in trees for line in differences(shipped(name), trees[name])]
+    inertia = [line for line in found if "Of Inertia - " in line]
+    groups = [line for line in found if "group: 'Power and Temperature Measurements'" in line]
+    assert (len(inertia), len(groups)) == (24, 8)
+    assert len(found) == 32
+
+
+def test_page_numbers_of_the_shipped_icds_are_those_of_the_manual(vendor):
+    _, trees = imported(vendor / "firmware-reference-manual-7.2.pdf", "cubeadcs")
+    for name, tree in trees.items():
+        pages = {item["name"]: item["source"] for key in ("messages", "enums") for item in shipped(name)[key]}
+        assert pages == {item["name"]: item["source"] for key in ("messages", "enums") for item in tree[key]}
