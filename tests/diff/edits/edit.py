@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import wraps
 
 from icdgen.icd.model import Enum, Field, Icd, Message, Node
 from icdgen.naming import words
@@ -127,3 +128,28 @@ def is_free(message: Message, name: str) -> bool:
 def free_id(icd: Icd) -> int | None:
     taken = {number for node in icd.nodes for m in node.messages for number in m.ids}
     return next((number for number in range(250, 0, -1) if number not in taken), None)
+
+
+# Edits of one thing, chosen at random
+
+
+def on_field(wanted: Callable[[Field], bool] = lambda f: True, **kind: bool) -> Callable[[Callable], Edit]:
+    """Registers ``function(icd, rng, node, message, field)``."""
+    return _on(lambda icd: fields_of(icd, wanted), kind)
+
+
+def on_message(wanted: Callable[[Message], bool] = lambda m: True, **kind: bool) -> Callable[[Callable], Edit]:
+    """Registers ``function(icd, rng, node, message)``."""
+    return _on(lambda icd: messages_of(icd, wanted), kind)
+
+
+def _on(found: Callable[[Icd], list[tuple]], kind: dict[str, bool]) -> Callable[[Callable], Edit]:
+    def register(function: Callable) -> Edit:
+        @wraps(function)
+        def made(icd: Icd, rng: random.Random) -> Edited | None:
+            one = pick(rng, found(icd))
+            return None if one is None else function(icd, rng, *one)
+
+        return edit(**kind)(made)
+
+    return register

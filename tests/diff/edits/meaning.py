@@ -15,7 +15,8 @@ from tests.diff.edits.edit import (
     edit,
     fields_of,
     members_of,
-    messages_of,
+    on_field,
+    on_message,
     pick,
     with_enum,
     with_field,
@@ -49,53 +50,33 @@ def turn_factor(icd, rng):
     return _scaled(icd, rng, lambda s: Scale(-s.factor, s.offset), "DIF203")
 
 
-@edit()
-def change_unit(icd, rng):
-    one = pick(rng, fields_of(icd, lambda f: f.unit is not None))
-    if one is None:
-        return None
-    node, message, field = one
+@on_field(lambda f: f.unit is not None)
+def change_unit(icd, rng, node, message, field):
     unit = STANDARD[rng.choice([s for s in STANDARD if s != field.unit.symbol])]
     may = ("DIF308",) if field.scale is not None or field.limits else ()
     return done(with_field(icd, node, message, field, replace(field, unit=unit)), message.name, "DIF202", may=may)
 
 
-@edit()
-def change_const(icd, rng):
-    one = pick(rng, fields_of(icd, lambda f: f.const is not None))
-    if one is None:
-        return None
-    node, message, field = one
+@on_field(lambda f: f.const is not None)
+def change_const(icd, rng, node, message, field):
     return done(with_field(icd, node, message, field, replace(field, const=field.const ^ 1)), message.name, "DIF209")
 
 
-@edit()
-def change_limits(icd, rng):
-    one = pick(rng, fields_of(icd, lambda f: f.type in ("uint", "int")))
-    if one is None:
-        return None
-    node, message, field = one
+@on_field(lambda f: f.type in ("uint", "int"))
+def change_limits(icd, rng, node, message, field):
     old = field.limits or Limits()
     new = replace(field, limits=replace(old, min=(old.min if old.min is not None else Fraction(0)) + 1))
     return done(with_field(icd, node, message, field, new), message.name, "DIF211", may=("DIF308",))
 
 
-@edit()
-def add_special(icd, rng):
-    one = pick(rng, fields_of(icd, lambda f: f.type == "uint" and all(s.value != f.raw_max for s in f.special)))
-    if one is None:
-        return None
-    node, message, field = one
+@on_field(lambda f: f.type == "uint" and all(s.value != f.raw_max for s in f.special))
+def add_special(icd, rng, node, message, field):
     new = replace(field, special=(*field.special, Special(field.raw_max, "quite special")))
     return done(with_field(icd, node, message, field, new), message.name, "DIF210", may=("DIF308",))
 
 
-@edit()
-def change_answer(icd, rng):
-    one = pick(rng, messages_of(icd, lambda m: m.kind == TELECOMMAND))
-    if one is None:
-        return None
-    node, message = one
+@on_message(lambda m: m.kind == TELECOMMAND)
+def change_answer(icd, rng, node, message):
     new = replace(message, acknowledge=not message.acknowledge)
     return done(with_message(icd, node, message, new), message.name, "DIF212")
 

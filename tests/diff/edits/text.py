@@ -11,7 +11,8 @@ from tests.diff.edits.edit import (
     edit,
     fields_of,
     members_of,
-    messages_of,
+    on_field,
+    on_message,
     pick,
     with_enum,
     with_field,
@@ -21,22 +22,14 @@ from tests.diff.edits.edit import (
 )
 
 
-@edit(text=True)
-def change_field_summary(icd, rng):
-    one = pick(rng, fields_of(icd))
-    if one is None:
-        return None
-    node, message, field = one
+@on_field(text=True)
+def change_field_summary(icd, rng, node, message, field):
     new = replace(field, summary=f"{field.summary} More.".strip())
     return done(with_field(icd, node, message, field, new), message.name, "DIF401")
 
 
-@edit(text=True)
-def change_message_words(icd, rng):
-    one = pick(rng, messages_of(icd))
-    if one is None:
-        return None
-    node, message = one
+@on_message(text=True)
+def change_message_words(icd, rng, node, message):
     key, value, code = rng.choice(
         [
             ("summary", f"{message.summary} More.", "DIF401"),
@@ -75,12 +68,8 @@ def change_enum_words(icd, rng):
     return done(with_member(icd, enum, index, summary=summary), enum.name, "DIF401")
 
 
-@edit(text=True)
-def note_an_erratum(icd, rng):
-    one = pick(rng, fields_of(icd))
-    if one is None:
-        return None
-    node, message, field = one
+@on_field(text=True)
+def note_an_erratum(icd, rng, node, message, field):
     number = sum(e.id.startswith("NEW-") for e in node.errata)
     erratum = Erratum(f"NEW-{number:03}", "A note", "Why.", "Evidence.", "open")
     edited = with_field(icd, node, message, field, replace(field, errata=(*field.errata, erratum)))
@@ -98,11 +87,7 @@ def shuffle(icd, rng):
     return done(with_node(icd, node, replace(node, messages=tuple(messages), enums=tuple(enums))), "")
 
 
-@edit(text=True)
-def respell_formula(icd, rng):
+@on_field(lambda f: f.scale is not None, text=True)
+def respell_formula(icd, rng, node, message, field):
     """Nor is another spelling of the same formula."""
-    one = pick(rng, fields_of(icd, lambda f: f.scale is not None))
-    if one is None:
-        return None
-    node, message, field = one
     return done(with_field(icd, node, message, field, replace(field, formula=f"({field.formula})")), "")

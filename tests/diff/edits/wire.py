@@ -14,6 +14,8 @@ from tests.diff.edits.edit import (
     is_free,
     is_plain,
     messages_of,
+    on_field,
+    on_message,
     pick,
     with_field,
     with_fields,
@@ -71,23 +73,15 @@ def _cut_at(message: Message, bit: int) -> bool:
     return not any(f.at < bit < f.at + f.bits for f in message.fields)
 
 
-@edit()
-def append_field(icd, rng):
-    one = pick(rng, messages_of(icd, lambda m: is_free(m, "Appended")))
-    if one is None:
-        return None
-    node, message = one
+@on_message(lambda m: is_free(m, "Appended"))
+def append_field(icd, rng, node, message):
     new = Field("Appended", message.length * 8, 16, "int")
     edited = with_fields(icd, node, message, [*message.fields, new], length=message.length + 2)
     return done(edited, message.name, "DIF106", "DIF311")
 
 
-@edit()
-def drop_field(icd, rng):
-    one = pick(rng, fields_of(icd))
-    if one is None:
-        return None
-    node, message, field = one
+@on_field()
+def drop_field(icd, rng, node, message, field):
     edited = with_fields(icd, node, message, [f for f in message.fields if f is not field])
     return done(edited, message.name, "DIF113", "DIF306")
 
@@ -118,43 +112,27 @@ def fill_gap(icd, rng):
     return done(with_fields(icd, node, message, [*message.fields, new]), message.name, "DIF114", "DIF311")
 
 
-@edit()
-def narrow_field(icd, rng):
-    one = pick(rng, fields_of(icd, lambda f: is_plain(f) and f.bits > 1))
-    if one is None:
-        return None
-    node, message, field = one
+@on_field(lambda f: is_plain(f) and f.bits > 1)
+def narrow_field(icd, rng, node, message, field):
     edited = with_field(icd, node, message, field, replace(field, bits=field.bits - 1))
     return done(edited, message.name, "DIF110", may=("DIF307", "DIF308"))
 
 
-@edit()
-def change_sign(icd, rng):
-    one = pick(rng, fields_of(icd, is_plain))
-    if one is None:
-        return None
-    node, message, field = one
+@on_field(is_plain)
+def change_sign(icd, rng, node, message, field):
     new = replace(field, type="int" if field.type == "uint" else "uint")
     return done(with_field(icd, node, message, field, new), message.name, "DIF111", "DIF307", may=("DIF308",))
 
 
-@edit()
-def make_bytes(icd, rng):
-    one = pick(rng, fields_of(icd, lambda f: is_plain(f) and f.scale is None and f.at % 8 == f.bits % 8 == 0))
-    if one is None:
-        return None
-    node, message, field = one
+@on_field(lambda f: is_plain(f) and f.scale is None and f.at % 8 == f.bits % 8 == 0)
+def make_bytes(icd, rng, node, message, field):
     new = replace(field, type="bytes", unit=None)
     may = ("DIF202", "DIF308") if field.unit else ()
     return done(with_field(icd, node, message, field, new), message.name, "DIF111", "DIF307", may=may)
 
 
-@edit()
-def change_length(icd, rng):
-    one = pick(rng, messages_of(icd))
-    if one is None:
-        return None
-    node, message = one
+@on_message()
+def change_length(icd, rng, node, message):
     return done(with_message(icd, node, message, replace(message, length=message.length + 1)), message.name, "DIF106")
 
 
@@ -183,12 +161,8 @@ def swap_ids(icd, rng):
     return done(with_node(icd, node, replace(node, messages=messages)), "", "DIF103", "DIF104")
 
 
-@edit()
-def remove_message(icd, rng):
-    one = pick(rng, messages_of(icd))
-    if one is None:
-        return None
-    node, message = one
+@on_message()
+def remove_message(icd, rng, node, message):
     return done(with_message(icd, node, message), message.name, "DIF101", "DIF306")
 
 
@@ -203,12 +177,8 @@ def add_message(icd, rng):
     return done(with_node(icd, one, replace(one, messages=(*one.messages, new))), "Added", "DIF102", "DIF311")
 
 
-@edit()
-def change_kind(icd, rng):
-    one = pick(rng, messages_of(icd, lambda m: m.kind == CONFIGURATION))
-    if one is None:
-        return None
-    node, message = one
+@on_message(lambda m: m.kind == CONFIGURATION)
+def change_kind(icd, rng, node, message):
     new = replace(message, kind=TELECOMMAND, id=message.set_id, set_id=None, get_id=None)
     return done(with_message(icd, node, message, new), message.name, "DIF105")
 
