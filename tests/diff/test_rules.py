@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from contextlib import chdir
+from pathlib import Path
 
 import pytest
 
@@ -34,7 +35,7 @@ def test_the_pair_shows_its_change_at_a_line_of_its_files(case):
             places = [place for place in (change.old, change.new) if place is not None]
             assert places
             for place in places:
-                lines = open(place.file, encoding="utf-8").read().splitlines()
+                lines = Path(place.file).read_text(encoding="utf-8").splitlines()
                 assert place.line <= len(lines) and place.column <= len(lines[place.line - 1])
 
 

@@ -29,19 +29,30 @@ def _asked(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -
 @click.option("--format", "form", type=click.Choice(_FORMATS), default="text", show_default=True)
 @click.option("--out", "-o", type=PATH, help="File to write the report to (default: standard output).")
 @click.option(
-    "--fail-on", "asked", multiple=True, callback=_asked, metavar="LAYERS",
-    help="Exit with 1 for changes of these layers: wire, meaning, source, text. What is merely added counts only with `additions`.",
-)  # fmt: skip
+    "--fail-on",
+    "asked",
+    multiple=True,
+    callback=_asked,
+    metavar="LAYERS",
+    help="Exit with 1 for changes of these layers: wire, meaning, source, text. Additions count only with `additions`.",
+)
 @click.option("--accepted", type=PATH, help="List of accepted changes (default: the nearest .icdgen-accepted.yaml).")
-@click.option("--uses", "sources", multiple=True, type=PATH, help="Also name the lines of these C, Python or Rust sources that use what changed.")  # fmt: skip
+@click.option(
+    "--uses",
+    "sources",
+    multiple=True,
+    type=PATH,
+    help="Also name the lines of these C, Python or Rust sources that use what changed.",
+)
 @click.option("--unchecked", is_flag=True, help="Compare although `icdgen check` finds fault with an ICD.")
 @click.option("--all", "everything", is_flag=True, help="Leave nothing out of the text report.")
 def diff(sides, form, out, asked, accepted, sources, unchecked, everything) -> None:
     """Say what changed from OLD to NEW: on the wire, in meaning, in generated names, in words only.
 
-    A side is an ICD file or folder, a git revision (HEAD~1, or HEAD~1:icd/a.yaml), or the output of `icdgen show --format json`
-    (a file, or - for standard input). A..B compares two revisions, a single revision the working tree with it. Exit status: 0 nothing
-    at a level of --fail-on, 1 found, 2 misuse or an ICD that cannot be compared.
+    A side is an ICD file or folder, a git revision (HEAD~1, or HEAD~1:icd/a.yaml), or the output of `icdgen show --format
+    json` (a file, or - for standard input). A..B compares two revisions; a revision alone is compared with the working tree.
+
+    Exit status: 0 nothing at a level of --fail-on, 1 found, 2 misuse or an ICD that cannot be compared.
     """
     from icdgen.diff import inputs, report, uses
 

@@ -27,6 +27,16 @@ class Context:
         """Messages and enumerations in which anything differs."""
         return [p for node in self.match.nodes for p in (*node.messages, *node.enums) if p.changed]
 
+    @cached_property
+    def users(self) -> dict[int, list[str]]:
+        """Fields that hold the values of an enumeration of the new ICD, by the enumeration's identity."""
+        found: dict[int, list[str]] = {}
+        for message in (m for node in self.match.new.nodes for m in node.messages):
+            for field in message.fields:
+                if field.enum is not None:
+                    found.setdefault(id(field.enum), []).append(f"{message.name}: {field.name}")
+        return found
+
     def sides(self, node: NodePair) -> tuple[tuple[Icd, Node], tuple[Icd, Node]]:
         return (self.match.old, node.old), (self.match.new, node.new)
 

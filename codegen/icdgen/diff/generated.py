@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import cached_property
 from typing import NamedTuple
 
 from icdgen import backends
@@ -23,45 +24,92 @@ class Name(NamedTuple):
     stem: str = ""
 
 
+Types = Callable[[str, Node, Message, Field], str]
 NOTHING, NODES, OWNERS = range(3)  # what is called by its old name
 Names = dict[int, tuple[Name, ...]]  # id(pair) -> names
 
 
 class Generated:
-    """Names of the pairs that changed.
+    """Names of the pairs whose names may have changed: all others keep theirs.
 
-    ``new`` are those of the new things if their node kept its old name, ``clothed`` if the message or enumeration that holds them
-    did too: a field's names are not said to change only because its message has another name.
+    ``clothed`` are those of the new things if the message or enumeration that holds them, and their node, had kept their old
+    names: a field's names are not said to change only because its message has another name.
     """
 
     def __init__(self, match: Match, changed: Iterable[Pair]) -> None:
-        self.match = match
-        changed = list(changed)
-        wanted = {id(pair) for pair in changed}
-        old = _Cut(match, 0, wanted)
-        self.old = old.names(old.icd)
-        new = _Cut(match, 1, wanted, NODES)
-        self.new = new.names(new.icd)
-        dressed = _Cut(match, 1, wanted, OWNERS)
-        self.clothed = dressed.names(dressed.icd)
-        self._types = (_types(old.icd), _types(dressed.icd))
-        self._dressed = dressed
+        self._match, self._changed = match, list(changed)
+
+    def _cut(self, side: int, clothed: int = NOTHING) -> _Cut:
+        return _Cut(self._match, side, self._kept, clothed)
+
+    @cached_property
+    def _kept(self) -> set[int]:
+        """Everything whose names may have changed, with what it is part of: id(pair)."""
+        kept: set[int] = set()
+        for pair in self._changed:
+            parts = [id(part) for part in _parts(pair) if may_rename(part)] if pair.both else []
+            if parts or may_rename(pair):
+                kept.update((id(pair), *parts))
+        return kept
+
+    @cached_property
+    def everything(self) -> Names:
+        """Old names of everything in messages and enumerations in which anything differs."""
+        kept = {id(one) for pair in self._changed for one in (pair, *_parts(pair))}
+        cut = _Cut(self._match, 0, kept)
+        return cut.names(cut.icd)
+
+    @cached_property
+    def old(self) -> Names:
+        return self._before.names(self._before.icd)
+
+    @cached_property
+    def _before(self) -> _Cut:
+        return self._cut(0)
+
+    @cached_property
+    def new(self) -> Names:
+        cut = self._cut(1)
+        return cut.names(cut.icd)
+
+    @cached_property
+    def _at_home(self) -> Names:
+        if all(node.old.name == node.new.name for node in self._match.nodes if node.both):
+            return self.new
+        cut = self._cut(1, NODES)
+        return cut.names(cut.icd)
+
+    @cached_property
+    def clothed(self) -> Names:
+        return self._dressed.names(self._dressed.icd)
+
+    @cached_property
+    def _dressed(self) -> _Cut:
+        return self._cut(1, OWNERS)
+
+    @cached_property
+    def _types(self) -> tuple[Types, Types]:
+        return _types(self._before.icd), _types(self._dressed.icd)
 
     def renamed(self, pair: Pair) -> list[tuple[Name | None, Name | None]]:
         """Old and new name of everything that is generated for the pair, where they differ. Its parts are left out."""
-        after = self.new if isinstance(pair, MessagePair | EnumPair) else self.clothed
+        after = self._at_home if isinstance(pair, MessagePair | EnumPair) else self.clothed
         old, new = self.old.get(id(pair), ()), after.get(id(pair), ())
+        real = dict(zip(new, self.new.get(id(pair), ()), strict=False))
         found: list[tuple[Name | None, Name | None]] = []
         for key in sorted({_sort(name) for name in (*old, *new)}):
             before, later = ([name for name in names if _sort(name) == key] for names in (old, new))
             if len(before) == len(later):
-                found += [(a, b) for a, b in zip(before, later, strict=True) if a.text != b.text]
+                found += [(a, real.get(b, b)) for a, b in zip(before, later, strict=True) if a.text != b.text]
             else:
-                found += [(a, None) for a in before if a not in later] + [(None, b) for b in later if b not in before]
+                found += [(a, None) for a in before if a not in later]
+                found += [(None, real.get(b, b)) for b in later if b not in before]
         return found
 
     def retyped(self, pair: FieldPair) -> list[tuple[str, str, str]]:
         """Language, old and new type of the raw value, where they differ."""
+        if not _is_sound(pair.old) or not _is_sound(pair.new):
+            return []
         message_old, message_new = pair.owner.old, self._dressed.message_of(pair.owner)
         field_new = self._dressed.field_of(pair)
         found = []
@@ -73,13 +121,41 @@ class Generated:
         return found
 
 
-class _Cut:
-    """One of both ICDs, with the changed messages only; every part has a mark of its own, by which its names are found."""
+def may_rename(pair: Pair) -> bool:
+    """Whether anything differs that names or types of the pair itself are made from."""
+    if not pair.both or (pair.old.name, pair.old.identifier) != (pair.new.name, pair.new.identifier):
+        return True
+    if isinstance(pair, FieldPair):
+        return pair.owner.revoiced or _decisive(pair.old) != _decisive(pair.new)
+    if isinstance(pair, MemberPair):
+        return pair.owner.revoiced
+    return pair.rehomed or pair.revoiced
 
-    def __init__(self, match: Match, side: int, wanted: set[int], clothed: int = NOTHING) -> None:
-        self.match, self.side, self.clothed = match, side, clothed
+
+def _decisive(field: Field) -> tuple:
+    enum = field.enum.name if field.enum is not None else None
+    return field.type, field.bits, enum, field.unit, field.scale, field.special, field.limits, field.const
+
+
+def _is_sound(field: Field) -> bool:
+    """Whether a backend can make anything of the field: an ICD that was not checked may hold what none can."""
+    if field.type == "bytes":
+        return field.at % 8 == field.bits % 8 == 0
+    wanted = {"bool": field.bits == 1, "float": field.bits in (32, 64), "enum": field.enum is not None}
+    return field.bits <= 64 and wanted.get(field.type, True)
+
+
+def _parts(pair: Pair) -> list[Pair]:
+    return pair.fields if isinstance(pair, MessagePair) else pair.members
+
+
+class _Cut:
+    """One of both ICDs, with what is to be kept of it; every part has a mark of its own, by which its names are found."""
+
+    def __init__(self, match: Match, side: int, kept: set[int], clothed: int = NOTHING) -> None:
+        self.match, self.side, self.kept, self.clothed = match, side, kept, clothed
         self.marks: dict[int, Pair] = {}
-        self.kept: list[Map] = []
+        self.alive: list[Map] = []  # marks go by identity
         self.enums: dict[int, Enum] = {}
         self.messages: dict[int, Message] = {}
         self.fields: dict[int, Field] = {}
@@ -97,7 +173,7 @@ class _Cut:
                     includes=tuple(names.get(name, name) for name in node.includes),
                     enums=enums,
                     messages=tuple(
-                        self.message(m, names) for m in node.messages if id(match.pair_of.get(id(m))) in wanted
+                        self.message(m, names) for m in node.messages if id(match.pair_of.get(id(m))) in kept
                     ),
                 )
                 for node, enums in nodes
@@ -115,7 +191,7 @@ class _Cut:
         if pair is not None:
             mark = Map(Place(""))
             self.marks[id(mark)] = pair
-            self.kept.append(mark)
+            self.alive.append(mark)
             more["source"] = mark
             if self.clothed == OWNERS and pair.old is not None and isinstance(pair, MessagePair | EnumPair):
                 more.update(name=pair.old.name, identifier=pair.old.identifier)
@@ -124,7 +200,8 @@ class _Cut:
     def enum(self, enum: Enum, names: dict[str, str]) -> Enum:
         pair = self.match.pair_of.get(id(enum))
         members = {id(self.side_of(p)): p for p in getattr(pair, "members", ())}
-        own = tuple(self.dress(m, members[id(m)]) if id(m) in members else m for m in enum.members)
+        kept = [m for m in enum.members if id(m) in members and id(members[id(m)]) in self.kept]
+        own = tuple(self.dress(m, members[id(m)]) for m in kept)
         made = self.dress(enum, pair, members=own, node=names.get(enum.node, enum.node))
         self.enums[id(enum)] = made
         return made
@@ -134,6 +211,8 @@ class _Cut:
         fields = {id(self.side_of(p)): p for p in pair.fields}
         own = []
         for one in message.fields:
+            if id(fields[id(one)]) not in self.kept or not _is_sound(one):
+                continue
             enum = self.enums.get(id(one.enum), one.enum)
             made = self.dress(one, fields.get(id(one)), enum=enum)
             self.fields[id(fields.get(id(one)))] = made
@@ -157,6 +236,8 @@ class _Cut:
                 if pair is None or not one.text.isidentifier() or one.scope.startswith("modules of"):
                     continue
                 owner = getattr(pair, "owner", None)
+                if owner is None and language == "c" and one.text.endswith("_H"):
+                    continue  # an include guard
                 if language == "rust" and owner is None:
                     types.setdefault(id(pair), one.text)
                 stem = types.get(id(owner), "") if language == "rust" else _stem(language, one.scope)
@@ -165,8 +246,8 @@ class _Cut:
 
 
 def _sort(name: Name) -> tuple[str, bool]:
-    """Names of one language, and in C those at file scope, correspond in their order."""
-    return name.language, bool(name.stem)
+    """Names of one language, and in C those at file scope, correspond in their order. Members come first: they are short."""
+    return name.language, not name.stem
 
 
 def _stem(language: str, scope: str) -> str:
@@ -180,7 +261,7 @@ def _stem(language: str, scope: str) -> str:
 # Types
 
 
-def _types(cut: Icd) -> Callable[[str, Node, Message, Field], str]:
+def _types(cut: Icd) -> Types:
     """A function that tells the type of a field's raw value in a language."""
     from icdgen.backends.c.names import Names as CNames
     from icdgen.backends.c.storage import Storages

@@ -5,6 +5,7 @@ Everything here is symmetric: from new to old the same pairs are found.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Iterable, Sequence
 
 from icdgen.diff.pairs import EnumPair, FieldPair, Match, MemberPair, MessagePair, NodePair, kind, position
@@ -79,23 +80,28 @@ def _node_score(one: Node, other: Node) -> float:
 
 
 def _enums(found: Match) -> None:
-    left_old: list[tuple[NodePair, Enum]] = []
-    left_new: list[tuple[NodePair, Enum]] = []
+    _pair_up(found, "enums", lambda enum: enum.name, (_moved_enum, _renamed_enum), SAME_ENUM, _add_enum)
+
+
+def _pair_up(found: Match, what: str, rank: Callable, scores: Iterable[Score], least: float, add: Callable) -> None:
+    """Pairs what nodes declare: by name within a node, then by each of the scores."""
+    left_old: list[tuple[NodePair, object]] = []
+    left_new: list[tuple[NodePair, object]] = []
     for node in found.nodes:
-        pairs, (old, new) = _by_name(node.old.enums if node.old else (), node.new.enums if node.new else ())
+        pairs, (old, new) = _by_name(getattr(node.old, what, ()), getattr(node.new, what, ()))
         for one, other, sure in pairs:
-            _add_enum(found, node, node, one, other, sure)
-        left_old += [(node, enum) for enum in old]
-        left_new += [(node, enum) for enum in new]
-    for score in (_moved_enum, _renamed_enum):
-        for (home, one), (node, other), sure in _alike(left_old, left_new, score, SAME_ENUM):
-            _add_enum(found, home, node, one, other, sure)
+            add(found, node, node, one, other, sure)
+        left_old += [(node, one) for one in sorted(old, key=rank)]
+        left_new += [(node, one) for one in sorted(new, key=rank)]
+    for score in scores:
+        for (home, one), (node, other), sure in _alike(left_old, left_new, score, least):
+            add(found, home, node, one, other, sure)
             left_old = [item for item in left_old if item[1] is not one]
             left_new = [item for item in left_new if item[1] is not other]
-    for node, enum in left_old:
-        _add_enum(found, node, node, enum, None, 1.0)
-    for node, enum in left_new:
-        _add_enum(found, node, node, None, enum, 1.0)
+    for node, one in left_old:
+        add(found, node, node, one, None, 1.0)
+    for node, one in left_new:
+        add(found, node, node, None, one, 1.0)
 
 
 def _moved_enum(one: tuple[NodePair, Enum], other: tuple[NodePair, Enum]) -> float:
@@ -139,23 +145,7 @@ def _members(pair: EnumPair) -> Iterable[MemberPair]:
 
 
 def _messages(found: Match) -> None:
-    left_old: list[tuple[NodePair, Message]] = []
-    left_new: list[tuple[NodePair, Message]] = []
-    for node in found.nodes:
-        pairs, (old, new) = _by_name(node.old.messages if node.old else (), node.new.messages if node.new else ())
-        for one, other, sure in pairs:
-            _add_message(found, node, node, one, other, sure)
-        left_old += [(node, message) for message in sorted(old, key=_rank)]
-        left_new += [(node, message) for message in sorted(new, key=_rank)]
-    for score in (_moved_message, _renamed_message):
-        for (home, one), (node, other), sure in _alike(left_old, left_new, score, SAME_MESSAGE):
-            _add_message(found, home, node, one, other, sure)
-            left_old = [item for item in left_old if item[1] is not one]
-            left_new = [item for item in left_new if item[1] is not other]
-    for node, message in left_old:
-        _add_message(found, node, node, message, None, 1.0)
-    for node, message in left_new:
-        _add_message(found, node, node, None, message, 1.0)
+    _pair_up(found, "messages", _rank, (_moved_message, _renamed_message), SAME_MESSAGE, _add_message)
 
 
 def _rank(message: Message) -> tuple:
@@ -173,11 +163,14 @@ def _renamed_message(one: tuple[NodePair, Message], other: tuple[NodePair, Messa
     if home is not node or not _same_direction(old, new):
         return 0.0
     same_id = any(a is not None and a == b for a, b in zip(_ids(old), _ids(new), strict=True))
+    names = overlap(*(frozenset(f.name for f in m.fields) for m in (old, new)))
+    layout = 0.4 * _layouts_alike(old, new) + 0.2 * names + 0.25 * same_id
+    if layout + 0.15 < SAME_MESSAGE:
+        return 0.0  # no likeness of names, which takes long to tell, can make up for it
     alike = likeness(old.name, new.name)
     if not same_id and min(len(old.fields), len(new.fields)) < 2 and alike < 0.6:
         return 0.0  # too little to go by
-    names = overlap(*(frozenset(f.name for f in m.fields) for m in (old, new)))
-    return 0.4 * _layouts_alike(old, new) + 0.2 * names + 0.25 * same_id + 0.15 * alike
+    return layout + 0.15 * alike
 
 
 def _same_direction(old: Message, new: Message) -> bool:
@@ -227,30 +220,41 @@ def _renamed_fields(pair: MessagePair, known: list[tuple], old: list[Field], new
     spans_old, spans_new = ([position(node, f) for f in rows] for node, rows in
                             ((pair.old_node, old), (pair.new_node, new)))  # fmt: skip
     spans = {id(f): span for f, span in zip((*old, *new), (*spans_old, *spans_new), strict=True)}
-    steps = sorted((one.at, other.at) for one, other, _ in known)
+    shifts = _Shifts(known)
 
     def score(one: Field, other: Field) -> float:
+        same_kind, same_span = kind(one) == kind(other), spans[id(one)] == spans[id(other)]
+        if not same_span and (one.bits != other.bits or not same_kind):
+            return 0.0
         alike = likeness(one.name, other.name)
-        same_kind = kind(one) == kind(other)
         same_sense = (one.type, one.scale, one.unit, one.limits) == (other.type, other.scale, other.unit, other.limits)
-        if spans[id(one)] == spans[id(other)]:
+        if same_span:
             if same_kind:
                 return 0.6 + 0.15 * alike + 0.2 * same_sense
             return 0.7 * alike + 0.1 if alike >= 0.75 else 0.0
-        if one.bits != other.bits or not same_kind or not same_sense:
+        if not same_sense:
             return 0.0
-        if other.at - one.at in _shifts(steps, one.at, other.at):
+        if shifts.allows(one.at, other.at):
             return 0.6 + 0.3 * alike
         return 0.8 * alike if alike >= 0.75 else 0.0
 
     return _alike(old, new, score, SAME_FIELD)
 
 
-def _shifts(steps: list[tuple[int, int]], old_at: int, new_at: int) -> set[int]:
-    """By how much the nearest fields before it have moved, as seen in the old frame and in the new one."""
-    before_old = [b - a for a, b in steps if a < old_at]
-    before_new = [b - a for a, b in sorted(steps, key=lambda s: s[1]) if b < new_at]
-    return {moved[-1] for moved in (before_old, before_new) if moved}
+class _Shifts:
+    """By how much the nearest known field before a place has moved, as seen in the old frame and in the new one."""
+
+    def __init__(self, known: list[tuple]) -> None:
+        self.old = sorted((one.at, other.at - one.at) for one, other, _ in known)
+        self.new = sorted((other.at, other.at - one.at) for one, other, _ in known)
+
+    def allows(self, old_at: int, new_at: int) -> bool:
+        """Whether a field that moved so far moved with the one before it."""
+        for rows, at in ((self.old, old_at), (self.new, new_at)):
+            index = bisect_left(rows, (at,))
+            if index and rows[index - 1][1] == new_at - old_at:
+                return True
+        return False
 
 
 def _in_order(found: Match) -> None:

@@ -35,7 +35,7 @@ class Moves:
 def moves(message: MessagePair) -> Moves:
     """The moves within a message that is in both ICDs."""
     found = Moves()
-    kept = [pair for pair in message.kept]
+    kept = message.kept
     shifted = [pair for pair in kept if pair.moved]
     if not shifted:
         return found

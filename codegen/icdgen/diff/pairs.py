@@ -66,7 +66,7 @@ class FieldPair(Pair):
 
     @property
     def changed(self) -> bool:
-        return self.old != self.new or self.owner.reordered or self.owner.revoiced
+        return self.old != self.new or self.owner.revoiced
 
     @cached_property
     def same_bits(self) -> bool:
@@ -90,7 +90,12 @@ class EnumPair(Pair):
 
     @cached_property
     def changed(self) -> bool:
-        return self.old != self.new or self.old_node.vocabulary != self.new_node.vocabulary
+        return self.old != self.new or self.revoiced
+
+    @property
+    def revoiced(self) -> bool:
+        """Whether words are split in another way, so that its names may differ."""
+        return self.old_node.vocabulary != self.new_node.vocabulary
 
     def where(self) -> Where:
         return Where(self.node.name, enum=self.any.name)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from difflib import SequenceMatcher
 from functools import lru_cache
 
 from icdgen.naming import words
@@ -10,11 +9,16 @@ from icdgen.naming import words
 _SHORTEST = 5  # letters of a word in which a slip of the pen is told from another word
 
 
-@lru_cache(maxsize=4096)
 def likeness(one: str, other: str) -> float:
-    """0: nothing in common, 1: the same words. Symmetric."""
-    first, second = sorted((" ".join(words(one)), " ".join(words(other))))
-    return 1.0 if first == second else SequenceMatcher(None, first, second, autojunk=False).ratio()
+    """0: nothing in common, 1: the same words. Symmetric: the share of pairs of letters that both have."""
+    first, second = _pairs(one), _pairs(other)
+    return 2 * len(first & second) / (len(first) + len(second)) if first or second else 1.0
+
+
+@lru_cache(maxsize=8192)
+def _pairs(name: str) -> frozenset[str]:
+    text = f" {' '.join(words(name))} "
+    return frozenset(text[i : i + 2] for i in range(len(text) - 1)) if text.strip() else frozenset()
 
 
 def overlap(one: frozenset, other: frozenset) -> float:

@@ -27,11 +27,12 @@ _SKIPPED = frozenset((".git", ".hg", ".svn", "node_modules", "__pycache__", ".ve
 
 _NAME = r"(?P<name>[A-Za-z_][A-Za-z0-9_]*)"
 _C_LIKE = re.compile(rf'//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|{_NAME}', re.DOTALL)
-_PYTHON = re.compile(
-    rf'#[^\n]*|[rbuRBU]{{0,2}}(?:"""(?:\\.|[^\\])*?(?:"""|\Z)|\'\'\'(?:\\.|[^\\])*?(?:\'\'\'|\Z)'
-    rf"|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*')|{_NAME}",
-    re.DOTALL,
+_TEXT = (
+    r"""(?:\"{3}(?:\\.|[^\\])*?(?:\"{3}|\Z)|'{3}(?:\\.|[^\\])*?(?:'{3}|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')"""
 )
+_PYTHON = re.compile(rf"#[^\n]*|(?P<format>[rR]?[fF][rR]?{_TEXT})|[rbuRBU]{{0,2}}{_TEXT}|{_NAME}", re.DOTALL)
+_FORMATTED = re.compile(r"(?<!\{)\{(?!\{)[^{}]*")  # what an f-string computes
+_INNER = re.compile(_NAME)
 _LEXERS = {"c": _C_LIKE, "rust": _C_LIKE, "python": _PYTHON}
 
 
@@ -64,7 +65,7 @@ def uses(comparison: Comparison, changes: Iterable[Change], paths: Iterable[Path
 
 def _wanted(comparison: Comparison, changes: Iterable[Change]) -> dict[str, dict[str, list[_Wanted]]]:
     """By language and name: what changed about it. Changes of words touch nobody's code."""
-    old = comparison.context.generated.old
+    old = comparison.context.generated.everything
     result: dict[str, dict[str, list[_Wanted]]] = {language: {} for language in _LEXERS}
     for change in changes:
         if not change.breaks:
@@ -107,7 +108,7 @@ def _in_file(path: Path, language: str, wanted: dict[str, list[_Wanted]]) -> Ite
         raise UserError(f"cannot read {path}: {error.strerror}", "make it readable, or leave it out") from None
     if MARK in text[:_HEAD]:
         return
-    tokens = [(m["name"], m.start("name")) for m in _LEXERS[language].finditer(text) if m["name"]]
+    tokens = list(_tokens(text, _LEXERS[language]))
     known = {name for name, _ in tokens}
     starts = [0, *(match.end() for match in re.finditer("\n", text))]
     for name, start in tokens:
@@ -117,6 +118,16 @@ def _in_file(path: Path, language: str, wanted: dict[str, list[_Wanted]]) -> Ite
             line = text[starts[number - 1] :].split("\n", 1)[0].rstrip("\r")
             changes = tuple(dict.fromkeys(change for row in rows for change in row.changes))
             yield Use(str(path), number, start - starts[number - 1] + 1, name, line, changes)
+
+
+def _tokens(text: str, lexer: re.Pattern) -> Iterator[tuple[str, int]]:
+    """Every name of the code and where it begins."""
+    for match in lexer.finditer(text):
+        if match["name"]:
+            yield match["name"], match.start("name")
+        elif match.groupdict().get("format"):
+            for part in _FORMATTED.finditer(text, match.start(), match.end()):
+                yield from ((m["name"], m.start()) for m in _INNER.finditer(text, part.start(), part.end()))
 
 
 def _mentions(language: str, known: set[str], stem: str) -> bool:

@@ -1,8 +1,8 @@
 """``python -m tests.diff.agreement``: does the generated code agree with the diff about what changed on the wire?
 
-Each edit changes a message of the shipped ICDs. Code is generated from the edited ICD, and the vectors of the unchanged one are run on
-it. Where the diff finds no change of the wire, every vector must pass as far as it is about bytes; where it finds one, at least one must
-fail; where it finds words only, every vector must pass. Ends with status 0 if that is so.
+Each edit changes a message of the shipped ICDs. Code is generated from the edited ICD, and the vectors of the unchanged
+one are run on it. Where the diff finds no change of the wire, every vector must pass as far as it is about bytes; where it
+finds one, at least one must fail; where it finds words only, every vector must pass. Ends with status 0 if that is so.
 """
 
 from __future__ import annotations

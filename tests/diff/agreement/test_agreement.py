@@ -28,7 +28,7 @@ def test_vectors_fail_where_the_diff_says_wire_and_pass_where_it_does_not(icd, t
 @pytest.mark.parametrize("hidden", ["wire", "others"])
 def test_a_diff_that_lies_is_found_out(icd, tmp_path, monkeypatch, hidden):
     """A diff that does not see changes of the wire, and one that takes every change for one of the wire."""
-    wire = next(c for case in cases(icd, 3, seed=1) for c in compare(case.old, case.new).changes if c.layer == "wire")
+    wire = next(c for case in cases(icd, 41, seed=1) for c in compare(case.old, case.new).changes if c.layer == "wire")
 
     def lying(old, new):
         found = compare(old, new)

@@ -39,13 +39,7 @@ def _differences(old: dict[int, str], new: dict[int, str]) -> tuple[str, ...]:
 
 def _used(owner: EnumPair, ctx: Context) -> tuple[str, ...]:
     """Fields that hold the enumeration's values."""
-    users = [
-        f"{m.name}: {f.name}"
-        for node in ctx.match.new.nodes
-        for m in node.messages
-        for f in m.fields
-        if f.enum is owner.new
-    ]
+    users = ctx.users.get(id(owner.new), ())
     return (f"Used by {some(users)}.",) if users else ()
 
 

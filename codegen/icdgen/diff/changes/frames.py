@@ -96,12 +96,12 @@ def length_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
     if old.length == new.length:
         return
-    shorter, longer = sorted((old.length, new.length))
+    shorter, by = min(old.length, new.length), count(abs(new.length - old.length), "byte")
     tail = [p.any.name for p in ctx.at_the_end(pair)]
     if new.length > old.length:
-        what = f"gained {some(tail, 'field')} at its end" if tail else "grew"
+        what = f"gained {some(tail, 'field')} at its end" if tail else f"grew by {by}"
     else:
-        what = f"lost {some(tail, 'field')} at its end" if tail else "shrank"
+        what = f"lost {some(tail, 'field')} at its end" if tail else f"shrank by {by}"
     text = f"{quote(new.name)} has {count(new.length, 'byte')}, had {old.length}: it {what}"
     details = [f"Decoders of the other release refuse the frame: they take exactly {old.length} bytes."]
     if tail and not ctx.is_touched_before(pair, shorter * 8):

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 from icdgen.diff.change import Found
 from icdgen.diff.context import Context
-from icdgen.diff.generated import Name
+from icdgen.diff.generated import Name, may_rename
 from icdgen.diff.pairs import EnumPair, FieldPair, MemberPair, MessagePair, NodePair, Pair
 from icdgen.diff.rule import rule
 from icdgen.icd.rules.wording import count, listing, quote
 
-MOST = 3  # names that are shown of one language
+MOST = 2  # names that are shown of one language
 
 _WHAT = {MessagePair: "message", FieldPair: "field", EnumPair: "enumeration", MemberPair: "value", NodePair: "node"}
 Renamed = list[tuple[Name | None, Name | None]]
@@ -23,15 +23,15 @@ def lines(renamed: Renamed) -> tuple[str, ...]:
     one_way = not all(old and new for old, new in renamed) and any(
         all(pair[side] is None for pair in renamed) for side in (0, 1)
     )
-    for old, new in renamed:
-        said = f"{quote(old.text) if old else '(new)'} -> {quote(new.text) if new else '(gone)'}"
+    for old, new in sorted(renamed, key=lambda names: not (names[0] or names[1]).text.endswith("_t")):  # types first
+        said = f"{f'`{old.text}`' if old else '(new)'} -> {f'`{new.text}`' if new else '(gone)'}"
         if one_way:
-            said = quote((old or new).text)
+            said = f"`{(old or new).text}`"
         rows = found.setdefault((old or new).language, [])
         if said not in rows:
             rows.append(said)
     result = []
-    for language, rows in found.items():
+    for language, rows in sorted(found.items()):
         rest = [f"{len(rows) - MOST} more"] if len(rows) > MOST else []
         result.append(f"{TITLES.get(language, language)}: {listing(rows[:MOST] + rest)}")
     return tuple(result)
@@ -59,24 +59,8 @@ def _renamed(pair: Pair, ctx: Context) -> Iterator[Found]:
         yield Found(text, ("name", "identifier"), was, now, lines(renamed))
 
 
-@rule("DIF301", "message")
-def message_renamed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
-    yield from _renamed(pair, ctx)
-
-
-@rule("DIF302", "field")
-def field_renamed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    yield from _renamed(pair, ctx)
-
-
-@rule("DIF303", "enum")
-def enum_renamed(pair: EnumPair, ctx: Context) -> Iterator[Found]:
-    yield from _renamed(pair, ctx)
-
-
-@rule("DIF304", "member")
-def member_renamed(pair: MemberPair, ctx: Context) -> Iterator[Found]:
-    yield from _renamed(pair, ctx)
+for _code, _of in (("DIF301", "message"), ("DIF302", "field"), ("DIF303", "enum"), ("DIF304", "member")):
+    rule(_code, _of)(_renamed)
 
 
 @rule("DIF305", "node")
@@ -111,7 +95,7 @@ def retyped(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 
 @rule("DIF308", "field")
 def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    if _is_called_otherwise(pair) or pair.owner.rehomed or pair.owner.revoiced:
+    if _is_called_otherwise(pair) or pair.owner.rehomed or pair.owner.revoiced or not may_rename(pair):
         return
     renamed = ctx.generated.renamed(pair)
     if renamed:

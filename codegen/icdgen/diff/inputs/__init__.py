@@ -29,12 +29,12 @@ def _resolve(arguments: list[str], usual: list[Path]) -> tuple[object, object]:
     first = arguments[0] if arguments else ""
     span = None if not first or os.path.exists(first) else git.span(first)
     if span is not None:
-        paths = [Path(word) for word in arguments[1:]] or usual
-        return tuple(Spec(revision, git.inside(paths), revision, top=git.top) for revision in span)
+        paths = git.inside(map(Path, arguments[1:])) if arguments[1:] else git.usual(usual)
+        return tuple(Spec(revision, paths, revision, top=git.top) for revision in span)
     if len(arguments) == 1:
         old = _one(git, first, usual)
         if isinstance(old, Spec):
-            return old, list(usual) if not old.named else [git.outside(path) for path in old.paths]
+            return old, [git.outside(path) for path in old.paths]
         raise UserError("name what to compare with", "`icdgen diff OLD NEW`, or a git revision such as HEAD~1")
     if len(arguments) > 2:
         raise UserError(

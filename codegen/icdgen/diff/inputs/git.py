@@ -11,17 +11,17 @@ from typing import NamedTuple
 
 from icdgen.errors import UserError
 
+USUAL = "icd"  # where a project has its ICDs if nothing says otherwise
 _SUFFIX = ".yaml"
 _FILES = ("100644", "100755")  # modes of what is a plain file
 
 
 class Spec(NamedTuple):
-    """ICDs of a revision. ``paths`` are relative to the repository's top; ``named`` if the user named them."""
+    """ICDs of a revision. ``paths`` are relative to the repository's top."""
 
     revision: str
     paths: list[PurePosixPath]
     label: str = ""
-    named: bool = False
     top: str = "."
 
     def extract(self, folder: Path) -> list[Path]:
@@ -53,7 +53,7 @@ class Git:
     def span(self, word: str) -> tuple[str, str] | None:
         """Both ends of ``A..B`` or ``A...B`` (since B left A); either may be left out and is HEAD then."""
         first, dots, second = word.partition("..")
-        if not dots or not self.top:
+        if not dots or ":" in word or not self.top:
             return None
         since = second.startswith(".")
         ends = [end or "HEAD" for end in (first, second.lstrip("."))]
@@ -71,7 +71,7 @@ class Git:
         if not self.commit(revision):
             return None
         if not colon:
-            return Spec(revision, self.inside(usual), word, top=self.top)
+            return Spec(revision, self.usual(usual), word, top=self.top)
         here = PurePosixPath(os.path.relpath(os.path.realpath("."), self.top).replace(os.sep, "/"))
         inner = PurePosixPath(path)
         if path.startswith("./"):
@@ -82,7 +82,7 @@ class Git:
             )
         if not _run("cat-file", "-t", f"{revision}:{_name(inner)}", top=self.top):
             raise UserError(f"{revision} has no {path}", f"`git ls-tree -r {revision}` lists what it has")
-        return Spec(revision, [inner], word, named=True, top=self.top)
+        return Spec(revision, [inner], word, top=self.top)
 
     def inside(self, paths: Iterable[Path]) -> list[PurePosixPath]:
         """The paths relative to the repository's top. Raises `UserError` for one that lies outside."""
@@ -94,6 +94,15 @@ class Git:
                 raise UserError(f"{path} is not in this git repository", help)
             found.append(PurePosixPath(os.path.relpath(full, os.path.realpath(self.top)).replace(os.sep, "/")))
         return found
+
+    def usual(self, paths: Iterable[Path]) -> list[PurePosixPath]:
+        """The paths that are meant where none is named; the repository's folder ``icd`` if they are not in the repository."""
+        try:
+            return self.inside(paths)
+        except UserError:
+            if self.top and os.path.isdir(os.path.join(self.top, USUAL)):
+                return [PurePosixPath(USUAL)]
+            raise
 
     def outside(self, path: PurePosixPath) -> Path:
         """The path in the working tree."""

@@ -52,6 +52,11 @@ def from_bytes(data: bytes, name: str) -> Side:
     _check(tree, name)
     nodes: list[model.Node] = []
     for item in tree["nodes"]:
+        for index, include in enumerate(item["includes"]):
+            if all(node.name != include for node in nodes):
+                place = item["includes"].items_at[index]
+                text = f"`{item['name']}` includes `{include}`, which is not shown before it"
+                raise Findings([Finding("ICD004", text, place, _HELP)])
         nodes.append(_Reader(nodes).node(item))
     return Side(name, model.Icd(tuple(nodes)), texts={name: data.decode("utf-8", "replace")})
 
@@ -186,7 +191,7 @@ class _Reader:
         return model.Field(
             name=item["name"], at=item["offset"], bits=item["bits"], type=item["type"], identifier=get("identifier"),
             enum=self.enums.get(get("enum")), unit=self.units.get(get("unit")), formula=get("formula", ""),
-            scale=Scale(Fraction(item["scale"]), Fraction(get("scale_offset", "0"))) if "scale" in item else None,
+            scale=_scale(item),
             const=get("const"), special=tuple(model.Special(s["value"], s["meaning"]) for s in get("special", ())),
             limits=model.Limits(**{key: Fraction(value) for key, value in item["limits"].items()})
             if "limits" in item else None,
@@ -195,6 +200,15 @@ class _Reader:
             ),
             summary=get("summary", ""), errata=self.about(item), source=item,
         )  # fmt: skip
+
+
+def _scale(item: Map) -> Scale | None:
+    if "scale" not in item:
+        return None
+    factor = Fraction(item["scale"])
+    if factor == 0:
+        raise Findings([Finding("ICD010", "`scale` cannot be 0", item.at("scale"), _HELP)])
+    return Scale(factor, Fraction(item.get("scale_offset", "0")))
 
 
 def _erratum(item: Map) -> model.Erratum:

@@ -6,6 +6,7 @@ import os
 import re
 import tempfile
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 from icdgen.diagnostics import Finding, Place
@@ -15,6 +16,8 @@ from icdgen.icd.load import load
 from icdgen.icd.loaded import Loaded
 from icdgen.icd.model import Icd
 
+_OVERLAY = re.compile(r"^errata:|^ *\"errata\":", re.MULTILINE)
+_ENTRY = re.compile(r"^[ -]*[\"']?id[\"']?: *[\"']?([A-Z][A-Z0-9-]*)[\"']?,? *$", re.MULTILINE)
 _READING = ("ICD001", "ICD002", "ICD003", "ICD004", "ICD010")  # something of the ICD is not in the model
 
 
@@ -42,13 +45,20 @@ class Side:
 
     def erratum(self, key: str) -> Place | None:
         """Where the entry of an overlay stands that has this id."""
-        entry = re.compile(rf"^[ -]*[\"']?id[\"']?: *[\"']?({re.escape(key)})[\"']?,? *$", re.MULTILINE)
+        return self._errata.get(key)
+
+    @cached_property
+    def _errata(self) -> dict[str, Place]:
+        found: dict[str, Place] = {}
         for file, text in self.texts.items():
-            found = entry.search(text) if "errata" in text else None
-            if found:
-                start = found.start(1)
-                return Place(file, text.count("\n", 0, start) + 1, start - text.rfind("\n", 0, start), len(key))
-        return None
+            if _OVERLAY.search(text):
+                for match in _ENTRY.finditer(text):
+                    start = match.start(1)
+                    place = Place(
+                        file, text.count("\n", 0, start) + 1, start - text.rfind("\n", 0, start), len(match[1])
+                    )
+                    found.setdefault(match[1], place)
+        return found
 
     def name(self, file: str) -> str:
         """The file as a user knows it."""

@@ -49,6 +49,6 @@ def notes(change: Change) -> Iterator[str]:
     """What is said below a change: consequences, how sure the match is, decisions about the manual."""
     yield from change.details
     if change.certainty:
-        yield f"That it is the same is {change.certainty} ({change.sure:.0%})."
+        yield f"That old and new are the same thing is {change.certainty} ({change.sure:.0%})."
     if change.errata:
         yield f"Because erratum {', '.join(change.errata)}."

@@ -56,6 +56,7 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(places.templates() / "diff"),
         autoescape=True,
+        finalize=lambda value: printable(value) if type(value) is str else value,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -67,8 +68,8 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
     quiet = [group for group in found if all(change.layer == TEXT for change in group.changes)]
     return environment.get_template("page.html.j2").render(
         version=__version__,
-        old=printable(report.old.label),
-        new=printable(report.new.label),
+        old=report.old.label,
+        new=report.new.label,
         step=report.step,
         reason=coded(report.step.reason),
         layers=[(layer, counts[layer], ABOUT[layer]) for layer in LAYERS],
@@ -84,7 +85,7 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
 
 def coded(text: str) -> list[tuple[str, bool]]:
     """The text split at its back-ticks: words, and whether they are code."""
-    return [(part, bool(number % 2)) for number, part in enumerate(_CODE.split(printable(text))) if part]
+    return [(part, bool(number % 2)) for number, part in enumerate(_CODE.split(text)) if part]
 
 
 def _frames(one) -> list[tuple]:
@@ -97,7 +98,7 @@ def _section(group: Group, number: int) -> Section:
     layers = [layer for layer in LAYERS if any(change.layer == layer for change in group.changes)]
     lines = [_line(change) for change in group.changes]
     about = f"{group.about}, {group.node}" if group.about != "node" else "node"
-    return Section(printable(group.title), about, f"s{number}", " ".join(layers), lines, _drawing(group))
+    return Section(group.title, about, f"s{number}", " ".join(layers), lines, _drawing(group))
 
 
 def _drawing(group: Group) -> Drawing | None:
@@ -114,10 +115,10 @@ def _line(change: Change) -> Line:
     kind = "addition" if change.addition else change.severity
     where = [str(place) for place in (change.old, change.new) if place is not None]
     said = [coded(note) for note in notes(change)]
-    return Line(change.code, change.layer, kind, coded(change.message), said, printable(" → ".join(where)))
+    return Line(change.code, change.layer, kind, coded(change.message), said, " → ".join(where))
 
 
 def _use(use) -> tuple:
     codes = ", ".join(dict.fromkeys(change.code for change in use.changes))
     said = [coded(message) for message in dict.fromkeys(change.message for change in use.changes)]
-    return printable(f"{use.file}:{use.line}:{use.column}"), printable(use.text.strip()), use.name, codes, said
+    return f"{use.file}:{use.line}:{use.column}", use.text.strip(), use.name, codes, said

@@ -19,13 +19,13 @@ SCHEMA = Path(__file__).parent.parent.with_name("diff.schema.json")
 
 def report(report: Report, colour: bool = False, width: int | None = None, everything: bool = False) -> str:
     """Everything, accepted changes included."""
-    return json.dumps(document(report), indent=1, ensure_ascii=False) + "\n"
+    return json.dumps(document(report), indent=1) + "\n"
 
 
 def document(report: Report) -> dict[str, object]:
     """A tree for `json.dumps`."""
     reasons = {id(change): entry.reason for change, entry in report.accepted}
-    names = report.comparison.context.generated.old if report.comparison.changes else {}
+    names = report.comparison.context.generated.everything if report.comparison.changes else {}
     found: dict[str, object] = {
         "format": FORMAT,
         "old": report.old.label,

@@ -116,12 +116,15 @@ def _uses(report: Report, paint: Paint) -> Iterator[str]:
         return
     yield ""
     yield paint("head", "uses in your sources") + (": none" if not report.uses else "")
+    told: set[str] = set()
     for use in report.uses:
         codes = ", ".join(dict.fromkeys(change.code for change in use.changes))
         yield f"  {paint('place', printable(f'{use.file}:{use.line}:{use.column}'))}: {use.name} ({codes})"
         yield f"{_INDENT}{shown(use.text.strip())}"
         for message in dict.fromkeys(change.message for change in use.changes):
-            yield f"{_INDENT}  {shown(message)}"
+            if message not in told:  # once is enough
+                told.add(message)
+                yield f"{_INDENT}  {shown(message)}"
 
 
 def _accepted(report: Report, paint: Paint) -> Iterator[str]:

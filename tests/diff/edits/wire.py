@@ -1,0 +1,228 @@
+"""Edits of bytes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, Field, Message
+from icdgen.layout import gaps
+from tests.diff.edits.edit import (
+    done,
+    edit,
+    fields_of,
+    free_id,
+    is_free,
+    is_plain,
+    messages_of,
+    on_field,
+    on_message,
+    pick,
+    with_field,
+    with_fields,
+    with_message,
+    with_node,
+)
+
+
+@edit()
+def move_field(icd, rng):
+    found = [
+        (n, m, f, g) for n, m, f in fields_of(icd, lambda f: f.type != "bytes") for g in gaps(m) if g.bits >= f.bits
+    ]  # fmt: skip
+    one = pick(rng, found)
+    if one is None:
+        return None
+    node, message, field, gap = one
+    return done(with_field(icd, node, message, field, replace(field, at=gap.at)), message.name, "DIF107")
+
+
+@edit()
+def swap_fields(icd, rng):
+    found = [
+        (n, m, a, b)
+        for n, m, a in fields_of(icd)
+        for b in m.fields
+        if a.at < b.at and a.bits == b.bits and (a.type == "bytes") == (b.type == "bytes")
+    ]
+    one = pick(rng, found)
+    if one is None:
+        return None
+    node, message, a, b = one
+    places = {id(a): b.at, id(b): a.at}
+    fields = [replace(f, at=places.get(id(f), f.at)) for f in message.fields]
+    return done(with_fields(icd, node, message, fields), message.name, "DIF107")
+
+
+@edit()
+def insert_field(icd, rng):
+    found = [
+        (n, m, f) for n, m, f in fields_of(icd, lambda f: f.at % 8 == 0) if is_free(m, "Inserted") and _cut_at(m, f.at)
+    ]
+    one = pick(rng, found)
+    if one is None:
+        return None
+    node, message, field = one
+    new = Field("Inserted", field.at, 8, "uint")
+    fields = [replace(f, at=f.at + 8) if f.at >= field.at else f for f in message.fields]
+    edited = with_fields(icd, node, message, [*fields, new], length=message.length + 1)
+    return done(edited, message.name, "DIF106", "DIF108", "DIF311")
+
+
+def _cut_at(message: Message, bit: int) -> bool:
+    """Whether no field lies across the bit."""
+    return not any(f.at < bit < f.at + f.bits for f in message.fields)
+
+
+@on_message(lambda m: is_free(m, "Appended"))
+def append_field(icd, rng, node, message):
+    new = Field("Appended", message.length * 8, 16, "int")
+    edited = with_fields(icd, node, message, [*message.fields, new], length=message.length + 2)
+    return done(edited, message.name, "DIF106", "DIF311")
+
+
+@on_field()
+def drop_field(icd, rng, node, message, field):
+    edited = with_fields(icd, node, message, [f for f in message.fields if f is not field])
+    return done(edited, message.name, "DIF113", "DIF306")
+
+
+@edit()
+def take_field_out(icd, rng):
+    found = fields_of(icd, lambda f: f.at % 8 == 0 and f.bits % 8 == 0)
+    one = pick(rng, found)
+    if one is None:
+        return None
+    node, message, field = one
+    rest = [f for f in message.fields if f is not field]
+    fields = [replace(f, at=f.at - field.bits) if f.at > field.at else f for f in rest]
+    edited = with_fields(icd, node, message, fields, length=message.length - field.bits // 8)
+    behind = [f for f in rest if f.at > field.at]
+    must = ("DIF106", "DIF306", *(("DIF108",) if behind else ()))
+    return done(edited, message.name, *must, may=() if behind else ("DIF113",))
+
+
+@edit()
+def fill_gap(icd, rng):
+    found = [(n, m, g) for n, m in messages_of(icd, lambda m: is_free(m, "Filler")) for g in gaps(m)]
+    one = pick(rng, found)
+    if one is None:
+        return None
+    node, message, gap = one
+    new = Field("Filler", gap.at, min(gap.bits, 8), "uint")
+    return done(with_fields(icd, node, message, [*message.fields, new]), message.name, "DIF114", "DIF311")
+
+
+@on_field(lambda f: is_plain(f) and f.bits > 1)
+def narrow_field(icd, rng, node, message, field):
+    edited = with_field(icd, node, message, field, replace(field, bits=field.bits - 1))
+    return done(edited, message.name, "DIF110", may=("DIF307", "DIF308"))
+
+
+@on_field(is_plain)
+def change_sign(icd, rng, node, message, field):
+    new = replace(field, type="int" if field.type == "uint" else "uint")
+    return done(with_field(icd, node, message, field, new), message.name, "DIF111", "DIF307", may=("DIF308",))
+
+
+@on_field(lambda f: is_plain(f) and f.scale is None and f.at % 8 == f.bits % 8 == 0)
+def make_bytes(icd, rng, node, message, field):
+    new = replace(field, type="bytes", unit=None)
+    may = ("DIF202", "DIF308") if field.unit else ()
+    return done(with_field(icd, node, message, field, new), message.name, "DIF111", "DIF307", may=may)
+
+
+@on_message()
+def change_length(icd, rng, node, message):
+    return done(with_message(icd, node, message, replace(message, length=message.length + 1)), message.name, "DIF106")
+
+
+@edit()
+def change_id(icd, rng):
+    number, one = free_id(icd), pick(rng, messages_of(icd))
+    if one is None or number is None:
+        return None
+    node, message = one
+    key = "set_id" if message.kind == CONFIGURATION else "id"
+    return done(with_message(icd, node, message, replace(message, **{key: number})), message.name, "DIF103")
+
+
+@edit()
+def swap_ids(icd, rng):
+    found = [
+        (n, a, b) for n in icd.nodes for a in n.messages for b in n.messages
+        if a.kind == b.kind != CONFIGURATION and a.id < b.id
+    ]  # fmt: skip
+    one = pick(rng, found)
+    if one is None:
+        return None
+    node, a, b = one
+    ids = {id(a): b.id, id(b): a.id}
+    messages = tuple(replace(m, id=ids[id(m)]) if id(m) in ids else m for m in node.messages)
+    return done(with_node(icd, node, replace(node, messages=messages)), "", "DIF103", "DIF104")
+
+
+@on_message()
+def remove_message(icd, rng, node, message):
+    return done(with_message(icd, node, message), message.name, "DIF101", "DIF306")
+
+
+@edit()
+def add_message(icd, rng):
+    number, one = free_id(icd), pick(rng, icd.nodes)
+    if number is None or any(m.name == "Added" for m in one.messages):
+        return None
+    new = Message(
+        "Added", rng.choice([TELECOMMAND, "telemetry"]), 1, (Field("Level", 0, 8, "uint"),), number, node=one.name
+    )
+    return done(with_node(icd, one, replace(one, messages=(*one.messages, new))), "Added", "DIF102", "DIF311")
+
+
+@on_message(lambda m: m.kind == CONFIGURATION)
+def change_kind(icd, rng, node, message):
+    new = replace(message, kind=TELECOMMAND, id=message.set_id, set_id=None, get_id=None)
+    return done(with_message(icd, node, message, new), message.name, "DIF105")
+
+
+@edit()
+def turn_byte_order(icd, rng):
+    found = [n for n in icd.nodes if any(f.type != "bytes" and f.bits > 8 for m in n.messages for f in m.fields)]
+    node = pick(rng, found)
+    if node is None:
+        return None
+    other = {"little": "big", "big": "little"}[node.byte_order]
+    return done(with_node(icd, node, replace(node, byte_order=other)), "", "DIF112")
+
+
+@edit(beyond=True)
+def change_fact(icd, rng):
+    found = [
+        (n, key, part, value) for n in icd.nodes for key, section in n.protocol.items() if isinstance(section, dict)
+        for part, value in section.items() if isinstance(value, int) and part != "printed_constant"
+    ]  # fmt: skip
+    one = pick(rng, found)
+    if one is None:
+        return None
+    node, key, part, value = one
+    new = {**node.protocol, key: {**node.protocol[key], part: not value if isinstance(value, bool) else value + 1}}
+    return done(with_node(icd, node, replace(node, protocol=new)), "", "DIF120")
+
+
+@edit(beyond=True)
+def change_mask_bit(icd, rng):
+    found = [(n, row) for n in icd.nodes for row in n.loggable]
+    one = pick(rng, found)
+    if one is None:
+        return None
+    node, row = one
+    rows = tuple(replace(r, id=r.id + 1) if r is row else r for r in node.loggable)
+    return done(with_node(icd, node, replace(node, loggable=rows)), "", "DIF122")
+
+
+@edit(beyond=True)
+def drop_mask_bit(icd, rng):
+    one = pick(rng, [(n, row) for n in icd.nodes for row in n.loggable])
+    if one is None:
+        return None
+    node, row = one
+    rows = tuple(r for r in node.loggable if r is not row)
+    return done(with_node(icd, node, replace(node, loggable=rows)), "", "DIF123")

@@ -1,0 +1,150 @@
+"""Who still understands whom, and the step of the version."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.diff.compare import compare
+from icdgen.diff.compatibility import directions
+from icdgen.diff.version import step
+from icdgen.icd.load import load
+from tests.icd.files import HEAD, write
+
+BASE = """\
+enums:
+  - name: Mode
+    members: [{value: 0, name: Idle}, {value: 1, name: Run}]
+messages:
+  - name: Status
+    id: 130
+    kind: telemetry
+    length: 3
+    fields:
+      - {at: 0,  bits: 16, name: Voltage, type: int, unit: mV, formula: raw*0.5}
+      - {at: 16, bits: 4,  name: Mode,    type: enum, enum: Mode}
+      - {at: 21, bits: 3,  name: Count,   type: uint}
+  - name: Set Mode
+    id: 10
+    kind: telecommand
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Magic, type: uint, const: 0x5A}
+      - {at: 8, bits: 4, name: Mode,  type: enum, enum: Mode}
+      - {at: 12, bits: 3, name: Level, type: uint, max: 5}
+      - {at: 15, bits: 1, name: Last, type: bool}
+"""
+LOGGED = BASE + """\
+  - name: Power
+    id: 131
+    kind: telemetry
+    length: 1
+    fields: [{at: 0, bits: 8, name: Current, type: uint}]
+loggable: [{bit: 0, id: 130}]
+protocol:
+  uart: {framing: {escape: 31, start_of_message: 127, end_of_message: 255, escaped_data: 31}}
+"""
+
+
+def compared(tmp_path, old: str, new: str):
+    sides = []
+    for name, text in (("old", old), ("new", new)):
+        (tmp_path / name).mkdir()
+        write(tmp_path / name, HEAD + text)
+        loaded = load([tmp_path / name], check=False)
+        assert loaded.findings == []
+        sides.append(loaded.icd)
+    return compare(*sides)
+
+
+def answers(tmp_path, change: tuple[str, str], base: str = BASE) -> dict:
+    assert change[0] in base
+    return {one.key: one for one in directions(compared(tmp_path, base, base.replace(*change)))}
+
+
+@pytest.mark.parametrize(
+    "change, telemetry, telecommands, logs",
+    [
+        (("summary", "summary"), "yes", "yes", "yes"),
+        (("length: 3", "length: 4"), "no", "yes", "no"),
+        (("id: 130", "id: 140"), "no", "yes", "no"),
+        (("id: 10", "id: 11"), "yes", "no", "yes"),
+        (("raw*0.5", "raw*0.25"), "partly", "yes", "partly"),
+        (("unit: mV", "unit: V"), "partly", "yes", "partly"),
+        (("name: Count,   type: uint", "name: Count,   type: int"), "partly", "yes", "partly"),
+        (("      - {at: 21, bits: 3,  name: Count,   type: uint}\n", ""), "partly", "yes", "yes"),
+        (("    kind: telemetry\n", "    kind: telemetry\n    summary: Words.\n"), "yes", "yes", "yes"),
+        (("const: 0x5A", "const: 0x5B"), "yes", "no", "yes"),
+        (("max: 5", "max: 4"), "yes", "partly", "yes"),
+        (("max: 5", "max: 6"), "yes", "yes", "yes"),
+        (("name: Level", "name: Power Level"), "yes", "yes", "yes"),
+        (("      - {at: 15, bits: 1, name: Last, type: bool}\n", ""), "yes", "partly", "yes"),
+        (("{value: 1, name: Run}", "{value: 1, name: Safe}"), "partly", "partly", "partly"),
+        (("{value: 1, name: Run}", "{value: 1, name: Run}, {value: 2, name: Safe}"), "yes", "yes", "yes"),
+    ],
+)  # fmt: skip
+def test_each_direction_has_its_answer(tmp_path, change, telemetry, telecommands, logs):
+    change = change if change[0] != "summary" else ("length: 3", "length: 3")
+    found = answers(tmp_path, change)
+    assert [found[key].verdict for key in ("telemetry", "telecommands", "logs")] == [telemetry, telecommands, logs]
+
+
+def test_a_new_field_is_no_harm_to_old_telemetry_but_to_old_telecommands(tmp_path):
+    new = BASE.replace("name: Last", "name: Final").replace("{at: 12, bits: 3,", "{at: 12, bits: 2,")
+    (frame,) = {one.key: one for one in directions(compared(tmp_path, BASE, new))}["telecommands"].frames
+    assert frame.message == "Set Mode" and frame.verdict == "partly" and frame.reasons == ("other bits: `Level`",)
+
+
+def test_an_id_that_means_another_message_is_a_no_with_its_reason(tmp_path):
+    found = answers(
+        tmp_path,
+        ("  - name: Status\n    id: 130", "  - name: Status\n    id: 131"),
+        LOGGED.replace("id: 131", "id: 132"),
+    )
+    (frame,) = found["telemetry"].frames
+    assert (frame.verdict, frame.reasons) == ("no", ("its id is 131 now",))
+
+
+def test_only_frames_that_can_be_logged_matter_to_logs(tmp_path):
+    found = answers(tmp_path, ("name: Current, type: uint", "name: Current, type: int"), LOGGED)
+    assert found["telemetry"].verdict == "partly" and found["logs"].verdict == "yes" and found["logs"].total == 1
+
+
+def test_framing_concerns_everything_on_the_wire_and_nothing_in_logs(tmp_path):
+    found = answers(tmp_path, ("escape: 31,", "escape: 30,"), LOGGED)
+    assert [found[key].verdict for key in ("telemetry", "telecommands", "logs")] == ["partly", "partly", "yes"]
+    assert "protocol.uart.framing.escape" in found["telemetry"].general[0]
+
+
+def test_the_mask_concerns_logs(tmp_path):
+    found = answers(tmp_path, ("{bit: 0, id: 130}", "{bit: 0, id: 131}"), LOGGED)
+    assert found["telemetry"].verdict == "yes" and found["logs"].verdict == "partly" and found["logs"].general
+
+
+def test_frames_of_a_node_that_is_gone_are_not_understood(tmp_path):
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    write(tmp_path / "a", HEAD + BASE)
+    (tmp_path / "a" / "other.yaml").write_text(HEAD.replace("demo", "other") + BASE)
+    write(tmp_path / "b", HEAD + BASE)
+    comparison = compare(load([tmp_path / "a"]).icd, load([tmp_path / "b"]).icd)
+    found = {one.key: one for one in directions(comparison)}
+    assert [(f.node, f.verdict) for f in found["telemetry"].frames] == [("other", "no")]
+
+
+@pytest.mark.parametrize(
+    "change, expected",
+    [
+        (("max: 5", "max: 5"), "none"),
+        (("kind: telemetry\n", "kind: telemetry\n    summary: Words.\n"), "patch"),
+        (("{value: 1, name: Run}", "{value: 1, name: Run}, {value: 2, name: Safe}"), "minor"),
+        (("name: Level", "name: Power Level"), "major"),
+        (("raw*0.5", "raw*0.25"), "major"),
+        (("id: 10", "id: 11"), "major"),
+    ],
+)
+def test_the_step_of_the_version_and_its_reason(tmp_path, change, expected):
+    comparison = compared(tmp_path, BASE, BASE.replace(*change))
+    found = step(comparison.changes)
+    assert found.step == expected and found.reason
+    assert set(found.deciding) <= {change.code for change in comparison.changes}
+    assert bool(found.deciding) == (expected != "none")

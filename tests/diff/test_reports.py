@@ -1,0 +1,174 @@
+"""The reports as what reads them: JSON with its schema, SARIF, annotations, Markdown, a page."""
+
+from __future__ import annotations
+
+import json
+from contextlib import chdir
+from functools import cache
+from html.parser import HTMLParser
+
+import jsonschema
+import pytest
+
+from icdgen.diff import inputs, report, reports
+from icdgen.diff.reports.json import SCHEMA
+from tests.conftest import ROOT
+from tests.diff.cases import CASES, compared
+from tests.diff.release.make import facts, make
+
+FORMATS = sorted(reports.FORMATS)
+
+
+@pytest.fixture(scope="module")
+def older(tmp_path_factory):
+    return make(tmp_path_factory.mktemp("older"))
+
+
+@pytest.fixture(scope="module")
+def release(older) -> report.Report:
+    with chdir(ROOT):
+        return report.make(*inputs.sides([str(older), "icd"], []))
+
+
+@cache
+def schema() -> jsonschema.Draft202012Validator:
+    return jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8")))
+
+
+class TestJson:
+    @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+    def test_every_report_fits_the_schema(self, case):
+        document = json.loads(reports.get("json")(compared(case)))
+        schema().validate(document)
+        assert case.name in {change["code"] for change in document["changes"]}
+
+    def test_so_does_that_of_a_release(self, release):
+        document = json.loads(reports.get("json")(release))
+        schema().validate(document)
+        assert sum(document["counts"].values()) == len(document["changes"])
+
+    def test_the_schema_is_a_schema_and_refuses_what_is_no_report(self, release):
+        jsonschema.Draft202012Validator.check_schema(schema().schema)
+        document = json.loads(reports.get("json")(release))
+        document["changes"][0]["layer"] = "wine"
+        with pytest.raises(jsonschema.ValidationError):
+            schema().validate(document)
+
+
+class TestSarif:
+    def test_results_have_the_new_place_and_the_old_one_beside_it(self, release):
+        run = json.loads(reports.get("sarif")(release))["runs"][0]
+        rules = run["tool"]["driver"]["rules"]
+        assert len(run["results"]) == len(release.changes)
+        for result, change in zip(run["results"], release.changes, strict=True):
+            assert rules[result["ruleIndex"]]["id"] == result["ruleId"] == change.code
+            region = result["locations"][0]["physicalLocation"]["region"]
+            assert (region["startLine"], region["startColumn"]) == change.place[1:3]
+            assert ("relatedLocations" in result) == (change.old is not None and change.new is not None)
+        assert all(rule["help"]["text"].startswith(f"# {rule['id']}: ") for rule in rules)
+
+
+class TestGithub:
+    def test_one_command_a_change_at_its_severity(self, release):
+        lines = reports.get("github")(release).splitlines()
+        assert len(lines) == len(release.changes)
+        words = {"error": "::error ", "warning": "::warning ", "note": "::notice "}
+        for line, change in zip(lines, release.changes, strict=True):
+            assert line.startswith(words[change.severity]) and change.code in line
+
+
+class TestMarkdown:
+    def test_it_has_the_verdicts_and_every_change(self, release):
+        text = reports.get("markdown")(release)
+        assert "**major**" in text and text.count("frames as before") >= 1
+        assert sum(text.count(f"`{code}`") for code in {c.code for c in release.changes}) >= len(release.changes)
+        assert text.count("<details>") == text.count("</details>")
+
+
+class Page(HTMLParser):
+    """Checks that every element is closed, and keeps what matters."""
+
+    VOID = frozenset(("meta", "br", "input", "rect", "polygon"))
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.links: list[str] = []
+        self.fields: list[tuple[str, str]] = []
+        self.drawings = 0
+
+    def handle_starttag(self, tag, attributes):
+        found = dict(attributes)
+        self.links += [found[key] for key in ("href", "src") if key in found]
+        if tag == "g":
+            self.fields.append((found["class"], found["data-key"]))
+        self.drawings += tag == "svg"
+        if tag not in self.VOID or (tag == "rect" and self.get_starttag_text()[-2:] != "/>"):
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        pass
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+class TestHtml:
+    def page(self, release) -> tuple[str, Page]:
+        text = reports.get("html")(release)
+        page = Page()
+        page.feed(text)
+        page.close()
+        assert page.open == []
+        return text, page
+
+    def test_it_is_whole_and_needs_nothing_from_elsewhere(self, release):
+        text, page = self.page(release)
+        assert all(link.startswith("#") for link in page.links)
+        assert "http" not in text and "url(" not in text and "@import" not in text
+        assert "prefers-color-scheme: dark" in text
+
+    def test_it_draws_both_layouts_of_every_frame_whose_bits_changed(self, release):
+        text, page = self.page(release)
+        assert page.drawings >= len(facts()["lengths"])
+        assert ">old</text>" in text and ">new</text>" in text
+        for name in ("ECEF Position X", "Redundant Magnetometer Temperature", "Z-Rate Sensor Temperature"):
+            assert f"<title>{name}, bit" in text
+        kinds = [kind for kind, _ in page.fields]
+        assert kinds.count("field come") >= 14 and kinds.count("field moved") == 2 * 5
+
+    def test_a_moved_field_is_linked_to_where_it_lies_now(self, release):
+        text, _ = self.page(release)
+        assert 'class="link moved"' in text
+
+    @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+    def test_every_change_has_its_place_on_a_whole_page(self, case):
+        text, _ = self.page(compared(case))
+        assert case.name in text
+
+
+class TestRelease:
+    """The reconstructed older release of the same device against today's ICDs."""
+
+    def test_its_frames_have_the_lengths_that_are_known(self, release):
+        lengths = {m.name: m.length for node in release.old.icd.nodes for m in node.messages}
+        assert {name: lengths[name] for name in facts()["lengths"]} == facts()["lengths"]
+
+    def test_the_diff_finds_exactly_what_was_taken_out(self, release):
+        found = {(c.code, c.where.message) for c in release.changes if c.layer == "wire"}
+        expected = {("DIF106", name) for name in facts()["lengths"]} | {
+            ("DIF108", "Power and Temperature Measurements")
+        }
+        assert found == expected
+        assert [c for c in release.changes if c.layer == "meaning"] == []
+        added = {c.where.field for c in release.changes if c.code == "DIF311"}
+        assert added == {name for names in facts()["removed"].values() for name in names}
+
+    def test_only_its_frames_are_no_longer_understood(self, release):
+        telemetry, telecommands, _ = release.directions
+        assert {frame.message for frame in telemetry.frames} == set(facts()["lengths"])
+        assert telecommands.verdict == "yes"
+
+    @pytest.mark.parametrize("form", FORMATS)
+    def test_every_format_takes_it(self, release, form):
+        assert len(reports.get(form)(release)) > 2000

@@ -1,0 +1,140 @@
+"""``--uses``: the lines of a user's own sources that use what changed, and no others."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+
+C = """\
+#include "demo.h"
+/* demo_set_roll_t in a comment, "roll_angle" in none */
+static void f(const uint8_t *buffer) {
+    demo_estimated_roll_t state;
+    demo_estimated_roll_decode(&state, buffer, 3);
+    printf("demo_estimated_roll_roll_angle_deg %f", demo_estimated_roll_roll_angle_deg(&state)); // roll_angle
+    int16_t raw = state.roll_angle;
+    send(DEMO_SET_ROLL_ID);
+}
+"""
+PYTHON = '''\
+"""Uses roll_angle_deg of EstimatedRoll."""
+from icdgen_messages.demo import EstimatedRoll
+
+state = EstimatedRoll.from_bytes(data)
+print(state.roll_angle_deg)  # roll_angle
+print(f"roll_angle {state.roll_angle:d} {{roll_angle}}")
+other = r"roll_angle" + """
+roll_angle
+"""
+'''
+RUST = """\
+use icd::demo::EstimatedRoll;
+fn f(bytes: &[u8]) -> f64 {
+    let state = EstimatedRoll::from_bytes(bytes).unwrap();
+    state.roll_angle_deg() /* roll_angle */
+}
+"""
+
+
+@pytest.fixture
+def sources(tmp_path):
+    folder = tmp_path / "src"
+    (folder / "deep").mkdir(parents=True)
+    (folder / "main.c").write_text(C)
+    (folder / "deep" / "log.py").write_text(PYTHON)
+    (folder / "lib.rs").write_text(RUST)
+    return folder
+
+
+def uses(icdgen, *arguments) -> list[tuple]:
+    document = json.loads(icdgen("diff", "old", "new", "--format", "json", "--uses", "src", *arguments).out)
+    changes = document["changes"]
+    return [
+        (use["file"], use["line"], use["name"], "/".join(sorted({changes[i]["code"] for i in use["changes"]})))
+        for use in document["uses"]
+    ]
+
+
+def test_every_line_that_uses_a_touched_name_is_found(icdgen, releases, sources):
+    assert uses(icdgen) == [
+        ("src/lib.rs", 4, "roll_angle_deg", "DIF201"),
+        ("src/main.c", 6, "demo_estimated_roll_roll_angle_deg", "DIF201"),
+        ("src/main.c", 7, "roll_angle", "DIF201"),
+        ("src/main.c", 8, "DEMO_SET_ROLL_ID", "DIF103"),
+        ("src/deep/log.py", 5, "roll_angle_deg", "DIF201"),
+        ("src/deep/log.py", 6, "roll_angle", "DIF201"),
+    ]
+
+
+def test_columns_point_at_the_name(icdgen, releases, sources):
+    document = json.loads(icdgen("diff", "old", "new", "--format", "json", "--uses", "src").out)
+    for use in document["uses"]:
+        assert use["text"][use["column"] - 1 :].startswith(use["name"])
+
+
+def test_the_text_report_shows_line_and_reason(icdgen, releases, sources):
+    out = icdgen("diff", "old", "new", "--uses", "src").out
+    assert "src/main.c:7:25: roll_angle (DIF201)\n    int16_t raw = state.roll_angle;\n" in out
+    assert "raw*0.001, was raw*0.01" in out.split("uses in your sources")[1]
+
+
+def test_a_member_means_nothing_in_a_file_that_does_not_speak_of_its_type(icdgen, releases, sources):
+    for name in ("main.c", "lib.rs", "deep/log.py"):
+        (sources / name).unlink()
+    (sources / "other.py").write_text("class Plane:\n    roll_angle = 0\n    roll_angle_deg = 1\n")
+    (sources / "other.c").write_text("struct plane { int roll_angle; };\n")
+    assert uses(icdgen) == []
+    assert "uses in your sources: none" in icdgen("diff", "old", "new", "--uses", "src").out
+
+
+def test_generated_code_is_nobodys_own(icdgen, releases, sources):
+    for name in ("main.c", "lib.rs", "deep/log.py"):
+        (sources / name).unlink()
+    icdgen("--lang", "c", "--lang", "python", "--lang", "rust", "--out", "src", "old")
+    assert uses(icdgen) == []
+
+
+def test_a_renamed_field_is_found_by_its_old_name(icdgen, releases, sources):
+    text = (releases[0] / "demo.yaml").read_text().replace("name: Roll Angle, ", "name: Body Roll Angle, ", 1)
+    (releases[1] / "demo.yaml").write_text(text)
+    found = uses(icdgen)
+    assert ("src/main.c", 7, "roll_angle", "DIF302") in found and len(found) == 5
+
+
+def test_a_renamed_message_is_found_with_all_its_functions(icdgen, releases, sources):
+    text = (releases[0] / "demo.yaml").read_text().replace("name: Estimated Roll\n", "name: Filtered Estimated Roll\n")
+    (releases[1] / "demo.yaml").write_text(text)
+    names = {name for _, _, name, _ in uses(icdgen)}
+    assert {
+        "demo_estimated_roll_t",
+        "demo_estimated_roll_decode",
+        "demo_estimated_roll_roll_angle_deg",
+        "EstimatedRoll",
+    } <= names
+
+
+def test_words_touch_nobodys_code(icdgen, releases, sources):
+    text = (releases[0] / "demo.yaml").read_text().replace("title: Demo", "title: Another demo")
+    (releases[1] / "demo.yaml").write_text(text)
+    assert uses(icdgen) == []
+
+
+def test_a_single_file_can_be_named_and_bad_bytes_do_no_harm(icdgen, releases, sources):
+    (sources / "main.c").write_bytes(b"\xff\xfe demo_set_roll_t /* " + C.encode())
+    assert uses(icdgen, "--uses", "src/main.c")[0][2] == "roll_angle_deg"
+    result = icdgen("diff", "old", "new", "--uses", "old/demo.yaml")
+    assert result.status == 2 and "is no C, Python or Rust source" in result.err
+
+
+def test_the_shipped_examples_show_what_uses_a_frame(icdgen, tmp_path):
+    from tests.conftest import ROOT
+    from tests.diff.release.make import make
+
+    make(tmp_path / "older")
+    path = tmp_path / "older" / "cubeacp.yaml"
+    roll = re.compile(r"(name: Estimated Roll Angle, .*formula: )raw\*0\.01")
+    path.write_text(roll.sub(r"\g<1>raw*0.02", path.read_text()))
+    out = icdgen("diff", "older", ROOT / "icd", "--uses", ROOT / "examples").out
+    assert "examples/" in out.split("uses in your sources")[1]
