@@ -22,12 +22,8 @@ def text(atlas: Atlas, compared: bool) -> str:
         "",
     ]
     for node in icd.nodes:
-        lines += [
-            f"## {_line(node.title)}",
-            "",
-            _line(" ".join(filter(None, (node.summary, document(node) + "." if node.document else "")))),
-            "",
-        ]
+        about = " ".join(filter(None, (node.summary, document(node) + "." if node.document else "")))
+        lines += [f"## {_line(node.title)}", "", *([_line(about), ""] if about else [])]
         lines += [f"- [Overview]({links.node(node.name)})"]
         for message in node.messages:
             ids = "/".join(str(id) for _, id in texts.ids(message))
