@@ -52,7 +52,8 @@ def test_a_formula_that_cannot_be_read_is_a_problem_and_not_a_shorter_one(text):
 
 @given(st.fractions(min_value=Fraction(1, 1000), max_value=1000, max_denominator=1000), st.integers(-500, 500))
 def test_what_a_formula_computes_survives_being_printed(factor, offset):
-    printed = f"(formatted value) [V] = RAWVAL * {factor.numerator}/{factor.denominator} {'+' if offset >= 0 else '-'} {abs(offset)}"
+    shift = f"{'+' if offset >= 0 else '-'} {abs(offset)}"
+    printed = f"(formatted value) [V] = RAWVAL * {factor.numerator}/{factor.denominator} {shift}"
     read = descriptions.read(printed, WORDS)
     assert formulas.parse(read.formula) == formulas.Scale(factor, Fraction(offset))
 
