@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from icdgen.importer import profile, run
 from tests.conftest import ROOT
 
-VENDOR = ROOT.parent / "shared" / "manual"
+VENDOR = Path(os.environ.get("ICDGEN_MANUALS") or ROOT.parent / "shared" / "manual")
 
 
 @pytest.fixture

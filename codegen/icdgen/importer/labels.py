@@ -11,6 +11,9 @@ from icdgen.importer.words import folded, plain
 _VALUE = re.compile(r"(?:0[xX][0-9A-Fa-f]+|[0-9]+)(?:\s*/\s*(?:0[xX][0-9A-Fa-f]+|[0-9]+))?\Z")
 
 
+_COUNTED = frozenset({"byte", "bytes", "octet", "octets"})
+
+
 class Labelled(NamedTuple):
     """A label and its value as text; ``what`` is the label's meaning by the profile, "" if it has none."""
 
@@ -33,6 +36,8 @@ def parse(text: str, profile: Profile) -> list[Labelled]:
             continue
         elif bare.startswith("(") and found and not label and _VALUE.match(bare.strip("()")):
             continue  # the same number in another base
+        elif bare.casefold() in _COUNTED and found and not label:
+            continue  # `Length: 6 bytes`
         else:
             label.append(bare)
     if label:

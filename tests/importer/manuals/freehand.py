@@ -19,7 +19,7 @@ _FONTS = Path(os.path.dirname(reportlab.__file__), "fonts")
 class Look:
     """Everything that a layout decides."""
 
-    page: str = "A4"
+    page: str | tuple[float, float] = "A4"
     font: str = "Times"  # or "Vera", embedded
     size: float = 9
     borders: str = "ALL"  # of `TableBordersLayout`

@@ -55,7 +55,7 @@ LAYOUTS: dict[str, Draw] = {
     "small": partial(
         freehand.draw,
         look=freehand.Look(
-            page="A5", font="Vera", size=6.5, borders="HORIZONTAL_LINES", mark=" — ", caption_style="I", figures="RIGHT",
+            page=(148, 210), font="Vera", size=6.5, borders="HORIZONTAL_LINES", mark=" — ", caption_style="I", figures="RIGHT",
             two_lines=True, padding=1.4, widths=(18, 12, 12, 24, 12, 32),
         ),
     ),

@@ -144,7 +144,8 @@ class _Flow:
         line = rest[0]
         if _CONTINUED.match(line.text):
             return 1, None
-        if self.is_caption(line):
+        goes_on = first and self.open is not None and _begins_in_a_column(line, self.open.spans)
+        if self.is_caption(line) and not goes_on:
             self.open = None
             return self.caption(page, rest)
         length, found = self.head_length(rest)
