@@ -309,7 +309,7 @@ class LinkTables:
         for name in _DATE:
             one = form[name]
             rows.append(_row(f"{{{one.at}u, {one.bits}u, {one.factor}u, {one.offset}u}}", name))
-        return self.add("time", "icd_time_form_t", rows)
+        return self.add("packed_time", "icd_time_form_t", rows)
 
     def index(self) -> str:
         form = self.known.index
@@ -405,10 +405,10 @@ class LinkTables:
 
     def upload(self, files: Files) -> str:
         names = "initiate initiated begin packet checksum finalize finalized"
-        rows = self.steps(files, "upload", names.split(), ())
         keys = ("block_size", "poll_interval_ms", "erase_timeout_s", "finalize_timeout_ms", "rounds")
         numbers = [files.numbers.get(f"upload.{key}") for key in keys]
-        if rows is None or None in numbers:
+        rows = None if None in numbers else self.steps(files, "upload", names.split(), ())
+        if rows is None:
             return "NULL"
         numbers[2] = (numbers[2] or 0) * 1000
         rest = [_row(f"{n}u", key.replace("timeout_s", "timeout_ms")) for n, key in zip(numbers, keys, strict=True)]
