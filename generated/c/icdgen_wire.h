@@ -1080,7 +1080,7 @@ static inline void icdgen_can_tell_message(
 
 static inline bool icdgen_can_got(const icd_can_slot_t *slot, uint32_t number)
 {
-    return number < slot->count && ((slot->got[number / 8u] >> (number % 8u)) & 1u) != 0u;
+    return number < slot->count && ((ICDGEN_U32(slot->got[number / 8u]) >> (number % 8u)) & 1u) != 0u;
 }
 
 /* Frees a slot; its memory goes to the end of the row. */
@@ -1317,7 +1317,7 @@ static inline bool icd_log_next(icd_log_frames_t *frames, icd_log_frame_t *frame
     while (frames->bit < form->bytes * 8u) {
         const unsigned bit = frames->bit++;
         const unsigned weight = form->msb0 ? 7u - (bit % 8u) : bit % 8u;
-        if (((frames->mask[bit / 8u] >> weight) & 1u) != 0u) {
+        if (((ICDGEN_U32(frames->mask[bit / 8u]) >> weight) & 1u) != 0u) {
             frame->bit = ICDGEN_U16(bit);
             frame->id = form->bits[bit].id;
             frame->length = form->bits[bit].length;
@@ -1836,8 +1836,8 @@ static inline icd_status_t icd_client_init(
 static inline void icd_client_use_checksums(icd_client_t *client)
 {
     const icd_checksum_form_t *const form = client->link->checksum;
-    client->checks_telecommands = form != NULL && ((form->telecommand_buses >> client->bus) & 1u) != 0u;
-    client->checks_telemetry = form != NULL && ((form->telemetry_buses >> client->bus) & 1u) != 0u;
+    client->checks_telecommands = form != NULL && ((ICDGEN_U32(form->telecommand_buses) >> client->bus) & 1u) != 0u;
+    client->checks_telemetry = form != NULL && ((ICDGEN_U32(form->telemetry_buses) >> client->bus) & 1u) != 0u;
 }
 
 /** Our address on CAN. */
@@ -2668,7 +2668,7 @@ enum {
 
 static inline bool icdgen_bit(const uint8_t *bits, uint32_t position)
 {
-    return ((bits[position / 8u] >> (position % 8u)) & 1u) != 0u;
+    return ((ICDGEN_U32(bits[position / 8u]) >> (position % 8u)) & 1u) != 0u;
 }
 
 static inline void icdgen_set_bit(uint8_t *bits, uint32_t position, bool one)

@@ -196,7 +196,7 @@ static inline const icd_link_t *common_link(void)
     static const icd_crc_form_t crc16 = {
         16u, false, false, false, 0x1021u, 0x0u, 0x0u, 0x0u, crc16_table
     };
-    static const icd_time_form_t time = {
+    static const icd_time_form_t packed_time = {
         {25u, 7u, 1u, 1980u}, /* year */
         {21u, 4u, 1u, 0u}, /* month */
         {16u, 5u, 1u, 0u}, /* day */
@@ -407,7 +407,7 @@ static inline const icd_link_t *common_link(void)
         NULL,
         NULL,
         NULL,
-        &time,
+        &packed_time,
         &index_entry,
         &hole_map,
         &files,

@@ -550,7 +550,7 @@ static inline const icd_link_t *cubeacp_link(void)
         255u, /* id */
         1u, 11u, /* mask and frames */
     };
-    static const icd_time_form_t time = {
+    static const icd_time_form_t packed_time = {
         {25u, 7u, 1u, 1980u}, /* year */
         {21u, 4u, 1u, 0u}, /* month */
         {16u, 5u, 1u, 0u}, /* day */
@@ -761,7 +761,7 @@ static inline const icd_link_t *cubeacp_link(void)
         &log_mask,
         &log_file,
         &log_message,
-        &time,
+        &packed_time,
         &index_entry,
         &hole_map,
         &files,
