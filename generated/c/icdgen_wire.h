@@ -4,9 +4,9 @@
 
 /**
  * @file
- * How messages travel: UART, I2C, CAN, checksums, a client, file transfer, logs. Nothing here opens a port, sleeps, looks
- * at a clock or allocates: bytes go in, bytes and events come out, memory and time (milliseconds, which may wrap) are
- * the caller's. What differs from node to node is in its link, which NODE_link() of its header gives.
+ * How messages travel: UART, I2C, CAN, checksums, a client, file transfer, logs. Nothing here opens a port, sleeps,
+ * looks at a clock or allocates: bytes go in, bytes and events come out, memory and time (milliseconds, which may wrap)
+ * are the caller's. What differs from node to node is in its link, which NODE_link() of its header gives.
  *
  * ICDGEN_NO_TABLES  define it to compute checksums without tables: slower, and smaller by 512 bytes each.
  */
@@ -114,13 +114,13 @@ typedef struct {
     uint8_t data_bytes; /**< Most of a packet. */
     int32_t types[ICD_CAN_KINDS];
     int32_t extended_types[ICD_CAN_KINDS];
-    bool extended;             /**< Whether there are messages of several packets; the rest is about them. */
-    uint8_t packet_bytes;      /**< Data of each of their packets. */
-    uint8_t left_at;           /**< Where the count of packets still to come stands. */
-    uint8_t left_in_last;      /**< That count in the last packet. */
-    uint8_t fill;              /**< Of what is left of the last packet. */
-    uint32_t most_bytes;       /**< Of a message. */
-    uint32_t packet_timeout;   /**< Milliseconds from packet to packet. */
+    bool extended;           /**< Whether there are messages of several packets; the rest is about them. */
+    uint8_t packet_bytes;    /**< Data of each of their packets. */
+    uint8_t left_at;         /**< Where the count of packets still to come stands. */
+    uint8_t left_in_last;    /**< That count in the last packet. */
+    uint8_t fill;            /**< Of what is left of the last packet. */
+    uint32_t most_bytes;     /**< Of a message. */
+    uint32_t packet_timeout; /**< Milliseconds from packet to packet. */
 } icd_can_form_t;
 
 /** A bit of the log mask: the frame that it selects, id -1 for none, and its bytes. */
@@ -181,10 +181,27 @@ typedef struct {
 
 /** What a field means for a procedure. */
 typedef enum {
-    ICD_ROLE_TYPE, ICD_ROLE_COUNTER, ICD_ROLE_OFFSET, ICD_ROLE_LENGTH, ICD_ROLE_READY, ICD_ROLE_ERROR,
-    ICD_ROLE_CHECKSUM, ICD_ROLE_IGNORE_HOLE_MAP, ICD_ROLE_DESTINATION, ICD_ROLE_BLOCK_SIZE, ICD_ROLE_BUSY,
-    ICD_ROLE_NUMBER, ICD_ROLE_BYTES, ICD_ROLE_ALL, ICD_ROLE_SIZE, ICD_ROLE_TIME, ICD_ROLE_NODE_TYPE,
-    ICD_ROLE_INTERFACE_VERSION, ICD_ROLE_ID, ICD_ROLE_PROCESSED, ICD_ROLE_PARAMETER
+    ICD_ROLE_TYPE,
+    ICD_ROLE_COUNTER,
+    ICD_ROLE_OFFSET,
+    ICD_ROLE_LENGTH,
+    ICD_ROLE_READY,
+    ICD_ROLE_ERROR,
+    ICD_ROLE_CHECKSUM,
+    ICD_ROLE_IGNORE_HOLE_MAP,
+    ICD_ROLE_DESTINATION,
+    ICD_ROLE_BLOCK_SIZE,
+    ICD_ROLE_BUSY,
+    ICD_ROLE_NUMBER,
+    ICD_ROLE_BYTES,
+    ICD_ROLE_ALL,
+    ICD_ROLE_SIZE,
+    ICD_ROLE_TIME,
+    ICD_ROLE_NODE_TYPE,
+    ICD_ROLE_INTERFACE_VERSION,
+    ICD_ROLE_ID,
+    ICD_ROLE_PROCESSED,
+    ICD_ROLE_PARAMETER
 } icd_role_t;
 
 /** Where the field of a role lies, in bits. */
@@ -297,7 +314,7 @@ typedef struct {
     uint32_t no_error;
     const icd_framing_t *framing;
     const icd_acknowledge_t *acknowledge;
-    int16_t i2c_address; /**< Of 7 bits, -1 if the ICD has none. */
+    int16_t i2c_address;      /**< Of 7 bits, -1 if the ICD has none. */
     const icd_step_t *polled; /**< The frame that tells what became of a telecommand. */
     const icd_can_form_t *can;
     const icd_checksum_form_t *checksum;
@@ -430,7 +447,7 @@ static inline icd_status_t icd_identify(
     return ICD_OK;
 }
 
-/* ---- events -------------------------------------------------------------------------------------------------------- */
+/* ---- events ------------------------------------------------------------------------------------------------------ */
 
 typedef enum {
     ICD_EVENT_MESSAGE,          /**< A whole message. */
@@ -440,15 +457,15 @@ typedef enum {
     ICD_EVENT_EMPTY,            /**< UART: a message without an id. */
     ICD_EVENT_DUPLICATE,        /**< CAN: a packet that was there already. */
     ICD_EVENT_INCOMPLETE,       /**< CAN: a message was given up for want of packets. */
-    ICD_EVENT_MALFORMED,        /**< A reply of the wrong length; CAN: a packet that cannot be part of such a message. */
-    ICD_EVENT_BUSY,             /**< CAN: more senders at once than there is room for; the packet is dropped. */
-    ICD_EVENT_UNKNOWN_TYPE,     /**< CAN: a message type that the ICD does not have. */
-    ICD_EVENT_DONE,             /**< Client: the request succeeded; of telemetry with the frame. */
-    ICD_EVENT_REFUSED,          /**< Client: the node refused it. */
-    ICD_EVENT_TIMEOUT,          /**< Client: no reply, or the telecommand was never processed. */
-    ICD_EVENT_PACKET,           /**< Client: a packet of a download. */
-    ICD_EVENT_LOG,              /**< Client: an unsolicited log, with its id. */
-    ICD_EVENT_STRAY             /**< Client: what nobody waits for, with its id (I2C: what was read). */
+    ICD_EVENT_MALFORMED,    /**< A reply of the wrong length; CAN: a packet that cannot be part of such a message. */
+    ICD_EVENT_BUSY,         /**< CAN: more senders at once than there is room for; the packet is dropped. */
+    ICD_EVENT_UNKNOWN_TYPE, /**< CAN: a message type that the ICD does not have. */
+    ICD_EVENT_DONE,         /**< Client: the request succeeded; of telemetry with the frame. */
+    ICD_EVENT_REFUSED,      /**< Client: the node refused it. */
+    ICD_EVENT_TIMEOUT,      /**< Client: no reply, or the telecommand was never processed. */
+    ICD_EVENT_PACKET,       /**< Client: a packet of a download. */
+    ICD_EVENT_LOG,          /**< Client: an unsolicited log, with its id. */
+    ICD_EVENT_STRAY         /**< Client: what nobody waits for, with its id (I2C: what was read). */
 } icd_event_kind_t;
 
 /** Kinds of messages on the UART. */
@@ -460,15 +477,15 @@ typedef struct {
     uint8_t id;
     const uint8_t *data;
     size_t length;
-    uint32_t attempts;        /**< Of DONE, REFUSED, TIMEOUT: how often it was sent. */
-    icd_reason_t reason;      /**< Of REFUSED. */
-    int64_t code;             /**< Of REFUSED: the error code, -1 if the bus tells none. */
-    int64_t parameter;        /**< Of REFUSED: the parameter at fault, -1 if the bus tells none. */
-    uint32_t number;          /**< Of PACKET. */
-    uint32_t missing;         /**< Of INCOMPLETE: packets. */
-    uint8_t source;           /**< On CAN. */
-    uint8_t destination;      /**< Of MESSAGE on CAN. */
-    icd_can_kind_t can_kind;  /**< Of MESSAGE on CAN. */
+    uint32_t attempts;       /**< Of DONE, REFUSED, TIMEOUT: how often it was sent. */
+    icd_reason_t reason;     /**< Of REFUSED. */
+    int64_t code;            /**< Of REFUSED: the error code, -1 if the bus tells none. */
+    int64_t parameter;       /**< Of REFUSED: the parameter at fault, -1 if the bus tells none. */
+    uint32_t number;         /**< Of PACKET. */
+    uint32_t missing;        /**< Of INCOMPLETE: packets. */
+    uint8_t source;          /**< On CAN. */
+    uint8_t destination;     /**< Of MESSAGE on CAN. */
+    icd_can_kind_t can_kind; /**< Of MESSAGE on CAN. */
 } icd_event_t;
 
 /** Is told of each event, with the context that was given along. */
@@ -491,7 +508,7 @@ static inline bool icdgen_reached(uint32_t now, uint32_t time)
     return now - time < UINT32_C(0x80000000);
 }
 
-/* ---- checksums ----------------------------------------------------------------------------------------------------- */
+/* ---- checksums --------------------------------------------------------------------------------------------------- */
 
 /** A CRC that is fed piece by piece. */
 typedef struct {
@@ -578,7 +595,7 @@ static inline icd_status_t icd_crc16(const icd_link_t *link, const uint8_t *byte
     return ICD_OK;
 }
 
-/* ---- UART ---------------------------------------------------------------------------------------------------------- */
+/* ---- UART -------------------------------------------------------------------------------------------------------- */
 
 /** Writes a message to the line piece by piece, so that no buffer must hold the whole. */
 typedef struct {
@@ -817,7 +834,7 @@ static inline icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_
     return ICD_UART_OTHER;
 }
 
-/* ---- I2C ----------------------------------------------------------------------------------------------------------- */
+/* ---- I2C --------------------------------------------------------------------------------------------------------- */
 
 /** The checksum of a message's data. The node has checksums. */
 static inline uint32_t icd_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length)
@@ -833,8 +850,14 @@ static inline uint32_t icd_checksum(const icd_link_t *link, uint8_t id, const ui
 
 /** Id, data and, if asked for, the checksum of a telecommand: what is written on I2C, and framed on the UART. */
 static inline icd_status_t icd_i2c_write(
-    const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length, bool checked, uint8_t *buffer,
-    size_t capacity, size_t *written)
+    const icd_link_t *link,
+    uint8_t id,
+    const uint8_t *data,
+    size_t length,
+    bool checked,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written)
 {
     size_t extra = 0;
     if (checked) {
@@ -882,14 +905,15 @@ static inline icd_status_t icd_i2c_reply(
         return ICD_ERROR_LENGTH;
     }
     *frame_length = expected - (checked ? link->checksum->bytes : 0u);
-    if (checked && icdgen_number(link, bytes + *frame_length, link->checksum->bytes) !=
+    if (checked &&
+        icdgen_number(link, bytes + *frame_length, link->checksum->bytes) !=
             icd_checksum(link, id, bytes, *frame_length)) {
         return ICD_ERROR_CHECKSUM;
     }
     return ICD_OK;
 }
 
-/* ---- CAN ----------------------------------------------------------------------------------------------------------- */
+/* ---- CAN --------------------------------------------------------------------------------------------------------- */
 
 /** A CAN frame: identifier of 29 bits, and data. */
 typedef struct {
@@ -931,12 +955,18 @@ typedef struct {
 } icd_can_splitter_t;
 
 /**
- * Begins a message, whose data must stay where they are. ICD_ERROR_LENGTH if they are too long, ICD_ERROR_RANGE if an id
- * or address does not fit the identifier.
+ * Begins a message, whose data must stay where they are. ICD_ERROR_LENGTH if they are too long, ICD_ERROR_RANGE if an
+ * id or address does not fit the identifier.
  */
 static inline icd_status_t icd_can_split(
-    icd_can_splitter_t *splitter, const icd_link_t *link, icd_can_kind_t kind, uint8_t id, uint8_t source,
-    uint8_t destination, const uint8_t *data, size_t length)
+    icd_can_splitter_t *splitter,
+    const icd_link_t *link,
+    icd_can_kind_t kind,
+    uint8_t id,
+    uint8_t source,
+    uint8_t destination,
+    const uint8_t *data,
+    size_t length)
 {
     const icd_can_form_t *const can = link->can;
     int32_t type;
@@ -1027,10 +1057,18 @@ static inline size_t icd_can_slot_bytes(const icd_link_t *link)
     return 1u + (packets * can->packet_bytes);
 }
 
-/** `address`: whose messages are taken, or ICD_CAN_EVERYBODY. ICD_ERROR_LENGTH if the buffer is too small for the slots. */
+/**
+ * `address`: whose messages are taken, or ICD_CAN_EVERYBODY. ICD_ERROR_LENGTH if the buffer is too small for the
+ * slots.
+ */
 static inline icd_status_t icd_can_joiner_init(
-    icd_can_joiner_t *joiner, const icd_link_t *link, int16_t address, icd_can_slot_t *slots, size_t count,
-    uint8_t *buffer, size_t size)
+    icd_can_joiner_t *joiner,
+    const icd_link_t *link,
+    int16_t address,
+    icd_can_slot_t *slots,
+    size_t count,
+    uint8_t *buffer,
+    size_t size)
 {
     size_t each;
     memset(joiner, 0, sizeof *joiner);
@@ -1054,7 +1092,11 @@ static inline icd_status_t icd_can_joiner_init(
 }
 
 static inline void icdgen_can_tell(
-    const icd_link_t *link, uint32_t key, icd_event_kind_t kind, uint32_t missing, icd_event_fn *on_event,
+    const icd_link_t *link,
+    uint32_t key,
+    icd_event_kind_t kind,
+    uint32_t missing,
+    icd_event_fn *on_event,
     void *context)
 {
     icd_event_t event = icdgen_event(kind, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
@@ -1065,7 +1107,12 @@ static inline void icdgen_can_tell(
 
 /* Data begin one byte after the id. */
 static inline void icdgen_can_tell_message(
-    const icd_link_t *link, uint32_t key, icd_can_kind_t kind, uint8_t *data, size_t length, icd_event_fn *on_event,
+    const icd_link_t *link,
+    uint32_t key,
+    icd_can_kind_t kind,
+    uint8_t *data,
+    size_t length,
+    icd_event_fn *on_event,
     void *context)
 {
     icd_event_t event = icdgen_event(ICD_EVENT_MESSAGE, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
@@ -1150,7 +1197,11 @@ static inline uint32_t icdgen_can_length(const icd_link_t *link, icd_can_kind_t 
 
 /* Another message than that of a slot has begun; with the same packets as the old one up to here, they are kept. */
 static inline void icdgen_can_replace(
-    icd_can_joiner_t *joiner, size_t index, uint32_t number, icd_can_slot_t *fresh, icd_event_fn *on_event,
+    icd_can_joiner_t *joiner,
+    size_t index,
+    uint32_t number,
+    icd_can_slot_t *fresh,
+    icd_event_fn *on_event,
     void *context)
 {
     const icd_can_slot_t *const slot = &joiner->slots[index];
@@ -1166,8 +1217,12 @@ static inline void icdgen_can_replace(
 
 /* A packet of a message of several. */
 static inline void icdgen_can_extended(
-    icd_can_joiner_t *joiner, uint32_t now, icd_can_kind_t kind, const icd_can_packet_t *packet,
-    icd_event_fn *on_event, void *context)
+    icd_can_joiner_t *joiner,
+    uint32_t now,
+    icd_can_kind_t kind,
+    const icd_can_packet_t *packet,
+    icd_event_fn *on_event,
+    void *context)
 {
     const icd_link_t *const link = joiner->link;
     const icd_can_form_t *const can = link->can;
@@ -1234,8 +1289,8 @@ static inline void icdgen_can_extended(
 }
 
 /**
- * Takes one packet; `now` in milliseconds. Tells of ICD_EVENT_MESSAGE, whose data have no id, and of INCOMPLETE, MALFORMED,
- * DUPLICATE, BUSY and UNKNOWN_TYPE.
+ * Takes one packet; `now` in milliseconds. Tells of ICD_EVENT_MESSAGE, whose data have no id, and of INCOMPLETE,
+ * MALFORMED, DUPLICATE, BUSY and UNKNOWN_TYPE.
  */
 static inline void icd_can_feed(
     icd_can_joiner_t *joiner, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context)
@@ -1270,7 +1325,7 @@ static inline void icd_can_feed(
     icdgen_can_tell(link, packet->id, ICD_EVENT_UNKNOWN_TYPE, 0, on_event, context);
 }
 
-/* ---- telemetry logs ------------------------------------------------------------------------------------------------ */
+/* ---- telemetry logs ---------------------------------------------------------------------------------------------- */
 
 /** Bytes with a length. */
 typedef struct {
@@ -1376,8 +1431,8 @@ static inline void icdgen_log_header(icd_log_reader_t *reader)
 {
     const icd_link_t *const link = reader->link;
     memmove(reader->buffer, reader->buffer + link->log_file->mask_at, link->log_mask->bytes);
-    reader->entry_bytes = link->log_file->frames_at +
-        (icd_log_count(link, reader->buffer) * link->log_mask->slot_bytes);
+    reader->entry_bytes =
+        link->log_file->frames_at + (icd_log_count(link, reader->buffer) * link->log_mask->slot_bytes);
     reader->has_mask = true;
     reader->length = 0;
 }
@@ -1437,8 +1492,13 @@ static inline icd_status_t icd_log_write_header(
 
 /* Frames into their slots; ICD_ERROR_LENGTH if there are more or fewer, or one has another length. */
 static inline icd_status_t icdgen_log_slots_write(
-    const icd_link_t *link, const uint8_t *mask, const icd_bytes_t *given, size_t count, uint8_t *buffer,
-    size_t capacity, size_t *written)
+    const icd_link_t *link,
+    const uint8_t *mask,
+    const icd_bytes_t *given,
+    size_t count,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written)
 {
     const size_t size = link->log_mask->slot_bytes;
     icd_log_frames_t frames;
@@ -1462,8 +1522,15 @@ static inline icd_status_t icdgen_log_slots_write(
 
 /** Writes an entry of a log file with one frame for each bit of the mask. ICD_ERROR_RANGE if a time does not fit. */
 static inline icd_status_t icd_log_write_entry(
-    const icd_link_t *link, const uint8_t *mask, uint32_t seconds, uint32_t milliseconds, const icd_bytes_t *frames,
-    size_t count, uint8_t *buffer, size_t capacity, size_t *written)
+    const icd_link_t *link,
+    const uint8_t *mask,
+    uint32_t seconds,
+    uint32_t milliseconds,
+    const icd_bytes_t *frames,
+    size_t count,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written)
 {
     const icd_log_file_form_t *const form = link->log_file;
     size_t slots = 0;
@@ -1502,7 +1569,10 @@ static inline size_t icd_log_message_length(const icd_link_t *link, const uint8_
         : form->frames_at + (icd_log_count(link, message + form->mask_at) * link->log_mask->slot_bytes);
 }
 
-/** Reads an unsolicited log message, which begins with its id; ICD_ERROR_LENGTH if it is longer or shorter than it must be. */
+/**
+ * Reads an unsolicited log message, which begins with its id; ICD_ERROR_LENGTH if it is longer or shorter than it must
+ * be.
+ */
 static inline icd_status_t icd_log_message_decode(
     const icd_link_t *link, const uint8_t *message, size_t length, icd_log_message_t *log)
 {
@@ -1519,8 +1589,14 @@ static inline icd_status_t icd_log_message_decode(
 
 /** Writes an unsolicited log message with its id. */
 static inline icd_status_t icd_log_message_encode(
-    const icd_link_t *link, const uint8_t *mask, size_t mask_length, const icd_bytes_t *frames, size_t count,
-    uint8_t *buffer, size_t capacity, size_t *written)
+    const icd_link_t *link,
+    const uint8_t *mask,
+    size_t mask_length,
+    const icd_bytes_t *frames,
+    size_t count,
+    uint8_t *buffer,
+    size_t capacity,
+    size_t *written)
 {
     const icd_log_message_form_t *const form = link->log_message;
     size_t slots = 0;
@@ -1534,13 +1610,13 @@ static inline icd_status_t icd_log_message_encode(
     memset(buffer, 0, form->frames_at);
     buffer[0] = form->id;
     memcpy(buffer + form->mask_at, mask, mask_length);
-    status = icdgen_log_slots_write(
-        link, mask, frames, count, buffer + form->frames_at, capacity - form->frames_at, &slots);
+    status =
+        icdgen_log_slots_write(link, mask, frames, count, buffer + form->frames_at, capacity - form->frames_at, &slots);
     *written = form->frames_at + slots;
     return status;
 }
 
-/* ---- packed time --------------------------------------------------------------------------------------------------- */
+/* ---- packed time ------------------------------------------------------------------------------------------------- */
 
 /** A date and time of day. */
 typedef struct {
@@ -1601,8 +1677,8 @@ static inline icd_status_t icd_dos_time_unpack(const icd_link_t *link, uint32_t 
 }
 
 /**
- * Packs a time; what is finer than its resolution is cut off. ICD_ERROR_RANGE, with the name of the first part that does
- * not exist or does not fit in `wrong`.
+ * Packs a time; what is finer than its resolution is cut off. ICD_ERROR_RANGE, with the name of the first part that
+ * does not exist or does not fit in `wrong`.
  */
 static inline icd_status_t icd_dos_time_pack(
     const icd_link_t *link, const icd_dos_time_t *time, uint32_t *value, const char **wrong)
@@ -1614,13 +1690,13 @@ static inline icd_status_t icd_dos_time_pack(
     }
     *wrong = icd_dos_time_wrong(time);
     if (*wrong == NULL) {
-        *wrong = !icdgen_time_put(form->year, time->year, &packed) ? "year"
-            : !icdgen_time_put(form->month, time->month, &packed)  ? "month"
-            : !icdgen_time_put(form->day, time->day, &packed)      ? "day"
-            : !icdgen_time_put(form->hour, time->hour, &packed)    ? "hour"
+        *wrong = !icdgen_time_put(form->year, time->year, &packed)  ? "year"
+            : !icdgen_time_put(form->month, time->month, &packed)   ? "month"
+            : !icdgen_time_put(form->day, time->day, &packed)       ? "day"
+            : !icdgen_time_put(form->hour, time->hour, &packed)     ? "hour"
             : !icdgen_time_put(form->minute, time->minute, &packed) ? "minute"
             : !icdgen_time_put(form->second, time->second, &packed) ? "second"
-                                                                     : NULL;
+                                                                    : NULL;
     }
     if (*wrong != NULL) {
         return ICD_ERROR_RANGE;
@@ -1629,7 +1705,7 @@ static inline icd_status_t icd_dos_time_pack(
     return ICD_OK;
 }
 
-/* ---- hole maps and the index file ---------------------------------------------------------------------------------- */
+/* ---- hole maps and the index file -------------------------------------------------------------------------------- */
 
 static inline uint8_t icdgen_hole_bit(const icd_hole_map_form_t *form, uint32_t position)
 {
@@ -1746,7 +1822,7 @@ static inline icd_status_t icd_index_entry_encode(
     return ICD_OK;
 }
 
-/* ---- client -------------------------------------------------------------------------------------------------------- */
+/* ---- client ------------------------------------------------------------------------------------------------------ */
 
 typedef enum {
     ICD_CLIENT_IDLE,
@@ -1756,7 +1832,10 @@ typedef enum {
     ICD_CLIENT_POLL   /* I2C: for the acknowledge frame */
 } icd_client_state_t;
 
-/** A request. `repeat`: whether it may be sent again although it may have arrived; of telemetry and settings it always may. */
+/**
+ * A request. `repeat`: whether it may be sent again although it may have arrived; of telemetry and settings it always
+ * may.
+ */
 typedef struct {
     icd_direction_t direction;
     uint8_t id;
@@ -1805,8 +1884,8 @@ static inline size_t icd_client_bytes(const icd_link_t *link)
 }
 
 /**
- * A client on one bus with the times of the ICD. ICD_ERROR_UNSUPPORTED if the node is not on that bus, ICD_ERROR_LENGTH if
- * the buffer is smaller than icd_client_bytes(). The client must stay where it is.
+ * A client on one bus with the times of the ICD. ICD_ERROR_UNSUPPORTED if the node is not on that bus, ICD_ERROR_LENGTH
+ * if the buffer is smaller than icd_client_bytes(). The client must stay where it is.
  */
 static inline icd_status_t icd_client_init(
     icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
@@ -1898,8 +1977,8 @@ static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_ev
 /* Whether anything that is to be sent has not been taken. */
 static inline bool icdgen_client_has_output(const icd_client_t *client)
 {
-    return client->pending != 0u || client->poll || !client->encoder.ended ||
-        client->encoder.pending != 0u || client->splitter.next < client->splitter.count;
+    return client->pending != 0u || client->poll || !client->encoder.ended || client->encoder.pending != 0u ||
+        client->splitter.next < client->splitter.count;
 }
 
 static inline bool icdgen_client_fits_bus(const icd_client_t *client)
@@ -1914,8 +1993,8 @@ static inline bool icdgen_client_fits_bus(const icd_client_t *client)
 }
 
 /**
- * Begins a request; its data are copied. ICD_ERROR_UNKNOWN_ID, ICD_ERROR_BUSY while another one is going on or has not been
- * taken by the output functions, ICD_ERROR_LENGTH; nothing has happened then.
+ * Begins a request; its data are copied. ICD_ERROR_UNKNOWN_ID, ICD_ERROR_BUSY while another one is going on or has not
+ * been taken by the output functions, ICD_ERROR_LENGTH; nothing has happened then.
  */
 static inline icd_status_t icd_client_start(
     icd_client_t *client, uint32_t now, const icd_request_t *request, icd_event_fn *on_event, void *context)
@@ -1970,8 +2049,14 @@ static inline icd_status_t icd_client_request(icd_client_t *client, uint32_t now
 
 /** Sends a telecommand, whose data are copied. One that is not acknowledged is ICD_EVENT_DONE at once. */
 static inline icd_status_t icd_client_send(
-    icd_client_t *client, uint32_t now, uint8_t id, const uint8_t *data, size_t length, bool repeat,
-    icd_event_fn *on_event, void *context)
+    icd_client_t *client,
+    uint32_t now,
+    uint8_t id,
+    const uint8_t *data,
+    size_t length,
+    bool repeat,
+    icd_event_fn *on_event,
+    void *context)
 {
     icd_request_t request;
     memset(&request, 0, sizeof request);
@@ -2192,8 +2277,7 @@ static inline void icdgen_client_on_can(void *context, const icd_event_t *event)
             return;
         }
     }
-    icdgen_client_tell(
-        ICD_EVENT_STRAY, event->id, event->data - 1, event->length + 1u, call->on_event, call->context);
+    icdgen_client_tell(ICD_EVENT_STRAY, event->id, event->data - 1, event->length + 1u, call->on_event, call->context);
 }
 
 /** Lets time pass. */
@@ -2281,12 +2365,13 @@ static inline void icdgen_client_polled(
     if (code == link->no_error) {
         icdgen_client_done(client, now, NULL, 0, on_event, context);
     } else {
-        icdgen_client_refused(
-            client, now, code, icdgen_get(link, step, bytes, ICD_ROLE_PARAMETER), on_event, context);
+        icdgen_client_refused(client, now, code, icdgen_get(link, step, bytes, ICD_ROLE_PARAMETER), on_event, context);
     }
 }
 
-/** I2C: takes what was read in the transaction; `bytes` NULL: it failed. Of a write without reading, anything but NULL. */
+/**
+ * I2C: takes what was read in the transaction; `bytes` NULL: it failed. Of a write without reading, anything but NULL.
+ */
 static inline void icd_client_transferred(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
@@ -2319,7 +2404,7 @@ static inline void icd_client_transferred(
     }
 }
 
-/* ---- procedures ---------------------------------------------------------------------------------------------------- */
+/* ---- procedures -------------------------------------------------------------------------------------------------- */
 
 /** How a procedure ended. */
 typedef enum {
@@ -2349,8 +2434,8 @@ struct icd_procedure {
     icd_request_t request; /* that comes next, or whose outcome is waited for */
     icdgen_want_t want;
     bool started;
-    bool asked;    /* the request was given out */
-    bool tolerant; /* it may end in any way */
+    bool asked;               /* the request was given out */
+    bool tolerant;            /* it may end in any way */
     const icd_step_t *polled; /* the frame that is polled until a flag is as wanted */
     icd_role_t flag;
     bool wanted;
@@ -2358,7 +2443,8 @@ struct icd_procedure {
     uint32_t poll_end;
     uint8_t state;
     uint8_t data[ICD_STEP_BYTES]; /* of the request */
-    void (*resume)(icd_procedure_t *procedure, const icd_event_t *outcome); /* outcome NULL: at the start, after a wait */
+    void (*resume)(
+        icd_procedure_t *procedure, const icd_event_t *outcome); /* outcome NULL: at the start, after a wait */
     void (*packet)(icd_procedure_t *procedure, uint32_t number, const uint8_t *data, size_t length);
 };
 
@@ -2406,8 +2492,13 @@ static inline void icdgen_command(icd_procedure_t *procedure, const icd_step_t *
 
 /* Requests the frame until its flag is as wanted, or its error flag is set; `state` is told of that frame. */
 static inline void icdgen_poll(
-    icd_procedure_t *procedure, const icd_step_t *step, icd_role_t flag, bool wanted, uint32_t interval,
-    uint32_t timeout, uint8_t state)
+    icd_procedure_t *procedure,
+    const icd_step_t *step,
+    icd_role_t flag,
+    bool wanted,
+    uint32_t interval,
+    uint32_t timeout,
+    uint8_t state)
 {
     icdgen_ask(procedure, step->telemetry, state);
     procedure->polled = step;
@@ -2503,7 +2594,9 @@ static inline bool icd_procedure_deadline(const icd_procedure_t *procedure, uint
 }
 
 static inline icd_status_t icdgen_procedure_init(
-    icd_procedure_t *procedure, const icd_link_t *link, bool supported,
+    icd_procedure_t *procedure,
+    const icd_link_t *link,
+    bool supported,
     void (*resume)(icd_procedure_t *procedure, const icd_event_t *outcome))
 {
     memset(procedure, 0, sizeof *procedure);
@@ -2607,8 +2700,7 @@ static inline void icdgen_list_resume(icd_procedure_t *procedure, const icd_even
     }
 }
 
-static inline icd_status_t icd_list_init(
-    icd_list_t *list, const icd_link_t *link, icd_file_fn *on_file, void *context)
+static inline icd_status_t icd_list_init(icd_list_t *list, const icd_link_t *link, icd_file_fn *on_file, void *context)
 {
     memset(list, 0, sizeof *list);
     list->on_file = on_file;
@@ -2759,8 +2851,8 @@ static inline void icdgen_download_map(icd_download_t *download)
     icdgen_command(procedure, &step, true, ICDGEN_DOWNLOAD_MAPPED);
     for (uint32_t i = 0; i < form->message_bytes * 8u; ++i) {
         const uint32_t position = first + i;
-        const bool one = position >= download->count ? form->beyond_end
-                                                     : icdgen_bit(download->got, position) == form->received;
+        const bool one =
+            position >= download->count ? form->beyond_end : icdgen_bit(download->got, position) == form->received;
         icdgen_hole_put(form, procedure->data + message->at, i, one);
     }
     download->left++;
@@ -2909,12 +3001,21 @@ static inline void icdgen_download_resume(icd_procedure_t *procedure, const icd_
 }
 
 /**
- * `size`: bytes of the file, or ICD_SIZE_UNKNOWN. `block`: bytes asked for at once, 0 for those of the ICD. `buffer` holds
- * icd_block_buffer() bytes, `bitmap` icd_block_bitmap().
+ * `size`: bytes of the file, or ICD_SIZE_UNKNOWN. `block`: bytes asked for at once, 0 for those of the ICD. `buffer`
+ * holds icd_block_buffer() bytes, `bitmap` icd_block_bitmap().
  */
 static inline icd_status_t icd_download_init(
-    icd_download_t *download, const icd_link_t *link, icd_bus_t bus, uint8_t type, uint8_t counter, uint32_t size,
-    uint32_t block, uint8_t *buffer, uint8_t *bitmap, icd_block_fn *on_block, void *context)
+    icd_download_t *download,
+    const icd_link_t *link,
+    icd_bus_t bus,
+    uint8_t type,
+    uint8_t counter,
+    uint32_t size,
+    uint32_t block,
+    uint8_t *buffer,
+    uint8_t *bitmap,
+    icd_block_fn *on_block,
+    void *context)
 {
     const bool known = link->download != NULL && link->files != NULL && link->crc16 != NULL && link->hole_map != NULL &&
         (bus == ICD_BUS_UART || link->files->packet_ids[bus] >= 0);
@@ -3173,10 +3274,18 @@ static inline void icdgen_upload_resume(icd_procedure_t *procedure, const icd_ev
     }
 }
 
-/** The file must stay where it is. `block`: bytes a block, 0 for those of the ICD. `bitmap` holds icd_block_bitmap() bytes. */
+/**
+ * The file must stay where it is. `block`: bytes a block, 0 for those of the ICD. `bitmap` holds icd_block_bitmap()
+ * bytes.
+ */
 static inline icd_status_t icd_upload_init(
-    icd_upload_t *upload, const icd_link_t *link, uint8_t destination, const uint8_t *file, uint32_t size,
-    uint32_t block, uint8_t *bitmap)
+    icd_upload_t *upload,
+    const icd_link_t *link,
+    uint8_t destination,
+    const uint8_t *file,
+    uint32_t size,
+    uint32_t block,
+    uint8_t *bitmap)
 {
     const bool known = link->upload != NULL && link->crc16 != NULL && link->hole_map != NULL;
     memset(upload, 0, sizeof *upload);

@@ -21,60 +21,61 @@
 #define COMMON_BLOCK_BITMAP_BYTES 128u
 
 /* Ids for ICD_REQUEST(). */
-#define COMMON_IDENTIFICATION_TELEMETRY COMMON_IDENTIFICATION_ID
-#define COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_TELEMETRY COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_ID
-#define COMMON_BOOT_INDEX_AND_STATUS_TELEMETRY COMMON_BOOT_INDEX_AND_STATUS_ID
-#define COMMON_LAST_LOGGED_EVENT_TELEMETRY COMMON_LAST_LOGGED_EVENT_ID
-#define COMMON_SRAM_LATCHUP_COUNTERS_TELEMETRY COMMON_SRAM_LATCHUP_COUNTERS_ID
-#define COMMON_EDAC_ERROR_COUNTERS_TELEMETRY COMMON_EDAC_ERROR_COUNTERS_ID
-#define COMMON_COMMUNICATION_STATUS_TELEMETRY COMMON_COMMUNICATION_STATUS_ID
-#define COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_TELEMETRY COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_ID
-#define COMMON_TELECOMMAND_ACKNOWLEDGE_TELEMETRY COMMON_TELECOMMAND_ACKNOWLEDGE_ID
-#define COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_TELEMETRY COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_ID
-#define COMMON_DOWNLOAD_BLOCK_READY_TELEMETRY COMMON_DOWNLOAD_BLOCK_READY_ID
-#define COMMON_FILE_INFORMATION_TELEMETRY COMMON_FILE_INFORMATION_ID
-#define COMMON_INITIALIZE_UPLOAD_COMPLETE_TELEMETRY COMMON_INITIALIZE_UPLOAD_COMPLETE_ID
-#define COMMON_UPLOAD_BLOCK_COMPLETE_TELEMETRY COMMON_UPLOAD_BLOCK_COMPLETE_ID
-#define COMMON_BLOCK_CHECKSUM_TELEMETRY COMMON_BLOCK_CHECKSUM_ID
-#define COMMON_CACHE_ENABLED_STATE_TELEMETRY COMMON_CACHE_ENABLED_STATE_GET_ID
-#define COMMON_SRAM_SCRUB_PARAMETERS_TELEMETRY COMMON_SRAM_SCRUB_PARAMETERS_GET_ID
-#define COMMON_CURRENT_UNIX_TIME_TELEMETRY COMMON_CURRENT_UNIX_TIME_GET_ID
-#define COMMON_UNIX_TIME_SAVE_TO_FLASH_TELEMETRY COMMON_UNIX_TIME_SAVE_TO_FLASH_GET_ID
-#define COMMON_HOLE_MAP_1_TELEMETRY COMMON_HOLE_MAP_1_GET_ID
-#define COMMON_HOLE_MAP_2_TELEMETRY COMMON_HOLE_MAP_2_GET_ID
-#define COMMON_HOLE_MAP_3_TELEMETRY COMMON_HOLE_MAP_3_GET_ID
-#define COMMON_HOLE_MAP_4_TELEMETRY COMMON_HOLE_MAP_4_GET_ID
-#define COMMON_HOLE_MAP_5_TELEMETRY COMMON_HOLE_MAP_5_GET_ID
-#define COMMON_HOLE_MAP_6_TELEMETRY COMMON_HOLE_MAP_6_GET_ID
-#define COMMON_HOLE_MAP_7_TELEMETRY COMMON_HOLE_MAP_7_GET_ID
-#define COMMON_HOLE_MAP_8_TELEMETRY COMMON_HOLE_MAP_8_GET_ID
+#define COMMON_IDENTIFICATION_TELEMETRY 128u
+#define COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_TELEMETRY 129u
+#define COMMON_BOOT_INDEX_AND_STATUS_TELEMETRY 130u
+#define COMMON_LAST_LOGGED_EVENT_TELEMETRY 141u
+#define COMMON_SRAM_LATCHUP_COUNTERS_TELEMETRY 142u
+#define COMMON_EDAC_ERROR_COUNTERS_TELEMETRY 143u
+#define COMMON_COMMUNICATION_STATUS_TELEMETRY 144u
+#define COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_TELEMETRY 234u
+#define COMMON_TELECOMMAND_ACKNOWLEDGE_TELEMETRY 240u
+#define COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_TELEMETRY 241u
+#define COMMON_DOWNLOAD_BLOCK_READY_TELEMETRY 242u
+#define COMMON_FILE_INFORMATION_TELEMETRY 243u
+#define COMMON_INITIALIZE_UPLOAD_COMPLETE_TELEMETRY 244u
+#define COMMON_UPLOAD_BLOCK_COMPLETE_TELEMETRY 245u
+#define COMMON_BLOCK_CHECKSUM_TELEMETRY 246u
+#define COMMON_CACHE_ENABLED_STATE_TELEMETRY 131u
+#define COMMON_SRAM_SCRUB_PARAMETERS_TELEMETRY 134u
+#define COMMON_CURRENT_UNIX_TIME_TELEMETRY 140u
+#define COMMON_UNIX_TIME_SAVE_TO_FLASH_TELEMETRY 145u
+#define COMMON_HOLE_MAP_1_TELEMETRY 247u
+#define COMMON_HOLE_MAP_2_TELEMETRY 248u
+#define COMMON_HOLE_MAP_3_TELEMETRY 249u
+#define COMMON_HOLE_MAP_4_TELEMETRY 250u
+#define COMMON_HOLE_MAP_5_TELEMETRY 251u
+#define COMMON_HOLE_MAP_6_TELEMETRY 252u
+#define COMMON_HOLE_MAP_7_TELEMETRY 253u
+#define COMMON_HOLE_MAP_8_TELEMETRY 254u
 
 /** What the wire layer needs to know about Common messages. */
 static inline const icd_link_t *common_link(void)
 {
+    /* clang-format off */
     static const icd_message_t telecommands[] = {
         /*
          * Reset. Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for,
          * and one that comes is accepted.
          */
         {1u, ICD_EXPECTS_RESET, 1u},
-        {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Current Unix Time */
-        {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u}, /* Cache enabled state */
-        {4u, ICD_ACKNOWLEDGED, 0u}, /* Reset Log Pointer */
-        {5u, ICD_ACKNOWLEDGED, 0u}, /* Advance Log Pointer */
-        {6u, ICD_ACKNOWLEDGED, 0u}, /* Reset Boot Registers */
-        {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* SRAM Scrub Parameters */
-        {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* Unix Time Save to Flash */
-        {33u, ICD_ACKNOWLEDGED, 1u}, /* Format SD card */
-        {108u, ICD_ACKNOWLEDGED, 3u}, /* Erase File */
-        {112u, ICD_ACKNOWLEDGED, 8u}, /* Load File Download Block */
-        {113u, ICD_ACKNOWLEDGED, 0u}, /* Advance File List Read Pointer */
-        {114u, ICD_ACKNOWLEDGED, 2u}, /* Initiate File Upload */
-        {115u, 0u, 22u}, /* File Upload Packet */
-        {116u, ICD_ACKNOWLEDGED, 7u}, /* Finalize Upload Block */
-        {117u, ICD_ACKNOWLEDGED, 0u}, /* Reset Upload Block */
-        {118u, ICD_ACKNOWLEDGED, 0u}, /* Reset File List Read Pointer */
-        {119u, ICD_ACKNOWLEDGED, 2u}, /* Initiate Download Burst */
+        {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u},    /* Current Unix Time */
+        {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u},    /* Cache enabled state */
+        {4u, ICD_ACKNOWLEDGED, 0u},                  /* Reset Log Pointer */
+        {5u, ICD_ACKNOWLEDGED, 0u},                  /* Advance Log Pointer */
+        {6u, ICD_ACKNOWLEDGED, 0u},                  /* Reset Boot Registers */
+        {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u},    /* SRAM Scrub Parameters */
+        {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u},    /* Unix Time Save to Flash */
+        {33u, ICD_ACKNOWLEDGED, 1u},                 /* Format SD card */
+        {108u, ICD_ACKNOWLEDGED, 3u},                /* Erase File */
+        {112u, ICD_ACKNOWLEDGED, 8u},                /* Load File Download Block */
+        {113u, ICD_ACKNOWLEDGED, 0u},                /* Advance File List Read Pointer */
+        {114u, ICD_ACKNOWLEDGED, 2u},                /* Initiate File Upload */
+        {115u, 0u, 22u},                             /* File Upload Packet */
+        {116u, ICD_ACKNOWLEDGED, 7u},                /* Finalize Upload Block */
+        {117u, ICD_ACKNOWLEDGED, 0u},                /* Reset Upload Block */
+        {118u, ICD_ACKNOWLEDGED, 0u},                /* Reset File List Read Pointer */
+        {119u, ICD_ACKNOWLEDGED, 2u},                /* Initiate Download Burst */
         {120u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 1 */
         {121u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 2 */
         {122u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 3 */
@@ -85,25 +86,25 @@ static inline const icd_link_t *common_link(void)
         {127u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 8 */
     };
     static const icd_message_t telemetry[] = {
-        {128u, 0u, 8u}, /* Identification */
-        {129u, 0u, 6u}, /* Boot And Running Program Status */
-        {130u, 0u, 2u}, /* Boot Index and Status */
-        {131u, 0u, 1u}, /* Cache enabled state */
-        {134u, 0u, 2u}, /* SRAM Scrub Parameters */
-        {140u, 0u, 6u}, /* Current Unix Time */
-        {141u, 0u, 6u}, /* Last Logged Event */
-        {142u, 0u, 6u}, /* SRAM Latchup counters */
-        {143u, 0u, 6u}, /* EDAC Error Counters */
-        {144u, 0u, 6u}, /* Communication Status */
-        {145u, 0u, 2u}, /* Unix Time Save to Flash */
-        {234u, 0u, 1u}, /* SD card format/erase progress */
-        {240u, 0u, 4u}, /* Telecommand Acknowledge */
+        {128u, 0u, 8u},  /* Identification */
+        {129u, 0u, 6u},  /* Boot And Running Program Status */
+        {130u, 0u, 2u},  /* Boot Index and Status */
+        {131u, 0u, 1u},  /* Cache enabled state */
+        {134u, 0u, 2u},  /* SRAM Scrub Parameters */
+        {140u, 0u, 6u},  /* Current Unix Time */
+        {141u, 0u, 6u},  /* Last Logged Event */
+        {142u, 0u, 6u},  /* SRAM Latchup counters */
+        {143u, 0u, 6u},  /* EDAC Error Counters */
+        {144u, 0u, 6u},  /* Communication Status */
+        {145u, 0u, 2u},  /* Unix Time Save to Flash */
+        {234u, 0u, 1u},  /* SD card format/erase progress */
+        {240u, 0u, 4u},  /* Telecommand Acknowledge */
         {241u, 0u, 22u}, /* File Download Buffer with File Contents */
-        {242u, 0u, 5u}, /* Download Block Ready */
+        {242u, 0u, 5u},  /* Download Block Ready */
         {243u, 0u, 12u}, /* File Information */
-        {244u, 0u, 1u}, /* Initialize Upload Complete */
-        {245u, 0u, 1u}, /* Upload Block Complete */
-        {246u, 0u, 2u}, /* Block Checksum */
+        {244u, 0u, 1u},  /* Initialize Upload Complete */
+        {245u, 0u, 1u},  /* Upload Block Complete */
+        {246u, 0u, 2u},  /* Block Checksum */
         {247u, 0u, 16u}, /* Hole Map 1 */
         {248u, 0u, 16u}, /* Hole Map 2 */
         {249u, 0u, 16u}, /* Hole Map 3 */
@@ -129,7 +130,7 @@ static inline const icd_link_t *common_link(void)
         0x7fu, /* start */
         0xffu, /* end */
         0x1fu, /* the escape byte as data */
-        true, /* the id is escaped */
+        true,  /* the id is escaped */
         false, /* an escape byte before any other byte is skipped */
     };
     /**
@@ -142,9 +143,9 @@ static inline const icd_link_t *common_link(void)
         1u, /* error */
     };
     static const icd_place_t polled_places[] = {
-        {ICD_ROLE_ID, 0u, 8u}, /* Last TC ID */
-        {ICD_ROLE_PROCESSED, 8u, 1u}, /* Processed flag */
-        {ICD_ROLE_ERROR, 16u, 8u}, /* TC error status */
+        {ICD_ROLE_ID, 0u, 8u},         /* Last TC ID */
+        {ICD_ROLE_PROCESSED, 8u, 1u},  /* Processed flag */
+        {ICD_ROLE_ERROR, 16u, 8u},     /* TC error status */
         {ICD_ROLE_PARAMETER, 24u, 8u}, /* TC parameter error index */
     };
     static const icd_step_t polled = {
@@ -155,19 +156,19 @@ static inline const icd_link_t *common_link(void)
      * takes the length of the message from its id. Assumed packet_timeout_ms: No time-out between packets is given.
      */
     static const icd_can_form_t can = {
-        {5u, 24u}, /* type: bits, shift */
-        {8u, 16u}, /* channel: bits, shift */
-        {8u, 8u}, /* source: bits, shift */
-        {8u, 0u}, /* destination: bits, shift */
-        1u, /* address of the node */
-        8u, /* bytes of a packet */
-        {1, 2, 3, 4, 5, 6}, /* types */
+        {5u, 24u},              /* type: bits, shift */
+        {8u, 16u},              /* channel: bits, shift */
+        {8u, 8u},               /* source: bits, shift */
+        {8u, 0u},               /* destination: bits, shift */
+        1u,                     /* address of the node */
+        8u,                     /* bytes of a packet */
+        {1, 2, 3, 4, 5, 6},     /* types */
         {7, -1, -1, -1, 8, -1}, /* types of messages of several packets */
-        true, 7u, /* bytes of each of their packets */
-        7u, 0u, /* the count of packets left, and in the last one */
-        0x00u, /* fill */
-        1792u, /* most bytes */
-        1000u, /* time-out */
+        true, 7u,               /* bytes of each of their packets */
+        7u, 0u,                 /* the count of packets left, and in the last one */
+        0x00u,                  /* fill */
+        1792u,                  /* most bytes */
+        1000u,                  /* time-out */
     };
     static const uint16_t crc16_table[] = {
         0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50a5u, 0x60c6u, 0x70e7u, 0x8108u, 0x9129u, 0xa14au, 0xb16bu,
@@ -198,19 +199,19 @@ static inline const icd_link_t *common_link(void)
     };
     static const icd_time_form_t packed_time = {
         {25u, 7u, 1u, 1980u}, /* year */
-        {21u, 4u, 1u, 0u}, /* month */
-        {16u, 5u, 1u, 0u}, /* day */
-        {11u, 5u, 1u, 0u}, /* hour */
-        {5u, 6u, 1u, 0u}, /* minute */
-        {0u, 5u, 2u, 0u}, /* second */
+        {21u, 4u, 1u, 0u},    /* month */
+        {16u, 5u, 1u, 0u},    /* day */
+        {11u, 5u, 1u, 0u},    /* hour */
+        {5u, 6u, 1u, 0u},     /* minute */
+        {0u, 5u, 2u, 0u},     /* second */
     };
     static const icd_index_form_t index_entry = {
-        37u, /* bytes of an entry */
-        {0u, 1u}, /* type */
-        {1u, 1u}, /* counter */
-        {2u, 2u}, /* checksum */
-        {4u, 4u}, /* size */
-        {8u, 4u}, /* time */
+        37u,        /* bytes of an entry */
+        {0u, 1u},   /* type */
+        {1u, 1u},   /* counter */
+        {2u, 2u},   /* checksum */
+        {4u, 4u},   /* size */
+        {8u, 4u},   /* time */
         {12u, 25u}, /* meta */
     };
     static const icd_hole_map_message_t hole_maps[] = {
@@ -229,9 +230,9 @@ static inline const icd_link_t *common_link(void)
      */
     static const icd_hole_map_form_t hole_map = {
         128u, 16u, /* bytes, and in each message */
-        false, /* bit 0 of a byte is the most significant one */
-        true, /* received */
-        true, /* beyond the end */
+        false,     /* bit 0 of a byte is the most significant one */
+        true,      /* received */
+        true,      /* beyond the end */
         8u, hole_maps,
     };
     /**
@@ -239,18 +240,18 @@ static inline const icd_link_t *common_link(void)
      * fill: The value is not defined. Erased flash memory reads 0xFF.
      */
     static const icd_files_form_t files = {
-        20u, 2u, /* bytes of a packet, and of its number */
-        0u, /* number of the first */
-        0xffu, /* fill */
-        20480u, /* bytes of a block */
+        20u, 2u,         /* bytes of a packet, and of its number */
+        0u,              /* number of the first */
+        0xffu,           /* fill */
+        20480u,          /* bytes of a block */
         {119, 241, 241}, /* ids of download packets */
     };
     static const icd_place_t list_information_places[] = {
-        {ICD_ROLE_BUSY, 4u, 1u}, /* Busy Updating */
-        {ICD_ROLE_TYPE, 0u, 4u}, /* File Type */
-        {ICD_ROLE_COUNTER, 8u, 8u}, /* File Ctr */
-        {ICD_ROLE_SIZE, 16u, 32u}, /* File Size */
-        {ICD_ROLE_TIME, 48u, 32u}, /* File Date and Time */
+        {ICD_ROLE_BUSY, 4u, 1u},       /* Busy Updating */
+        {ICD_ROLE_TYPE, 0u, 4u},       /* File Type */
+        {ICD_ROLE_COUNTER, 8u, 8u},    /* File Ctr */
+        {ICD_ROLE_SIZE, 16u, 32u},     /* File Size */
+        {ICD_ROLE_TIME, 48u, 32u},     /* File Date and Time */
         {ICD_ROLE_CHECKSUM, 80u, 16u}, /* File CRC16 Checksum */
     };
     /**
@@ -258,26 +259,26 @@ static inline const icd_link_t *common_link(void)
      * has to be computed meanwhile.
      */
     static const icd_list_form_t list = {
-        {118, -1, 0u, 0u, NULL, NULL}, /* Reset File List Read Pointer */
-        {113, -1, 0u, 0u, NULL, NULL}, /* Advance File List Read Pointer */
+        {118, -1, 0u, 0u, NULL, NULL},                     /* Reset File List Read Pointer */
+        {113, -1, 0u, 0u, NULL, NULL},                     /* Advance File List Read Pointer */
         {-1, 243, 12u, 6u, list_information_places, NULL}, /* File Information */
-        50u, /* poll_interval_ms */
-        10000u, /* timeout_ms */
+        50u,                                               /* poll_interval_ms */
+        10000u,                                            /* timeout_ms */
     };
     static const icd_place_t download_load_places[] = {
-        {ICD_ROLE_TYPE, 0u, 8u}, /* File Type */
-        {ICD_ROLE_COUNTER, 8u, 8u}, /* Counter */
+        {ICD_ROLE_TYPE, 0u, 8u},     /* File Type */
+        {ICD_ROLE_COUNTER, 8u, 8u},  /* Counter */
         {ICD_ROLE_OFFSET, 16u, 32u}, /* Offset */
         {ICD_ROLE_LENGTH, 48u, 16u}, /* BlockLength */
     };
     static const icd_place_t download_ready_places[] = {
-        {ICD_ROLE_READY, 0u, 1u}, /* Ready */
-        {ICD_ROLE_ERROR, 1u, 1u}, /* ParameterError */
+        {ICD_ROLE_READY, 0u, 1u},     /* Ready */
+        {ICD_ROLE_ERROR, 1u, 1u},     /* ParameterError */
         {ICD_ROLE_CHECKSUM, 8u, 16u}, /* Block CRC16 Checksum */
-        {ICD_ROLE_LENGTH, 24u, 16u}, /* Block Length */
+        {ICD_ROLE_LENGTH, 24u, 16u},  /* Block Length */
     };
     static const icd_place_t download_burst_places[] = {
-        {ICD_ROLE_LENGTH, 0u, 8u}, /* Message Length */
+        {ICD_ROLE_LENGTH, 0u, 8u},          /* Message Length */
         {ICD_ROLE_IGNORE_HOLE_MAP, 8u, 1u}, /* Ignore Hole Map */
     };
     /**
@@ -289,25 +290,25 @@ static inline const icd_link_t *common_link(void)
      * Download over CAN is not described. The packets are requested one by one as on I2C.
      */
     static const icd_download_form_t download = {
-        {112, -1, 8u, 4u, download_load_places, NULL}, /* Load File Download Block */
+        {112, -1, 8u, 4u, download_load_places, NULL},  /* Load File Download Block */
         {-1, 242, 5u, 4u, download_ready_places, NULL}, /* Download Block Ready */
         {119, -1, 2u, 2u, download_burst_places, NULL}, /* Initiate Download Burst */
-        20u, /* message_length */
-        50u, /* poll_interval_ms */
-        10000u, /* ready_timeout_ms */
-        500u, /* silence_ms */
-        32u, /* rounds */
-        false, /* the checksum covers the fill */
+        20u,                                            /* message_length */
+        50u,                                            /* poll_interval_ms */
+        10000u,                                         /* ready_timeout_ms */
+        500u,                                           /* silence_ms */
+        32u,                                            /* rounds */
+        false,                                          /* the checksum covers the fill */
     };
     static const icd_place_t upload_initiate_places[] = {
         {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
-        {ICD_ROLE_BLOCK_SIZE, 8u, 8u}, /* BlockSize */
+        {ICD_ROLE_BLOCK_SIZE, 8u, 8u},  /* BlockSize */
     };
     static const icd_place_t upload_initiated_places[] = {
         {ICD_ROLE_BUSY, 0u, 1u}, /* Busy */
     };
     static const icd_place_t upload_packet_places[] = {
-        {ICD_ROLE_NUMBER, 0u, 16u}, /* Packet Number */
+        {ICD_ROLE_NUMBER, 0u, 16u},  /* Packet Number */
         {ICD_ROLE_BYTES, 16u, 160u}, /* File Bytes */
     };
     static const icd_place_t upload_checksum_places[] = {
@@ -315,11 +316,11 @@ static inline const icd_link_t *common_link(void)
     };
     static const icd_place_t upload_finalize_places[] = {
         {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
-        {ICD_ROLE_OFFSET, 8u, 32u}, /* Offset */
-        {ICD_ROLE_LENGTH, 40u, 16u}, /* Block Length */
+        {ICD_ROLE_OFFSET, 8u, 32u},     /* Offset */
+        {ICD_ROLE_LENGTH, 40u, 16u},    /* Block Length */
     };
     static const icd_place_t upload_finalized_places[] = {
-        {ICD_ROLE_BUSY, 0u, 1u}, /* Busy */
+        {ICD_ROLE_BUSY, 0u, 1u},  /* Busy */
         {ICD_ROLE_ERROR, 1u, 1u}, /* Error */
     };
     /**
@@ -329,34 +330,34 @@ static inline const icd_link_t *common_link(void)
      * commits the block. Assumed finalize_timeout_ms: No time is given.
      */
     static const icd_upload_form_t upload = {
-        {114, -1, 2u, 2u, upload_initiate_places, NULL}, /* Initiate File Upload */
+        {114, -1, 2u, 2u, upload_initiate_places, NULL},  /* Initiate File Upload */
         {-1, 244, 1u, 1u, upload_initiated_places, NULL}, /* Initialize Upload Complete */
-        {117, -1, 0u, 0u, NULL, NULL}, /* Reset Upload Block */
-        {115, -1, 22u, 2u, upload_packet_places, NULL}, /* File Upload Packet */
-        {-1, 246, 2u, 1u, upload_checksum_places, NULL}, /* Block Checksum */
-        {116, -1, 7u, 3u, upload_finalize_places, NULL}, /* Finalize Upload Block */
+        {117, -1, 0u, 0u, NULL, NULL},                    /* Reset Upload Block */
+        {115, -1, 22u, 2u, upload_packet_places, NULL},   /* File Upload Packet */
+        {-1, 246, 2u, 1u, upload_checksum_places, NULL},  /* Block Checksum */
+        {116, -1, 7u, 3u, upload_finalize_places, NULL},  /* Finalize Upload Block */
         {-1, 245, 1u, 2u, upload_finalized_places, NULL}, /* Upload Block Complete */
-        0u, /* block_size */
-        50u, /* poll_interval_ms */
-        8000u, /* erase_timeout_ms */
-        5000u, /* finalize_timeout_ms */
-        32u, /* rounds */
-        true, /* the checksum covers the fill */
+        0u,                                               /* block_size */
+        50u,                                              /* poll_interval_ms */
+        8000u,                                            /* erase_timeout_ms */
+        5000u,                                            /* finalize_timeout_ms */
+        32u,                                              /* rounds */
+        true,                                             /* the checksum covers the fill */
     };
     static const icd_place_t erase_request_places[] = {
-        {ICD_ROLE_TYPE, 0u, 8u}, /* File Type */
+        {ICD_ROLE_TYPE, 0u, 8u},    /* File Type */
         {ICD_ROLE_COUNTER, 8u, 8u}, /* File Counter */
-        {ICD_ROLE_ALL, 16u, 1u}, /* Erase All */
+        {ICD_ROLE_ALL, 16u, 1u},    /* Erase All */
     };
     static const icd_place_t erase_progress_places[] = {
         {ICD_ROLE_BUSY, 1u, 1u}, /* Erase All Busy */
     };
     /** Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. */
     static const icd_erase_form_t erase = {
-        {108, -1, 3u, 3u, erase_request_places, NULL}, /* Erase File */
+        {108, -1, 3u, 3u, erase_request_places, NULL},  /* Erase File */
         {-1, 234, 1u, 1u, erase_progress_places, NULL}, /* SD card format/erase progress */
-        200u, /* poll_interval_ms */
-        60000u, /* timeout_ms */
+        200u,                                           /* poll_interval_ms */
+        60000u,                                         /* timeout_ms */
     };
     static const uint8_t format_request_fresh[] = {
         0x5au,
@@ -366,13 +367,13 @@ static inline const icd_link_t *common_link(void)
     };
     /** Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. */
     static const icd_erase_form_t format = {
-        {33, -1, 1u, 0u, NULL, format_request_fresh}, /* Format SD card */
+        {33, -1, 1u, 0u, NULL, format_request_fresh},    /* Format SD card */
         {-1, 234, 1u, 1u, format_progress_places, NULL}, /* SD card format/erase progress */
-        200u, /* poll_interval_ms */
-        60000u, /* timeout_ms */
+        200u,                                            /* poll_interval_ms */
+        60000u,                                          /* timeout_ms */
     };
     static const icd_place_t identification_places[] = {
-        {ICD_ROLE_NODE_TYPE, 0u, 8u}, /* Node type */
+        {ICD_ROLE_NODE_TYPE, 0u, 8u},         /* Node type */
         {ICD_ROLE_INTERFACE_VERSION, 8u, 8u}, /* Interface version */
     };
     static const icd_step_t identification = {
@@ -384,22 +385,22 @@ static inline const icd_link_t *common_link(void)
      * given.
      */
     static const icd_link_t link = {
-        true, /* byte order: little */
-        false, /* bit 0 is the most significant one */
-        128u, 255u, /* ids of telemetry */
+        true,            /* byte order: little */
+        false,           /* bit 0 is the most significant one */
+        128u, 255u,      /* ids of telemetry */
         telecommands,
         telemetry,
-        26u, 27u, /* how many */
-        23u, 23u, 23u, /* longest telecommand, reply, any */
-        22u, /* longest without id and checksum */
-        -1, /* node type */
-        -1, /* interface version */
+        26u, 27u,        /* how many */
+        23u, 23u, 23u,   /* longest telecommand, reply, any */
+        22u,             /* longest without id and checksum */
+        -1,              /* node type */
+        -1,              /* interface version */
         {1000u, 3u, 20u, 5000u},
         errors,
-        5u, 0u, /* how many; no error */
+        5u, 0u,          /* how many; no error */
         &framing,
         &acknowledge,
-        87, /* I2C address */
+        87,              /* I2C address */
         &polled,
         &can,
         NULL,
@@ -411,13 +412,14 @@ static inline const icd_link_t *common_link(void)
         &index_entry,
         &hole_map,
         &files,
-        &list, /* list */
-        &download, /* download */
-        &upload, /* upload */
-        &erase, /* erase */
-        &format, /* format */
+        &list,           /* list */
+        &download,       /* download */
+        &upload,         /* upload */
+        &erase,          /* erase */
+        &format,         /* format */
         &identification, /* identification */
     };
+    /* clang-format on */
     return &link;
 }
 

@@ -23,174 +23,175 @@
 #define CUBEACP_BLOCK_BITMAP_BYTES 128u
 
 /* Ids for ICD_REQUEST(). */
-#define CUBEACP_CURRENT_ADCS_STATE_TELEMETRY CUBEACP_CURRENT_ADCS_STATE_ID
-#define CUBEACP_JPG_CONVERSION_PROGRESS_TELEMETRY CUBEACP_JPG_CONVERSION_PROGRESS_ID
-#define CUBEACP_CUBEACP_STATE_TELEMETRY CUBEACP_CUBEACP_STATE_ID
-#define CUBEACP_ESTIMATED_ATTITUDE_ANGLES_TELEMETRY CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID
-#define CUBEACP_ESTIMATED_ANGULAR_RATES_TELEMETRY CUBEACP_ESTIMATED_ANGULAR_RATES_ID
-#define CUBEACP_SATELLITE_POSITION_ECI_TELEMETRY CUBEACP_SATELLITE_POSITION_ECI_ID
-#define CUBEACP_SATELLITE_VELOCITY_ECI_TELEMETRY CUBEACP_SATELLITE_VELOCITY_ECI_ID
-#define CUBEACP_SATELLITE_POSITION_LLH_TELEMETRY CUBEACP_SATELLITE_POSITION_LLH_ID
-#define CUBEACP_MAGNETIC_FIELD_VECTOR_TELEMETRY CUBEACP_MAGNETIC_FIELD_VECTOR_ID
-#define CUBEACP_COARSE_SUN_VECTOR_TELEMETRY CUBEACP_COARSE_SUN_VECTOR_ID
-#define CUBEACP_FINE_SUN_VECTOR_TELEMETRY CUBEACP_FINE_SUN_VECTOR_ID
-#define CUBEACP_NADIR_VECTOR_TELEMETRY CUBEACP_NADIR_VECTOR_ID
-#define CUBEACP_RATE_SENSOR_RATES_TELEMETRY CUBEACP_RATE_SENSOR_RATES_ID
-#define CUBEACP_WHEEL_SPEED_TELEMETRY CUBEACP_WHEEL_SPEED_ID
-#define CUBEACP_MAGNETORQUER_COMMAND_TELEMETRY CUBEACP_MAGNETORQUER_COMMAND_ID
-#define CUBEACP_WHEEL_SPEED_COMMANDS_TELEMETRY CUBEACP_WHEEL_SPEED_COMMANDS_ID
-#define CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_TELEMETRY CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_ID
-#define CUBEACP_MODELLED_SUN_VECTOR_TELEMETRY CUBEACP_MODELLED_SUN_VECTOR_ID
-#define CUBEACP_ESTIMATED_GYRO_BIAS_TELEMETRY CUBEACP_ESTIMATED_GYRO_BIAS_ID
-#define CUBEACP_ESTIMATION_INNOVATION_VECTOR_TELEMETRY CUBEACP_ESTIMATION_INNOVATION_VECTOR_ID
-#define CUBEACP_QUATERNION_ERROR_VECTOR_TELEMETRY CUBEACP_QUATERNION_ERROR_VECTOR_ID
-#define CUBEACP_QUATERNION_COVARIANCE_TELEMETRY CUBEACP_QUATERNION_COVARIANCE_ID
-#define CUBEACP_ANGULAR_RATE_COVARIANCE_TELEMETRY CUBEACP_ANGULAR_RATE_COVARIANCE_ID
-#define CUBEACP_RAW_CAM2_SENSOR_TELEMETRY CUBEACP_RAW_CAM2_SENSOR_ID
-#define CUBEACP_RAW_CAM1_SENSOR_TELEMETRY CUBEACP_RAW_CAM1_SENSOR_ID
-#define CUBEACP_RAW_CSS_1_TO_6_TELEMETRY CUBEACP_RAW_CSS_1_TO_6_ID
-#define CUBEACP_RAW_CSS_7_TO_10_TELEMETRY CUBEACP_RAW_CSS_7_TO_10_ID
-#define CUBEACP_RAW_MAGNETOMETER_TELEMETRY CUBEACP_RAW_MAGNETOMETER_ID
-#define CUBEACP_CUBESENSE1_CURRENT_MEASUREMENTS_TELEMETRY CUBEACP_CUBESENSE1_CURRENT_MEASUREMENTS_ID
-#define CUBEACP_CUBECONTROL_CURRENT_MEASUREMENTS_TELEMETRY CUBEACP_CUBECONTROL_CURRENT_MEASUREMENTS_ID
-#define CUBEACP_WHEEL_CURRENTS_TELEMETRY CUBEACP_WHEEL_CURRENTS_ID
-#define CUBEACP_ADCS_TEMPERATURES_TELEMETRY CUBEACP_ADCS_TEMPERATURES_ID
-#define CUBEACP_RATE_SENSOR_TEMPERATURES_TELEMETRY CUBEACP_RATE_SENSOR_TEMPERATURES_ID
-#define CUBEACP_RAW_GPS_STATUS_TELEMETRY CUBEACP_RAW_GPS_STATUS_ID
-#define CUBEACP_RAW_GPS_TIME_TELEMETRY CUBEACP_RAW_GPS_TIME_ID
-#define CUBEACP_RAW_GPS_X_TELEMETRY CUBEACP_RAW_GPS_X_ID
-#define CUBEACP_RAW_GPS_Y_TELEMETRY CUBEACP_RAW_GPS_Y_ID
-#define CUBEACP_RAW_GPS_Z_TELEMETRY CUBEACP_RAW_GPS_Z_ID
-#define CUBEACP_STAR_1_BODY_VECTOR_TELEMETRY CUBEACP_STAR_1_BODY_VECTOR_ID
-#define CUBEACP_STAR_2_BODY_VECTOR_TELEMETRY CUBEACP_STAR_2_BODY_VECTOR_ID
-#define CUBEACP_STAR_3_BODY_VECTOR_TELEMETRY CUBEACP_STAR_3_BODY_VECTOR_ID
-#define CUBEACP_STAR_1_ORBIT_VECTOR_TELEMETRY CUBEACP_STAR_1_ORBIT_VECTOR_ID
-#define CUBEACP_STAR_2_ORBIT_VECTOR_TELEMETRY CUBEACP_STAR_2_ORBIT_VECTOR_ID
-#define CUBEACP_STAR_3_ORBIT_VECTOR_TELEMETRY CUBEACP_STAR_3_ORBIT_VECTOR_ID
-#define CUBEACP_STAR_MAGNITUDE_TELEMETRY CUBEACP_STAR_MAGNITUDE_ID
-#define CUBEACP_STAR_PERFORMANCE1_TELEMETRY CUBEACP_STAR_PERFORMANCE1_ID
-#define CUBEACP_STAR_TIMING_TELEMETRY CUBEACP_STAR_TIMING_ID
-#define CUBEACP_ADCS_STATE_TELEMETRY CUBEACP_ADCS_STATE_ID
-#define CUBEACP_ADCS_MEASUREMENTS_TELEMETRY CUBEACP_ADCS_MEASUREMENTS_ID
-#define CUBEACP_ACTUATOR_COMMANDS_TELEMETRY CUBEACP_ACTUATOR_COMMANDS_ID
-#define CUBEACP_ESTIMATION_DATA_TELEMETRY CUBEACP_ESTIMATION_DATA_ID
-#define CUBEACP_RAW_SENSOR_MEASUREMENTS_TELEMETRY CUBEACP_RAW_SENSOR_MEASUREMENTS_ID
-#define CUBEACP_POWER_AND_TEMPERATURE_MEASUREMENTS_TELEMETRY CUBEACP_POWER_AND_TEMPERATURE_MEASUREMENTS_ID
-#define CUBEACP_ADCS_EXECUTION_TIMES_TELEMETRY CUBEACP_ADCS_EXECUTION_TIMES_ID
-#define CUBEACP_ADCS_MISC_CURRENT_MEASUREMENTS_TELEMETRY CUBEACP_ADCS_MISC_CURRENT_MEASUREMENTS_ID
-#define CUBEACP_FINE_ESTIMATED_ANGULAR_RATES_TELEMETRY CUBEACP_FINE_ESTIMATED_ANGULAR_RATES_ID
-#define CUBEACP_RAW_GPS_MEASUREMENTS_TELEMETRY CUBEACP_RAW_GPS_MEASUREMENTS_ID
-#define CUBEACP_RAW_STAR_TRACKER_TELEMETRY CUBEACP_RAW_STAR_TRACKER_ID
-#define CUBEACP_STAR_1_RAW_DATA_TELEMETRY CUBEACP_STAR_1_RAW_DATA_ID
-#define CUBEACP_STAR_2_RAW_DATA_TELEMETRY CUBEACP_STAR_2_RAW_DATA_ID
-#define CUBEACP_STAR_3_RAW_DATA_TELEMETRY CUBEACP_STAR_3_RAW_DATA_ID
-#define CUBEACP_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS_TELEMETRY CUBEACP_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS_ID
-#define CUBEACP_RAW_RATE_SENSOR_TELEMETRY CUBEACP_RAW_RATE_SENSOR_ID
-#define CUBEACP_ESTIMATED_QUATERNION_TELEMETRY CUBEACP_ESTIMATED_QUATERNION_ID
-#define CUBEACP_ECEF_POSITION_TELEMETRY CUBEACP_ECEF_POSITION_ID
-#define CUBEACP_ACP_EXECUTION_STATE_TELEMETRY CUBEACP_ACP_EXECUTION_STATE_ID
-#define CUBEACP_CURRENT_ADCS_STATE_2_TELEMETRY CUBEACP_CURRENT_ADCS_STATE_2_ID
-#define CUBEACP_ASGP4_TLES_TELEMETRY CUBEACP_ASGP4_TLES_ID
-#define CUBEACP_CUBESTAR_ESTIMATED_RATES_TELEMETRY CUBEACP_CUBESTAR_ESTIMATED_RATES_ID
-#define CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_TELEMETRY CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_ID
-#define CUBEACP_STAR_PERFORMANCE2_TELEMETRY CUBEACP_STAR_PERFORMANCE2_ID
-#define CUBEACP_CUBESENSE2_CURRENT_MEASUREMENTS_TELEMETRY CUBEACP_CUBESENSE2_CURRENT_MEASUREMENTS_ID
-#define CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_TELEMETRY CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_ID
-#define CUBEACP_SET_MAGNETORQUER_CONFIGURATION_TELEMETRY CUBEACP_SET_MAGNETORQUER_CONFIGURATION_GET_ID
-#define CUBEACP_SET_WHEEL_CONFIGURATION_TELEMETRY CUBEACP_SET_WHEEL_CONFIGURATION_GET_ID
-#define CUBEACP_SET_RATE_GYRO_CONFIGURATION_TELEMETRY CUBEACP_SET_RATE_GYRO_CONFIGURATION_GET_ID
-#define CUBEACP_CSS_CONFIGURATION_TELEMETRY CUBEACP_CSS_CONFIGURATION_GET_ID
-#define CUBEACP_ADCS_POWER_CONTROL_TELEMETRY CUBEACP_ADCS_POWER_CONTROL_GET_ID
-#define CUBEACP_COMMANDED_ATTITUDE_ANGLES_TELEMETRY CUBEACP_COMMANDED_ATTITUDE_ANGLES_GET_ID
-#define CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_TELEMETRY CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_GET_ID
-#define CUBEACP_SET_STAR_TRACKER_CONFIGURATION_TELEMETRY CUBEACP_SET_STAR_TRACKER_CONFIGURATION_GET_ID
-#define CUBEACP_CUBESENSE_CONFIGURATION_TELEMETRY CUBEACP_CUBESENSE_CONFIGURATION_GET_ID
-#define CUBEACP_MAGNETOMETER_CONFIGURATION_TELEMETRY CUBEACP_MAGNETOMETER_CONFIGURATION_GET_ID
-#define CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_TELEMETRY CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_GET_ID
-#define CUBEACP_ADCS_CONFIGURATION_TELEMETRY CUBEACP_ADCS_CONFIGURATION_GET_ID
-#define CUBEACP_SGP4_ORBIT_PARAMETERS_TELEMETRY CUBEACP_SGP4_ORBIT_PARAMETERS_GET_ID
-#define CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_TELEMETRY CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_GET_ID
-#define CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_TELEMETRY CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_GET_ID
-#define CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_TELEMETRY CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_GET_ID
-#define CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_TELEMETRY CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_GET_ID
-#define CUBEACP_MOMENT_OF_INERTIA_MATRIX_TELEMETRY CUBEACP_MOMENT_OF_INERTIA_MATRIX_GET_ID
-#define CUBEACP_ESTIMATION_PARAMETERS_TELEMETRY CUBEACP_ESTIMATION_PARAMETERS_GET_ID
-#define CUBEACP_ADCS_SYSTEM_CONFIGURATION_TELEMETRY CUBEACP_ADCS_SYSTEM_CONFIGURATION_GET_ID
-#define CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_TELEMETRY CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_GET_ID
-#define CUBEACP_AUGMENTED_SGP4_PARAMETERS_TELEMETRY CUBEACP_AUGMENTED_SGP4_PARAMETERS_GET_ID
-#define CUBEACP_SD_LOG1_CONFIGURATION_TELEMETRY CUBEACP_SD_LOG1_CONFIGURATION_GET_ID
-#define CUBEACP_SD_LOG2_CONFIGURATION_TELEMETRY CUBEACP_SD_LOG2_CONFIGURATION_GET_ID
-#define CUBEACP_UART_LOG_CONFIGURATION_TELEMETRY CUBEACP_UART_LOG_CONFIGURATION_GET_ID
-#define CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_TELEMETRY CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_GET_ID
+#define CUBEACP_CURRENT_ADCS_STATE_TELEMETRY 132u
+#define CUBEACP_JPG_CONVERSION_PROGRESS_TELEMETRY 133u
+#define CUBEACP_CUBEACP_STATE_TELEMETRY 135u
+#define CUBEACP_ESTIMATED_ATTITUDE_ANGLES_TELEMETRY 146u
+#define CUBEACP_ESTIMATED_ANGULAR_RATES_TELEMETRY 147u
+#define CUBEACP_SATELLITE_POSITION_ECI_TELEMETRY 148u
+#define CUBEACP_SATELLITE_VELOCITY_ECI_TELEMETRY 149u
+#define CUBEACP_SATELLITE_POSITION_LLH_TELEMETRY 150u
+#define CUBEACP_MAGNETIC_FIELD_VECTOR_TELEMETRY 151u
+#define CUBEACP_COARSE_SUN_VECTOR_TELEMETRY 152u
+#define CUBEACP_FINE_SUN_VECTOR_TELEMETRY 153u
+#define CUBEACP_NADIR_VECTOR_TELEMETRY 154u
+#define CUBEACP_RATE_SENSOR_RATES_TELEMETRY 155u
+#define CUBEACP_WHEEL_SPEED_TELEMETRY 156u
+#define CUBEACP_MAGNETORQUER_COMMAND_TELEMETRY 157u
+#define CUBEACP_WHEEL_SPEED_COMMANDS_TELEMETRY 158u
+#define CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_TELEMETRY 159u
+#define CUBEACP_MODELLED_SUN_VECTOR_TELEMETRY 160u
+#define CUBEACP_ESTIMATED_GYRO_BIAS_TELEMETRY 161u
+#define CUBEACP_ESTIMATION_INNOVATION_VECTOR_TELEMETRY 162u
+#define CUBEACP_QUATERNION_ERROR_VECTOR_TELEMETRY 163u
+#define CUBEACP_QUATERNION_COVARIANCE_TELEMETRY 164u
+#define CUBEACP_ANGULAR_RATE_COVARIANCE_TELEMETRY 165u
+#define CUBEACP_RAW_CAM2_SENSOR_TELEMETRY 166u
+#define CUBEACP_RAW_CAM1_SENSOR_TELEMETRY 167u
+#define CUBEACP_RAW_CSS_1_TO_6_TELEMETRY 168u
+#define CUBEACP_RAW_CSS_7_TO_10_TELEMETRY 169u
+#define CUBEACP_RAW_MAGNETOMETER_TELEMETRY 170u
+#define CUBEACP_CUBESENSE1_CURRENT_MEASUREMENTS_TELEMETRY 171u
+#define CUBEACP_CUBECONTROL_CURRENT_MEASUREMENTS_TELEMETRY 172u
+#define CUBEACP_WHEEL_CURRENTS_TELEMETRY 173u
+#define CUBEACP_ADCS_TEMPERATURES_TELEMETRY 174u
+#define CUBEACP_RATE_SENSOR_TEMPERATURES_TELEMETRY 175u
+#define CUBEACP_RAW_GPS_STATUS_TELEMETRY 176u
+#define CUBEACP_RAW_GPS_TIME_TELEMETRY 177u
+#define CUBEACP_RAW_GPS_X_TELEMETRY 178u
+#define CUBEACP_RAW_GPS_Y_TELEMETRY 179u
+#define CUBEACP_RAW_GPS_Z_TELEMETRY 180u
+#define CUBEACP_STAR_1_BODY_VECTOR_TELEMETRY 181u
+#define CUBEACP_STAR_2_BODY_VECTOR_TELEMETRY 182u
+#define CUBEACP_STAR_3_BODY_VECTOR_TELEMETRY 183u
+#define CUBEACP_STAR_1_ORBIT_VECTOR_TELEMETRY 184u
+#define CUBEACP_STAR_2_ORBIT_VECTOR_TELEMETRY 185u
+#define CUBEACP_STAR_3_ORBIT_VECTOR_TELEMETRY 186u
+#define CUBEACP_STAR_MAGNITUDE_TELEMETRY 187u
+#define CUBEACP_STAR_PERFORMANCE1_TELEMETRY 188u
+#define CUBEACP_STAR_TIMING_TELEMETRY 189u
+#define CUBEACP_ADCS_STATE_TELEMETRY 190u
+#define CUBEACP_ADCS_MEASUREMENTS_TELEMETRY 191u
+#define CUBEACP_ACTUATOR_COMMANDS_TELEMETRY 192u
+#define CUBEACP_ESTIMATION_DATA_TELEMETRY 193u
+#define CUBEACP_RAW_SENSOR_MEASUREMENTS_TELEMETRY 194u
+#define CUBEACP_POWER_AND_TEMPERATURE_MEASUREMENTS_TELEMETRY 195u
+#define CUBEACP_ADCS_EXECUTION_TIMES_TELEMETRY 196u
+#define CUBEACP_ADCS_MISC_CURRENT_MEASUREMENTS_TELEMETRY 198u
+#define CUBEACP_FINE_ESTIMATED_ANGULAR_RATES_TELEMETRY 201u
+#define CUBEACP_RAW_GPS_MEASUREMENTS_TELEMETRY 210u
+#define CUBEACP_RAW_STAR_TRACKER_TELEMETRY 211u
+#define CUBEACP_STAR_1_RAW_DATA_TELEMETRY 212u
+#define CUBEACP_STAR_2_RAW_DATA_TELEMETRY 213u
+#define CUBEACP_STAR_3_RAW_DATA_TELEMETRY 214u
+#define CUBEACP_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS_TELEMETRY 215u
+#define CUBEACP_RAW_RATE_SENSOR_TELEMETRY 216u
+#define CUBEACP_ESTIMATED_QUATERNION_TELEMETRY 218u
+#define CUBEACP_ECEF_POSITION_TELEMETRY 219u
+#define CUBEACP_ACP_EXECUTION_STATE_TELEMETRY 220u
+#define CUBEACP_CURRENT_ADCS_STATE_2_TELEMETRY 224u
+#define CUBEACP_ASGP4_TLES_TELEMETRY 228u
+#define CUBEACP_CUBESTAR_ESTIMATED_RATES_TELEMETRY 229u
+#define CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_TELEMETRY 230u
+#define CUBEACP_STAR_PERFORMANCE2_TELEMETRY 231u
+#define CUBEACP_CUBESENSE2_CURRENT_MEASUREMENTS_TELEMETRY 232u
+#define CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_TELEMETRY 233u
+#define CUBEACP_SET_MAGNETORQUER_CONFIGURATION_TELEMETRY 136u
+#define CUBEACP_SET_WHEEL_CONFIGURATION_TELEMETRY 137u
+#define CUBEACP_SET_RATE_GYRO_CONFIGURATION_TELEMETRY 138u
+#define CUBEACP_CSS_CONFIGURATION_TELEMETRY 139u
+#define CUBEACP_ADCS_POWER_CONTROL_TELEMETRY 197u
+#define CUBEACP_COMMANDED_ATTITUDE_ANGLES_TELEMETRY 199u
+#define CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_TELEMETRY 200u
+#define CUBEACP_SET_STAR_TRACKER_CONFIGURATION_TELEMETRY 202u
+#define CUBEACP_CUBESENSE_CONFIGURATION_TELEMETRY 203u
+#define CUBEACP_MAGNETOMETER_CONFIGURATION_TELEMETRY 204u
+#define CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_TELEMETRY 205u
+#define CUBEACP_ADCS_CONFIGURATION_TELEMETRY 206u
+#define CUBEACP_SGP4_ORBIT_PARAMETERS_TELEMETRY 207u
+#define CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_TELEMETRY 208u
+#define CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_TELEMETRY 209u
+#define CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_TELEMETRY 217u
+#define CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_TELEMETRY 221u
+#define CUBEACP_MOMENT_OF_INERTIA_MATRIX_TELEMETRY 222u
+#define CUBEACP_ESTIMATION_PARAMETERS_TELEMETRY 223u
+#define CUBEACP_ADCS_SYSTEM_CONFIGURATION_TELEMETRY 225u
+#define CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_TELEMETRY 226u
+#define CUBEACP_AUGMENTED_SGP4_PARAMETERS_TELEMETRY 227u
+#define CUBEACP_SD_LOG1_CONFIGURATION_TELEMETRY 235u
+#define CUBEACP_SD_LOG2_CONFIGURATION_TELEMETRY 236u
+#define CUBEACP_UART_LOG_CONFIGURATION_TELEMETRY 237u
+#define CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_TELEMETRY 238u
 
 /** What the wire layer needs to know about CubeACP. */
 static inline const icd_link_t *cubeacp_link(void)
 {
+    /* clang-format off */
     static const icd_message_t telecommands[] = {
         /*
          * Reset. Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for,
          * and one that comes is accepted.
          */
         {1u, ICD_EXPECTS_RESET, 1u},
-        {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Current Unix Time */
-        {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u}, /* Cache enabled state */
-        {4u, ICD_ACKNOWLEDGED, 0u}, /* Reset Log Pointer */
-        {5u, ICD_ACKNOWLEDGED, 0u}, /* Advance Log Pointer */
-        {6u, ICD_ACKNOWLEDGED, 0u}, /* Reset Boot Registers */
-        {7u, ICD_ACKNOWLEDGED, 1u}, /* Deploy Magnetometer Boom */
-        {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* SRAM Scrub Parameters */
-        {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* Unix Time Save to Flash */
-        {10u, ICD_ACKNOWLEDGED, 1u}, /* ADCS Run Mode */
-        {11u, ICD_ACKNOWLEDGED | ICD_SETTING, 3u}, /* ADCS Power Control */
-        {12u, ICD_ACKNOWLEDGED, 1u}, /* Clear Errors */
-        {13u, ICD_ACKNOWLEDGED, 3u}, /* Set Attitude Control Mode */
-        {14u, ICD_ACKNOWLEDGED, 1u}, /* Set Attitude Estimation Mode */
-        {15u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Commanded Attitude Angles */
-        {16u, ICD_ACKNOWLEDGED, 6u}, /* Set Magnetorquer Output */
-        {17u, ICD_ACKNOWLEDGED, 6u}, /* Set Wheel Speed */
-        {18u, ICD_ACKNOWLEDGED, 0u}, /* Trigger ADCS Loop */
-        {19u, ICD_ACKNOWLEDGED, 127u}, /* Trigger ADCS Loop with Simulated Sensor Data */
+        {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u},    /* Current Unix Time */
+        {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u},    /* Cache enabled state */
+        {4u, ICD_ACKNOWLEDGED, 0u},                  /* Reset Log Pointer */
+        {5u, ICD_ACKNOWLEDGED, 0u},                  /* Advance Log Pointer */
+        {6u, ICD_ACKNOWLEDGED, 0u},                  /* Reset Boot Registers */
+        {7u, ICD_ACKNOWLEDGED, 1u},                  /* Deploy Magnetometer Boom */
+        {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u},    /* SRAM Scrub Parameters */
+        {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u},    /* Unix Time Save to Flash */
+        {10u, ICD_ACKNOWLEDGED, 1u},                 /* ADCS Run Mode */
+        {11u, ICD_ACKNOWLEDGED | ICD_SETTING, 3u},   /* ADCS Power Control */
+        {12u, ICD_ACKNOWLEDGED, 1u},                 /* Clear Errors */
+        {13u, ICD_ACKNOWLEDGED, 3u},                 /* Set Attitude Control Mode */
+        {14u, ICD_ACKNOWLEDGED, 1u},                 /* Set Attitude Estimation Mode */
+        {15u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u},   /* Commanded Attitude Angles */
+        {16u, ICD_ACKNOWLEDGED, 6u},                 /* Set Magnetorquer Output */
+        {17u, ICD_ACKNOWLEDGED, 6u},                 /* Set Wheel Speed */
+        {18u, ICD_ACKNOWLEDGED, 0u},                 /* Trigger ADCS Loop */
+        {19u, ICD_ACKNOWLEDGED, 127u},               /* Trigger ADCS Loop with Simulated Sensor Data */
         {20u, ICD_ACKNOWLEDGED | ICD_SETTING, 504u}, /* ADCS Configuration */
-        {21u, ICD_ACKNOWLEDGED | ICD_SETTING, 3u}, /* Set Magnetorquer Configuration */
-        {22u, ICD_ACKNOWLEDGED | ICD_SETTING, 4u}, /* Set Wheel Configuration */
-        {23u, ICD_ACKNOWLEDGED | ICD_SETTING, 10u}, /* Set Rate Gyro Configuration */
-        {24u, ICD_ACKNOWLEDGED | ICD_SETTING, 21u}, /* CSS Configuration */
+        {21u, ICD_ACKNOWLEDGED | ICD_SETTING, 3u},   /* Set Magnetorquer Configuration */
+        {22u, ICD_ACKNOWLEDGED | ICD_SETTING, 4u},   /* Set Wheel Configuration */
+        {23u, ICD_ACKNOWLEDGED | ICD_SETTING, 10u},  /* Set Rate Gyro Configuration */
+        {24u, ICD_ACKNOWLEDGED | ICD_SETTING, 21u},  /* CSS Configuration */
         {25u, ICD_ACKNOWLEDGED | ICD_SETTING, 112u}, /* CubeSense Configuration */
-        {26u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Magnetometer Configuration */
-        {27u, ICD_ACKNOWLEDGED | ICD_SETTING, 31u}, /* Estimation Parameters */
-        {28u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Augmented-SGP4 Parameters */
-        {29u, ICD_ACKNOWLEDGED | ICD_SETTING, 96u}, /* User-coded Controller and Estimator Parameters */
+        {26u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u},  /* Magnetometer Configuration */
+        {27u, ICD_ACKNOWLEDGED | ICD_SETTING, 31u},  /* Estimation Parameters */
+        {28u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u},  /* Augmented-SGP4 Parameters */
+        {29u, ICD_ACKNOWLEDGED | ICD_SETTING, 96u},  /* User-coded Controller and Estimator Parameters */
         {30u, ICD_ACKNOWLEDGED | ICD_SETTING, 173u}, /* ADCS System Configuration */
-        {31u, ICD_ACKNOWLEDGED, 1u}, /* ASGP4 Run Mode */
-        {32u, ICD_ACKNOWLEDGED, 0u}, /* ASGP4 Trigger */
-        {33u, ICD_ACKNOWLEDGED, 1u}, /* Format SD card */
-        {34u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Inertial Pointing Reference Vector */
-        {36u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Redundant Magnetometer Configuration */
-        {37u, ICD_ACKNOWLEDGED | ICD_SETTING, 53u}, /* Set Star Tracker Configuration */
-        {38u, ICD_ACKNOWLEDGED | ICD_SETTING, 14u}, /* Set Detumbling Control Parameters */
-        {39u, ICD_ACKNOWLEDGED | ICD_SETTING, 20u}, /* Set Y-Wheel Control Parameters */
-        {40u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* Set Reaction Wheel Control Parameters */
-        {41u, ICD_ACKNOWLEDGED | ICD_SETTING, 24u}, /* Moment of Inertia Matrix */
-        {45u, ICD_ACKNOWLEDGED | ICD_SETTING, 64u}, /* SGP4 Orbit Parameters */
-        {54u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* Set Tracking Controller Gain Parameters */
-        {55u, ICD_ACKNOWLEDGED | ICD_SETTING, 12u}, /* Tracking Controller Target Reference */
-        {56u, ICD_ACKNOWLEDGED, 1u}, /* Set Mode of Magnetometer Operation */
-        {57u, ICD_ACKNOWLEDGED, 3u}, /* Convert to JPG file */
-        {63u, ICD_ACKNOWLEDGED, 0u}, /* Save Configuration */
-        {64u, ICD_ACKNOWLEDGED, 0u}, /* Save Orbit Parameters */
-        {80u, ICD_ACKNOWLEDGED, 2u}, /* Save Image */
+        {31u, ICD_ACKNOWLEDGED, 1u},                 /* ASGP4 Run Mode */
+        {32u, ICD_ACKNOWLEDGED, 0u},                 /* ASGP4 Trigger */
+        {33u, ICD_ACKNOWLEDGED, 1u},                 /* Format SD card */
+        {34u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u},   /* Inertial Pointing Reference Vector */
+        {36u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u},  /* Redundant Magnetometer Configuration */
+        {37u, ICD_ACKNOWLEDGED | ICD_SETTING, 53u},  /* Set Star Tracker Configuration */
+        {38u, ICD_ACKNOWLEDGED | ICD_SETTING, 14u},  /* Set Detumbling Control Parameters */
+        {39u, ICD_ACKNOWLEDGED | ICD_SETTING, 20u},  /* Set Y-Wheel Control Parameters */
+        {40u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u},  /* Set Reaction Wheel Control Parameters */
+        {41u, ICD_ACKNOWLEDGED | ICD_SETTING, 24u},  /* Moment of Inertia Matrix */
+        {45u, ICD_ACKNOWLEDGED | ICD_SETTING, 64u},  /* SGP4 Orbit Parameters */
+        {54u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u},  /* Set Tracking Controller Gain Parameters */
+        {55u, ICD_ACKNOWLEDGED | ICD_SETTING, 12u},  /* Tracking Controller Target Reference */
+        {56u, ICD_ACKNOWLEDGED, 1u},                 /* Set Mode of Magnetometer Operation */
+        {57u, ICD_ACKNOWLEDGED, 3u},                 /* Convert to JPG file */
+        {63u, ICD_ACKNOWLEDGED, 0u},                 /* Save Configuration */
+        {64u, ICD_ACKNOWLEDGED, 0u},                 /* Save Orbit Parameters */
+        {80u, ICD_ACKNOWLEDGED, 2u},                 /* Save Image */
         {104u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* SD Log1 Configuration */
         {105u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* SD Log2 Configuration */
         {106u, ICD_ACKNOWLEDGED | ICD_SETTING, 12u}, /* UART Log Configuration */
-        {108u, ICD_ACKNOWLEDGED, 3u}, /* Erase File */
-        {112u, ICD_ACKNOWLEDGED, 8u}, /* Load File Download Block */
-        {113u, ICD_ACKNOWLEDGED, 0u}, /* Advance File List Read Pointer */
-        {114u, ICD_ACKNOWLEDGED, 2u}, /* Initiate File Upload */
-        {115u, 0u, 22u}, /* File Upload Packet */
-        {116u, ICD_ACKNOWLEDGED, 7u}, /* Finalize Upload Block */
-        {117u, ICD_ACKNOWLEDGED, 0u}, /* Reset Upload Block */
-        {118u, ICD_ACKNOWLEDGED, 0u}, /* Reset File List Read Pointer */
-        {119u, ICD_ACKNOWLEDGED, 2u}, /* Initiate Download Burst */
+        {108u, ICD_ACKNOWLEDGED, 3u},                /* Erase File */
+        {112u, ICD_ACKNOWLEDGED, 8u},                /* Load File Download Block */
+        {113u, ICD_ACKNOWLEDGED, 0u},                /* Advance File List Read Pointer */
+        {114u, ICD_ACKNOWLEDGED, 2u},                /* Initiate File Upload */
+        {115u, 0u, 22u},                             /* File Upload Packet */
+        {116u, ICD_ACKNOWLEDGED, 7u},                /* Finalize Upload Block */
+        {117u, ICD_ACKNOWLEDGED, 0u},                /* Reset Upload Block */
+        {118u, ICD_ACKNOWLEDGED, 0u},                /* Reset File List Read Pointer */
+        {119u, ICD_ACKNOWLEDGED, 2u},                /* Initiate Download Burst */
         {120u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 1 */
         {121u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 2 */
         {122u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 3 */
@@ -201,132 +202,132 @@ static inline const icd_link_t *cubeacp_link(void)
         {127u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 8 */
     };
     static const icd_message_t telemetry[] = {
-        {128u, 0u, 8u}, /* Identification */
-        {129u, 0u, 6u}, /* Boot And Running Program Status */
-        {130u, 0u, 2u}, /* Boot Index and Status */
-        {131u, 0u, 1u}, /* Cache enabled state */
-        {132u, 0u, 6u}, /* Current ADCS State */
-        {133u, 0u, 3u}, /* JPG Conversion Progress */
-        {134u, 0u, 2u}, /* SRAM Scrub Parameters */
-        {135u, 0u, 1u}, /* CubeACP State */
-        {136u, 0u, 3u}, /* Set Magnetorquer Configuration */
-        {137u, 0u, 4u}, /* Set Wheel Configuration */
-        {138u, 0u, 10u}, /* Set Rate Gyro Configuration */
-        {139u, 0u, 21u}, /* CSS Configuration */
-        {140u, 0u, 6u}, /* Current Unix Time */
-        {141u, 0u, 6u}, /* Last Logged Event */
-        {142u, 0u, 6u}, /* SRAM Latchup counters */
-        {143u, 0u, 6u}, /* EDAC Error Counters */
-        {144u, 0u, 6u}, /* Communication Status */
-        {145u, 0u, 2u}, /* Unix Time Save to Flash */
-        {146u, 0u, 6u}, /* Estimated Attitude Angles */
-        {147u, 0u, 6u}, /* Estimated Angular Rates */
-        {148u, 0u, 6u}, /* Satellite Position (ECI) */
-        {149u, 0u, 6u}, /* Satellite Velocity (ECI) */
-        {150u, 0u, 6u}, /* Satellite Position (LLH) */
-        {151u, 0u, 6u}, /* Magnetic Field Vector */
-        {152u, 0u, 6u}, /* Coarse Sun Vector */
-        {153u, 0u, 6u}, /* Fine Sun Vector */
-        {154u, 0u, 6u}, /* Nadir Vector */
-        {155u, 0u, 6u}, /* Rate Sensor Rates */
-        {156u, 0u, 6u}, /* Wheel Speed */
-        {157u, 0u, 6u}, /* Magnetorquer Command */
-        {158u, 0u, 6u}, /* Wheel Speed Commands */
-        {159u, 0u, 6u}, /* IGRF Modelled Magnetic Field Vector */
-        {160u, 0u, 6u}, /* Modelled Sun Vector */
-        {161u, 0u, 6u}, /* Estimated Gyro Bias */
-        {162u, 0u, 6u}, /* Estimation Innovation Vector */
-        {163u, 0u, 6u}, /* Quaternion Error Vector */
-        {164u, 0u, 6u}, /* Quaternion Covariance */
-        {165u, 0u, 6u}, /* Angular Rate Covariance */
-        {166u, 0u, 6u}, /* Raw Cam2 Sensor */
-        {167u, 0u, 6u}, /* Raw Cam1 Sensor */
-        {168u, 0u, 6u}, /* Raw CSS 1 to 6 */
-        {169u, 0u, 6u}, /* Raw CSS 7 to 10 */
-        {170u, 0u, 6u}, /* Raw Magnetometer */
-        {171u, 0u, 4u}, /* CubeSense1 Current Measurements */
-        {172u, 0u, 6u}, /* CubeControl Current Measurements */
-        {173u, 0u, 6u}, /* Wheel Currents */
-        {174u, 0u, 6u}, /* ADCS Temperatures */
-        {175u, 0u, 6u}, /* Rate sensor temperatures */
-        {176u, 0u, 6u}, /* Raw GPS Status */
-        {177u, 0u, 6u}, /* Raw GPS Time */
-        {178u, 0u, 6u}, /* Raw GPS X */
-        {179u, 0u, 6u}, /* Raw GPS Y */
-        {180u, 0u, 6u}, /* Raw GPS Z */
-        {181u, 0u, 6u}, /* Star 1 Body Vector */
-        {182u, 0u, 6u}, /* Star 2 Body Vector */
-        {183u, 0u, 6u}, /* Star 3 Body Vector */
-        {184u, 0u, 6u}, /* Star 1 Orbit Vector */
-        {185u, 0u, 6u}, /* Star 2 Orbit Vector */
-        {186u, 0u, 6u}, /* Star 3 Orbit Vector */
-        {187u, 0u, 6u}, /* Star Magnitude */
-        {188u, 0u, 6u}, /* Star Performance1 */
-        {189u, 0u, 6u}, /* Star Timing */
-        {190u, 0u, 54u}, /* ADCS State */
-        {191u, 0u, 72u}, /* ADCS Measurements */
-        {192u, 0u, 12u}, /* Actuator Commands */
-        {193u, 0u, 42u}, /* Estimation Data */
-        {194u, 0u, 34u}, /* Raw Sensor Measurements */
-        {195u, 0u, 38u}, /* Power and Temperature Measurements */
-        {196u, 0u, 8u}, /* Adcs Execution Times */
-        {197u, 0u, 3u}, /* ADCS Power Control */
-        {198u, 0u, 6u}, /* ADCS Misc Current Measurements */
-        {199u, 0u, 6u}, /* Commanded Attitude Angles */
-        {200u, 0u, 12u}, /* Tracking Controller Target Reference */
-        {201u, 0u, 6u}, /* Fine Estimated Angular Rates */
-        {202u, 0u, 53u}, /* Set Star Tracker Configuration */
+        {128u, 0u, 8u},   /* Identification */
+        {129u, 0u, 6u},   /* Boot And Running Program Status */
+        {130u, 0u, 2u},   /* Boot Index and Status */
+        {131u, 0u, 1u},   /* Cache enabled state */
+        {132u, 0u, 6u},   /* Current ADCS State */
+        {133u, 0u, 3u},   /* JPG Conversion Progress */
+        {134u, 0u, 2u},   /* SRAM Scrub Parameters */
+        {135u, 0u, 1u},   /* CubeACP State */
+        {136u, 0u, 3u},   /* Set Magnetorquer Configuration */
+        {137u, 0u, 4u},   /* Set Wheel Configuration */
+        {138u, 0u, 10u},  /* Set Rate Gyro Configuration */
+        {139u, 0u, 21u},  /* CSS Configuration */
+        {140u, 0u, 6u},   /* Current Unix Time */
+        {141u, 0u, 6u},   /* Last Logged Event */
+        {142u, 0u, 6u},   /* SRAM Latchup counters */
+        {143u, 0u, 6u},   /* EDAC Error Counters */
+        {144u, 0u, 6u},   /* Communication Status */
+        {145u, 0u, 2u},   /* Unix Time Save to Flash */
+        {146u, 0u, 6u},   /* Estimated Attitude Angles */
+        {147u, 0u, 6u},   /* Estimated Angular Rates */
+        {148u, 0u, 6u},   /* Satellite Position (ECI) */
+        {149u, 0u, 6u},   /* Satellite Velocity (ECI) */
+        {150u, 0u, 6u},   /* Satellite Position (LLH) */
+        {151u, 0u, 6u},   /* Magnetic Field Vector */
+        {152u, 0u, 6u},   /* Coarse Sun Vector */
+        {153u, 0u, 6u},   /* Fine Sun Vector */
+        {154u, 0u, 6u},   /* Nadir Vector */
+        {155u, 0u, 6u},   /* Rate Sensor Rates */
+        {156u, 0u, 6u},   /* Wheel Speed */
+        {157u, 0u, 6u},   /* Magnetorquer Command */
+        {158u, 0u, 6u},   /* Wheel Speed Commands */
+        {159u, 0u, 6u},   /* IGRF Modelled Magnetic Field Vector */
+        {160u, 0u, 6u},   /* Modelled Sun Vector */
+        {161u, 0u, 6u},   /* Estimated Gyro Bias */
+        {162u, 0u, 6u},   /* Estimation Innovation Vector */
+        {163u, 0u, 6u},   /* Quaternion Error Vector */
+        {164u, 0u, 6u},   /* Quaternion Covariance */
+        {165u, 0u, 6u},   /* Angular Rate Covariance */
+        {166u, 0u, 6u},   /* Raw Cam2 Sensor */
+        {167u, 0u, 6u},   /* Raw Cam1 Sensor */
+        {168u, 0u, 6u},   /* Raw CSS 1 to 6 */
+        {169u, 0u, 6u},   /* Raw CSS 7 to 10 */
+        {170u, 0u, 6u},   /* Raw Magnetometer */
+        {171u, 0u, 4u},   /* CubeSense1 Current Measurements */
+        {172u, 0u, 6u},   /* CubeControl Current Measurements */
+        {173u, 0u, 6u},   /* Wheel Currents */
+        {174u, 0u, 6u},   /* ADCS Temperatures */
+        {175u, 0u, 6u},   /* Rate sensor temperatures */
+        {176u, 0u, 6u},   /* Raw GPS Status */
+        {177u, 0u, 6u},   /* Raw GPS Time */
+        {178u, 0u, 6u},   /* Raw GPS X */
+        {179u, 0u, 6u},   /* Raw GPS Y */
+        {180u, 0u, 6u},   /* Raw GPS Z */
+        {181u, 0u, 6u},   /* Star 1 Body Vector */
+        {182u, 0u, 6u},   /* Star 2 Body Vector */
+        {183u, 0u, 6u},   /* Star 3 Body Vector */
+        {184u, 0u, 6u},   /* Star 1 Orbit Vector */
+        {185u, 0u, 6u},   /* Star 2 Orbit Vector */
+        {186u, 0u, 6u},   /* Star 3 Orbit Vector */
+        {187u, 0u, 6u},   /* Star Magnitude */
+        {188u, 0u, 6u},   /* Star Performance1 */
+        {189u, 0u, 6u},   /* Star Timing */
+        {190u, 0u, 54u},  /* ADCS State */
+        {191u, 0u, 72u},  /* ADCS Measurements */
+        {192u, 0u, 12u},  /* Actuator Commands */
+        {193u, 0u, 42u},  /* Estimation Data */
+        {194u, 0u, 34u},  /* Raw Sensor Measurements */
+        {195u, 0u, 38u},  /* Power and Temperature Measurements */
+        {196u, 0u, 8u},   /* Adcs Execution Times */
+        {197u, 0u, 3u},   /* ADCS Power Control */
+        {198u, 0u, 6u},   /* ADCS Misc Current Measurements */
+        {199u, 0u, 6u},   /* Commanded Attitude Angles */
+        {200u, 0u, 12u},  /* Tracking Controller Target Reference */
+        {201u, 0u, 6u},   /* Fine Estimated Angular Rates */
+        {202u, 0u, 53u},  /* Set Star Tracker Configuration */
         {203u, 0u, 112u}, /* CubeSense Configuration */
-        {204u, 0u, 30u}, /* Magnetometer Configuration */
-        {205u, 0u, 30u}, /* Redundant Magnetometer Configuration */
+        {204u, 0u, 30u},  /* Magnetometer Configuration */
+        {205u, 0u, 30u},  /* Redundant Magnetometer Configuration */
         {206u, 0u, 504u}, /* ADCS Configuration */
-        {207u, 0u, 64u}, /* SGP4 Orbit Parameters */
-        {208u, 0u, 14u}, /* Set Detumbling Control Parameters */
-        {209u, 0u, 20u}, /* Set Y-Wheel Control Parameters */
-        {210u, 0u, 36u}, /* Raw GPS Measurements */
-        {211u, 0u, 54u}, /* Raw Star Tracker */
-        {212u, 0u, 6u}, /* Star 1 Raw Data */
-        {213u, 0u, 6u}, /* Star 2 Raw Data */
-        {214u, 0u, 6u}, /* Star 3 Raw Data */
-        {215u, 0u, 6u}, /* Secondary Magnetometer Raw Measurements */
-        {216u, 0u, 6u}, /* Raw Rate Sensor */
-        {217u, 0u, 13u}, /* Set Reaction Wheel Control Parameters */
-        {218u, 0u, 6u}, /* Estimated Quaternion */
-        {219u, 0u, 6u}, /* ECEF Position */
-        {220u, 0u, 3u}, /* ACP Execution State */
-        {221u, 0u, 13u}, /* Set Tracking Controller Gain Parameters */
-        {222u, 0u, 24u}, /* Moment of Inertia Matrix */
-        {223u, 0u, 31u}, /* Estimation Parameters */
-        {224u, 0u, 6u}, /* Current ADCS State 2 */
+        {207u, 0u, 64u},  /* SGP4 Orbit Parameters */
+        {208u, 0u, 14u},  /* Set Detumbling Control Parameters */
+        {209u, 0u, 20u},  /* Set Y-Wheel Control Parameters */
+        {210u, 0u, 36u},  /* Raw GPS Measurements */
+        {211u, 0u, 54u},  /* Raw Star Tracker */
+        {212u, 0u, 6u},   /* Star 1 Raw Data */
+        {213u, 0u, 6u},   /* Star 2 Raw Data */
+        {214u, 0u, 6u},   /* Star 3 Raw Data */
+        {215u, 0u, 6u},   /* Secondary Magnetometer Raw Measurements */
+        {216u, 0u, 6u},   /* Raw Rate Sensor */
+        {217u, 0u, 13u},  /* Set Reaction Wheel Control Parameters */
+        {218u, 0u, 6u},   /* Estimated Quaternion */
+        {219u, 0u, 6u},   /* ECEF Position */
+        {220u, 0u, 3u},   /* ACP Execution State */
+        {221u, 0u, 13u},  /* Set Tracking Controller Gain Parameters */
+        {222u, 0u, 24u},  /* Moment of Inertia Matrix */
+        {223u, 0u, 31u},  /* Estimation Parameters */
+        {224u, 0u, 6u},   /* Current ADCS State 2 */
         {225u, 0u, 173u}, /* ADCS System Configuration */
-        {226u, 0u, 96u}, /* User-coded Controller and Estimator Parameters */
-        {227u, 0u, 30u}, /* Augmented-SGP4 Parameters */
-        {228u, 0u, 33u}, /* ASGP4 TLEs */
-        {229u, 0u, 6u}, /* CubeStar Estimated Rates */
-        {230u, 0u, 6u}, /* CubeStar Estimated Quaternion */
-        {231u, 0u, 6u}, /* Star Performance2 */
-        {232u, 0u, 4u}, /* CubeSense2 Current Measurements */
-        {233u, 0u, 2u}, /* Status of Image Capture and Save Operation */
-        {234u, 0u, 1u}, /* SD card format/erase progress */
-        {235u, 0u, 13u}, /* SD Log1 Configuration */
-        {236u, 0u, 13u}, /* SD Log2 Configuration */
-        {237u, 0u, 12u}, /* UART Log Configuration */
-        {238u, 0u, 6u}, /* Inertial Pointing Reference Vector */
-        {240u, 0u, 4u}, /* Telecommand Acknowledge */
-        {241u, 0u, 22u}, /* File Download Buffer with File Contents */
-        {242u, 0u, 5u}, /* Download Block Ready */
-        {243u, 0u, 12u}, /* File Information */
-        {244u, 0u, 1u}, /* Initialize Upload Complete */
-        {245u, 0u, 1u}, /* Upload Block Complete */
-        {246u, 0u, 2u}, /* Block Checksum */
-        {247u, 0u, 16u}, /* Hole Map 1 */
-        {248u, 0u, 16u}, /* Hole Map 2 */
-        {249u, 0u, 16u}, /* Hole Map 3 */
-        {250u, 0u, 16u}, /* Hole Map 4 */
-        {251u, 0u, 16u}, /* Hole Map 5 */
-        {252u, 0u, 16u}, /* Hole Map 6 */
-        {253u, 0u, 16u}, /* Hole Map 7 */
-        {254u, 0u, 16u}, /* Hole Map 8 */
+        {226u, 0u, 96u},  /* User-coded Controller and Estimator Parameters */
+        {227u, 0u, 30u},  /* Augmented-SGP4 Parameters */
+        {228u, 0u, 33u},  /* ASGP4 TLEs */
+        {229u, 0u, 6u},   /* CubeStar Estimated Rates */
+        {230u, 0u, 6u},   /* CubeStar Estimated Quaternion */
+        {231u, 0u, 6u},   /* Star Performance2 */
+        {232u, 0u, 4u},   /* CubeSense2 Current Measurements */
+        {233u, 0u, 2u},   /* Status of Image Capture and Save Operation */
+        {234u, 0u, 1u},   /* SD card format/erase progress */
+        {235u, 0u, 13u},  /* SD Log1 Configuration */
+        {236u, 0u, 13u},  /* SD Log2 Configuration */
+        {237u, 0u, 12u},  /* UART Log Configuration */
+        {238u, 0u, 6u},   /* Inertial Pointing Reference Vector */
+        {240u, 0u, 4u},   /* Telecommand Acknowledge */
+        {241u, 0u, 22u},  /* File Download Buffer with File Contents */
+        {242u, 0u, 5u},   /* Download Block Ready */
+        {243u, 0u, 12u},  /* File Information */
+        {244u, 0u, 1u},   /* Initialize Upload Complete */
+        {245u, 0u, 1u},   /* Upload Block Complete */
+        {246u, 0u, 2u},   /* Block Checksum */
+        {247u, 0u, 16u},  /* Hole Map 1 */
+        {248u, 0u, 16u},  /* Hole Map 2 */
+        {249u, 0u, 16u},  /* Hole Map 3 */
+        {250u, 0u, 16u},  /* Hole Map 4 */
+        {251u, 0u, 16u},  /* Hole Map 5 */
+        {252u, 0u, 16u},  /* Hole Map 6 */
+        {253u, 0u, 16u},  /* Hole Map 7 */
+        {254u, 0u, 16u},  /* Hole Map 8 */
     };
     static const icd_error_code_t errors[] = {
         {ICD_REASON_NONE, 0u},
@@ -344,7 +345,7 @@ static inline const icd_link_t *cubeacp_link(void)
         0x7fu, /* start */
         0xffu, /* end */
         0x1fu, /* the escape byte as data */
-        true, /* the id is escaped */
+        true,  /* the id is escaped */
         false, /* an escape byte before any other byte is skipped */
     };
     /**
@@ -357,9 +358,9 @@ static inline const icd_link_t *cubeacp_link(void)
         1u, /* error */
     };
     static const icd_place_t polled_places[] = {
-        {ICD_ROLE_ID, 0u, 8u}, /* Last TC ID */
-        {ICD_ROLE_PROCESSED, 8u, 1u}, /* Processed flag */
-        {ICD_ROLE_ERROR, 16u, 8u}, /* TC error status */
+        {ICD_ROLE_ID, 0u, 8u},         /* Last TC ID */
+        {ICD_ROLE_PROCESSED, 8u, 1u},  /* Processed flag */
+        {ICD_ROLE_ERROR, 16u, 8u},     /* TC error status */
         {ICD_ROLE_PARAMETER, 24u, 8u}, /* TC parameter error index */
     };
     static const icd_step_t polled = {
@@ -370,19 +371,19 @@ static inline const icd_link_t *cubeacp_link(void)
      * takes the length of the message from its id. Assumed packet_timeout_ms: No time-out between packets is given.
      */
     static const icd_can_form_t can = {
-        {5u, 24u}, /* type: bits, shift */
-        {8u, 16u}, /* channel: bits, shift */
-        {8u, 8u}, /* source: bits, shift */
-        {8u, 0u}, /* destination: bits, shift */
-        1u, /* address of the node */
-        8u, /* bytes of a packet */
-        {1, 2, 3, 4, 5, 6}, /* types */
+        {5u, 24u},              /* type: bits, shift */
+        {8u, 16u},              /* channel: bits, shift */
+        {8u, 8u},               /* source: bits, shift */
+        {8u, 0u},               /* destination: bits, shift */
+        1u,                     /* address of the node */
+        8u,                     /* bytes of a packet */
+        {1, 2, 3, 4, 5, 6},     /* types */
         {7, -1, -1, -1, 8, -1}, /* types of messages of several packets */
-        true, 7u, /* bytes of each of their packets */
-        7u, 0u, /* the count of packets left, and in the last one */
-        0x00u, /* fill */
-        1792u, /* most bytes */
-        1000u, /* time-out */
+        true, 7u,               /* bytes of each of their packets */
+        7u, 0u,                 /* the count of packets left, and in the last one */
+        0x00u,                  /* fill */
+        1792u,                  /* most bytes */
+        1000u,                  /* time-out */
     };
     static const uint16_t crc8_table[] = {
         0x00u, 0x12u, 0x24u, 0x36u, 0x48u, 0x5au, 0x6cu, 0x7eu, 0x90u, 0x82u, 0xb4u, 0xa6u, 0xd8u, 0xcau, 0xfcu, 0xeeu,
@@ -409,9 +410,9 @@ static inline const icd_link_t *cubeacp_link(void)
      */
     static const icd_checksum_form_t checksum = {
         {8u, true, true, true, 0x12u, 0x0u, 0x0u, 0xffu, crc8_table}, /* CRC */
-        false, /* covers the id */
-        3u, 2u, /* buses of telecommands and of telemetry */
-        1u, /* bytes */
+        false,                                                        /* covers the id */
+        3u, 2u,                                                       /* buses of telecommands and of telemetry */
+        1u,                                                           /* bytes */
     };
     static const uint16_t crc16_table[] = {
         0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50a5u, 0x60c6u, 0x70e7u, 0x8108u, 0x9129u, 0xa14au, 0xb16bu,
@@ -443,11 +444,11 @@ static inline const icd_link_t *cubeacp_link(void)
     static const icd_log_bit_t log_bits[] = {
         {144, 6u}, /* bit 0: Communication Status */
         {143, 6u}, /* bit 1: EDAC Error Counters */
-        {-1, 6u}, /* bit 2 */
+        {-1, 6u},  /* bit 2 */
         {141, 6u}, /* bit 3: Last Logged Event */
         {142, 6u}, /* bit 4: SRAM Latchup counters */
-        {-1, 6u}, /* bit 5 */
-        {-1, 6u}, /* bit 6 */
+        {-1, 6u},  /* bit 5 */
+        {-1, 6u},  /* bit 6 */
         {157, 6u}, /* bit 7: Magnetorquer Command */
         {158, 6u}, /* bit 8: Wheel Speed Commands */
         {151, 6u}, /* bit 9: Magnetic Field Vector */
@@ -507,20 +508,20 @@ static inline const icd_link_t *cubeacp_link(void)
         {230, 6u}, /* bit 63: CubeStar Estimated Quaternion */
         {231, 6u}, /* bit 64: Star Performance2 */
         {232, 4u}, /* bit 65: CubeSense2 Current Measurements */
-        {-1, 6u}, /* bit 66 */
-        {-1, 6u}, /* bit 67 */
-        {-1, 6u}, /* bit 68 */
-        {-1, 6u}, /* bit 69 */
-        {-1, 6u}, /* bit 70 */
-        {-1, 6u}, /* bit 71 */
-        {-1, 6u}, /* bit 72 */
-        {-1, 6u}, /* bit 73 */
-        {-1, 6u}, /* bit 74 */
-        {-1, 6u}, /* bit 75 */
-        {-1, 6u}, /* bit 76 */
-        {-1, 6u}, /* bit 77 */
-        {-1, 6u}, /* bit 78 */
-        {-1, 6u}, /* bit 79 */
+        {-1, 6u},  /* bit 66 */
+        {-1, 6u},  /* bit 67 */
+        {-1, 6u},  /* bit 68 */
+        {-1, 6u},  /* bit 69 */
+        {-1, 6u},  /* bit 70 */
+        {-1, 6u},  /* bit 71 */
+        {-1, 6u},  /* bit 72 */
+        {-1, 6u},  /* bit 73 */
+        {-1, 6u},  /* bit 74 */
+        {-1, 6u},  /* bit 75 */
+        {-1, 6u},  /* bit 76 */
+        {-1, 6u},  /* bit 77 */
+        {-1, 6u},  /* bit 78 */
+        {-1, 6u},  /* bit 79 */
     };
     /**
      * Assumed frame_order: The order of the frames in an entry is not said. They follow the bits of the mask, bit 0 of
@@ -530,41 +531,41 @@ static inline const icd_link_t *cubeacp_link(void)
      * sizes count every bit that is set.
      */
     static const icd_log_mask_form_t log_mask = {
-        10u, /* bytes */
+        10u,   /* bytes */
         false, /* bit 0 of a byte is the most significant one */
         0x00u, /* fill */
-        6u, /* bytes of a slot */
+        6u,    /* bytes of a slot */
         log_bits
     };
     static const icd_log_file_form_t log_file = {
-        0u, 10u, /* the mask, and the bytes of the header */
+        0u, 10u,  /* the mask, and the bytes of the header */
         {0u, 4u}, /* seconds */
         {4u, 2u}, /* milliseconds */
-        6u, /* frames */
+        6u,       /* frames */
     };
     /**
      * Assumed framed: Start, end and escapes of these messages are not described. They are taken to be those of every
      * other message.
      */
     static const icd_log_message_form_t log_message = {
-        255u, /* id */
+        255u,    /* id */
         1u, 11u, /* mask and frames */
     };
     static const icd_time_form_t packed_time = {
         {25u, 7u, 1u, 1980u}, /* year */
-        {21u, 4u, 1u, 0u}, /* month */
-        {16u, 5u, 1u, 0u}, /* day */
-        {11u, 5u, 1u, 0u}, /* hour */
-        {5u, 6u, 1u, 0u}, /* minute */
-        {0u, 5u, 2u, 0u}, /* second */
+        {21u, 4u, 1u, 0u},    /* month */
+        {16u, 5u, 1u, 0u},    /* day */
+        {11u, 5u, 1u, 0u},    /* hour */
+        {5u, 6u, 1u, 0u},     /* minute */
+        {0u, 5u, 2u, 0u},     /* second */
     };
     static const icd_index_form_t index_entry = {
-        37u, /* bytes of an entry */
-        {0u, 1u}, /* type */
-        {1u, 1u}, /* counter */
-        {2u, 2u}, /* checksum */
-        {4u, 4u}, /* size */
-        {8u, 4u}, /* time */
+        37u,        /* bytes of an entry */
+        {0u, 1u},   /* type */
+        {1u, 1u},   /* counter */
+        {2u, 2u},   /* checksum */
+        {4u, 4u},   /* size */
+        {8u, 4u},   /* time */
         {12u, 25u}, /* meta */
     };
     static const icd_hole_map_message_t hole_maps[] = {
@@ -583,9 +584,9 @@ static inline const icd_link_t *cubeacp_link(void)
      */
     static const icd_hole_map_form_t hole_map = {
         128u, 16u, /* bytes, and in each message */
-        false, /* bit 0 of a byte is the most significant one */
-        true, /* received */
-        true, /* beyond the end */
+        false,     /* bit 0 of a byte is the most significant one */
+        true,      /* received */
+        true,      /* beyond the end */
         8u, hole_maps,
     };
     /**
@@ -593,18 +594,18 @@ static inline const icd_link_t *cubeacp_link(void)
      * fill: The value is not defined. Erased flash memory reads 0xFF.
      */
     static const icd_files_form_t files = {
-        20u, 2u, /* bytes of a packet, and of its number */
-        0u, /* number of the first */
-        0xffu, /* fill */
-        20480u, /* bytes of a block */
+        20u, 2u,         /* bytes of a packet, and of its number */
+        0u,              /* number of the first */
+        0xffu,           /* fill */
+        20480u,          /* bytes of a block */
         {119, 241, 241}, /* ids of download packets */
     };
     static const icd_place_t list_information_places[] = {
-        {ICD_ROLE_BUSY, 4u, 1u}, /* Busy Updating */
-        {ICD_ROLE_TYPE, 0u, 4u}, /* File Type */
-        {ICD_ROLE_COUNTER, 8u, 8u}, /* File Ctr */
-        {ICD_ROLE_SIZE, 16u, 32u}, /* File Size */
-        {ICD_ROLE_TIME, 48u, 32u}, /* File Date and Time */
+        {ICD_ROLE_BUSY, 4u, 1u},       /* Busy Updating */
+        {ICD_ROLE_TYPE, 0u, 4u},       /* File Type */
+        {ICD_ROLE_COUNTER, 8u, 8u},    /* File Ctr */
+        {ICD_ROLE_SIZE, 16u, 32u},     /* File Size */
+        {ICD_ROLE_TIME, 48u, 32u},     /* File Date and Time */
         {ICD_ROLE_CHECKSUM, 80u, 16u}, /* File CRC16 Checksum */
     };
     /**
@@ -612,26 +613,26 @@ static inline const icd_link_t *cubeacp_link(void)
      * has to be computed meanwhile.
      */
     static const icd_list_form_t list = {
-        {118, -1, 0u, 0u, NULL, NULL}, /* Reset File List Read Pointer */
-        {113, -1, 0u, 0u, NULL, NULL}, /* Advance File List Read Pointer */
+        {118, -1, 0u, 0u, NULL, NULL},                     /* Reset File List Read Pointer */
+        {113, -1, 0u, 0u, NULL, NULL},                     /* Advance File List Read Pointer */
         {-1, 243, 12u, 6u, list_information_places, NULL}, /* File Information */
-        50u, /* poll_interval_ms */
-        10000u, /* timeout_ms */
+        50u,                                               /* poll_interval_ms */
+        10000u,                                            /* timeout_ms */
     };
     static const icd_place_t download_load_places[] = {
-        {ICD_ROLE_TYPE, 0u, 8u}, /* File Type */
-        {ICD_ROLE_COUNTER, 8u, 8u}, /* Counter */
+        {ICD_ROLE_TYPE, 0u, 8u},     /* File Type */
+        {ICD_ROLE_COUNTER, 8u, 8u},  /* Counter */
         {ICD_ROLE_OFFSET, 16u, 32u}, /* Offset */
         {ICD_ROLE_LENGTH, 48u, 16u}, /* BlockLength */
     };
     static const icd_place_t download_ready_places[] = {
-        {ICD_ROLE_READY, 0u, 1u}, /* Ready */
-        {ICD_ROLE_ERROR, 1u, 1u}, /* ParameterError */
+        {ICD_ROLE_READY, 0u, 1u},     /* Ready */
+        {ICD_ROLE_ERROR, 1u, 1u},     /* ParameterError */
         {ICD_ROLE_CHECKSUM, 8u, 16u}, /* Block CRC16 Checksum */
-        {ICD_ROLE_LENGTH, 24u, 16u}, /* Block Length */
+        {ICD_ROLE_LENGTH, 24u, 16u},  /* Block Length */
     };
     static const icd_place_t download_burst_places[] = {
-        {ICD_ROLE_LENGTH, 0u, 8u}, /* Message Length */
+        {ICD_ROLE_LENGTH, 0u, 8u},          /* Message Length */
         {ICD_ROLE_IGNORE_HOLE_MAP, 8u, 1u}, /* Ignore Hole Map */
     };
     /**
@@ -643,25 +644,25 @@ static inline const icd_link_t *cubeacp_link(void)
      * Download over CAN is not described. The packets are requested one by one as on I2C.
      */
     static const icd_download_form_t download = {
-        {112, -1, 8u, 4u, download_load_places, NULL}, /* Load File Download Block */
+        {112, -1, 8u, 4u, download_load_places, NULL},  /* Load File Download Block */
         {-1, 242, 5u, 4u, download_ready_places, NULL}, /* Download Block Ready */
         {119, -1, 2u, 2u, download_burst_places, NULL}, /* Initiate Download Burst */
-        20u, /* message_length */
-        50u, /* poll_interval_ms */
-        10000u, /* ready_timeout_ms */
-        500u, /* silence_ms */
-        32u, /* rounds */
-        false, /* the checksum covers the fill */
+        20u,                                            /* message_length */
+        50u,                                            /* poll_interval_ms */
+        10000u,                                         /* ready_timeout_ms */
+        500u,                                           /* silence_ms */
+        32u,                                            /* rounds */
+        false,                                          /* the checksum covers the fill */
     };
     static const icd_place_t upload_initiate_places[] = {
         {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
-        {ICD_ROLE_BLOCK_SIZE, 8u, 8u}, /* BlockSize */
+        {ICD_ROLE_BLOCK_SIZE, 8u, 8u},  /* BlockSize */
     };
     static const icd_place_t upload_initiated_places[] = {
         {ICD_ROLE_BUSY, 0u, 1u}, /* Busy */
     };
     static const icd_place_t upload_packet_places[] = {
-        {ICD_ROLE_NUMBER, 0u, 16u}, /* Packet Number */
+        {ICD_ROLE_NUMBER, 0u, 16u},  /* Packet Number */
         {ICD_ROLE_BYTES, 16u, 160u}, /* File Bytes */
     };
     static const icd_place_t upload_checksum_places[] = {
@@ -669,11 +670,11 @@ static inline const icd_link_t *cubeacp_link(void)
     };
     static const icd_place_t upload_finalize_places[] = {
         {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
-        {ICD_ROLE_OFFSET, 8u, 32u}, /* Offset */
-        {ICD_ROLE_LENGTH, 40u, 16u}, /* Block Length */
+        {ICD_ROLE_OFFSET, 8u, 32u},     /* Offset */
+        {ICD_ROLE_LENGTH, 40u, 16u},    /* Block Length */
     };
     static const icd_place_t upload_finalized_places[] = {
-        {ICD_ROLE_BUSY, 0u, 1u}, /* Busy */
+        {ICD_ROLE_BUSY, 0u, 1u},  /* Busy */
         {ICD_ROLE_ERROR, 1u, 1u}, /* Error */
     };
     /**
@@ -683,34 +684,34 @@ static inline const icd_link_t *cubeacp_link(void)
      * commits the block. Assumed finalize_timeout_ms: No time is given.
      */
     static const icd_upload_form_t upload = {
-        {114, -1, 2u, 2u, upload_initiate_places, NULL}, /* Initiate File Upload */
+        {114, -1, 2u, 2u, upload_initiate_places, NULL},  /* Initiate File Upload */
         {-1, 244, 1u, 1u, upload_initiated_places, NULL}, /* Initialize Upload Complete */
-        {117, -1, 0u, 0u, NULL, NULL}, /* Reset Upload Block */
-        {115, -1, 22u, 2u, upload_packet_places, NULL}, /* File Upload Packet */
-        {-1, 246, 2u, 1u, upload_checksum_places, NULL}, /* Block Checksum */
-        {116, -1, 7u, 3u, upload_finalize_places, NULL}, /* Finalize Upload Block */
+        {117, -1, 0u, 0u, NULL, NULL},                    /* Reset Upload Block */
+        {115, -1, 22u, 2u, upload_packet_places, NULL},   /* File Upload Packet */
+        {-1, 246, 2u, 1u, upload_checksum_places, NULL},  /* Block Checksum */
+        {116, -1, 7u, 3u, upload_finalize_places, NULL},  /* Finalize Upload Block */
         {-1, 245, 1u, 2u, upload_finalized_places, NULL}, /* Upload Block Complete */
-        0u, /* block_size */
-        50u, /* poll_interval_ms */
-        8000u, /* erase_timeout_ms */
-        5000u, /* finalize_timeout_ms */
-        32u, /* rounds */
-        true, /* the checksum covers the fill */
+        0u,                                               /* block_size */
+        50u,                                              /* poll_interval_ms */
+        8000u,                                            /* erase_timeout_ms */
+        5000u,                                            /* finalize_timeout_ms */
+        32u,                                              /* rounds */
+        true,                                             /* the checksum covers the fill */
     };
     static const icd_place_t erase_request_places[] = {
-        {ICD_ROLE_TYPE, 0u, 8u}, /* File Type */
+        {ICD_ROLE_TYPE, 0u, 8u},    /* File Type */
         {ICD_ROLE_COUNTER, 8u, 8u}, /* File Counter */
-        {ICD_ROLE_ALL, 16u, 1u}, /* Erase All */
+        {ICD_ROLE_ALL, 16u, 1u},    /* Erase All */
     };
     static const icd_place_t erase_progress_places[] = {
         {ICD_ROLE_BUSY, 1u, 1u}, /* Erase All Busy */
     };
     /** Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. */
     static const icd_erase_form_t erase = {
-        {108, -1, 3u, 3u, erase_request_places, NULL}, /* Erase File */
+        {108, -1, 3u, 3u, erase_request_places, NULL},  /* Erase File */
         {-1, 234, 1u, 1u, erase_progress_places, NULL}, /* SD card format/erase progress */
-        200u, /* poll_interval_ms */
-        60000u, /* timeout_ms */
+        200u,                                           /* poll_interval_ms */
+        60000u,                                         /* timeout_ms */
     };
     static const uint8_t format_request_fresh[] = {
         0x5au,
@@ -720,13 +721,13 @@ static inline const icd_link_t *cubeacp_link(void)
     };
     /** Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. */
     static const icd_erase_form_t format = {
-        {33, -1, 1u, 0u, NULL, format_request_fresh}, /* Format SD card */
+        {33, -1, 1u, 0u, NULL, format_request_fresh},    /* Format SD card */
         {-1, 234, 1u, 1u, format_progress_places, NULL}, /* SD card format/erase progress */
-        200u, /* poll_interval_ms */
-        60000u, /* timeout_ms */
+        200u,                                            /* poll_interval_ms */
+        60000u,                                          /* timeout_ms */
     };
     static const icd_place_t identification_places[] = {
-        {ICD_ROLE_NODE_TYPE, 0u, 8u}, /* Node type */
+        {ICD_ROLE_NODE_TYPE, 0u, 8u},         /* Node type */
         {ICD_ROLE_INTERFACE_VERSION, 8u, 8u}, /* Interface version */
     };
     static const icd_step_t identification = {
@@ -738,22 +739,22 @@ static inline const icd_link_t *cubeacp_link(void)
      * given.
      */
     static const icd_link_t link = {
-        true, /* byte order: little */
-        false, /* bit 0 is the most significant one */
-        128u, 255u, /* ids of telemetry */
+        true,             /* byte order: little */
+        false,            /* bit 0 is the most significant one */
+        128u, 255u,       /* ids of telemetry */
         telecommands,
         telemetry,
-        68u, 126u, /* how many */
+        68u, 126u,        /* how many */
         506u, 506u, 506u, /* longest telecommand, reply, any */
-        504u, /* longest without id and checksum */
-        10, /* node type */
-        7, /* interface version */
+        504u,             /* longest without id and checksum */
+        10,               /* node type */
+        7,                /* interface version */
         {1000u, 3u, 20u, 5000u},
         errors,
-        5u, 0u, /* how many; no error */
+        5u, 0u,           /* how many; no error */
         &framing,
         &acknowledge,
-        87, /* I2C address */
+        87,               /* I2C address */
         &polled,
         &can,
         &checksum,
@@ -765,13 +766,14 @@ static inline const icd_link_t *cubeacp_link(void)
         &index_entry,
         &hole_map,
         &files,
-        &list, /* list */
-        &download, /* download */
-        &upload, /* upload */
-        &erase, /* erase */
-        &format, /* format */
-        &identification, /* identification */
+        &list,            /* list */
+        &download,        /* download */
+        &upload,          /* upload */
+        &erase,           /* erase */
+        &format,          /* format */
+        &identification,  /* identification */
     };
+    /* clang-format on */
     return &link;
 }
 

@@ -60,9 +60,7 @@ def aliases(plans: Iterable[Plan]) -> list[Alias]:
     found = []
     for plan in plans:
         if plan.message.telemetry_id is not None:
-            upper = plan.stem.upper()
-            end = "GET_ID" if plan.message.kind == CONFIGURATION else "ID"
-            found.append(Alias(f"{upper}_TELEMETRY", f"{upper}_{end}"))
+            found.append(Alias(f"{plan.stem.upper()}_TELEMETRY", f"{plan.message.telemetry_id}u"))
     return found
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from icdgen import codec
-from icdgen.backends.c.link.rows import lines, or_none
+from icdgen.backends.c.link.rows import aligned, lines, or_none
 from icdgen.backends.c.statement import STEP
 from icdgen.backends.c.text import comment, plain
 from icdgen.protocol.facts import CAN, I2C, UART, Facts, Step
@@ -38,7 +38,7 @@ class Tables:
     def add(self, name: str, type: str, rows: Sequence[str], about: str = "") -> str:
         """Declares a table; the expression that leads to it."""
         array = name.endswith("]")
-        self.tables.append(Table(comment([about], STEP) if about else "", type, name, list(rows)))
+        self.tables.append(Table(comment([about], STEP) if about else "", type, name, aligned(rows)))
         return name.removesuffix("[]") if array else f"&{name}"
 
     def section_notes(self, section: str) -> str:

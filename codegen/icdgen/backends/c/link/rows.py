@@ -63,3 +63,13 @@ def lines(items: Iterable[str]) -> list[str]:
             line = ""
         line += f" {item}" if line else item
     return [*lines, line] if line else lines
+
+
+def aligned(rows: Iterable[str]) -> list[str]:
+    """The rows with the comments at their ends below each other, as far as they fit."""
+    found = [row.partition(" /* ") for row in rows]
+    short = [code for code, _, text in found if text and "\n" not in code + text]
+    widest = max((len(code) for code in short), default=0)
+    if any(text and "\n" not in text and widest + len(text) + 12 > WIDTH for _, _, text in found):
+        return list(rows)
+    return [f"{code:{widest}} /* {text}" if code in short else code + sep + text for code, sep, text in found]
