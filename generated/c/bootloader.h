@@ -19,6 +19,7 @@
 #include "bootloader/bootloader_state.h"
 #include "bootloader/program_information.h"
 #include "bootloader/copy_to_internal_flash_progress.h"
+#include "bootloader/link.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
 #define BOOTLOADER_ICD_DIGEST "6bfd9237ec5d540b"

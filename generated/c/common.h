@@ -51,6 +51,7 @@
 #include "common/hole_map_6.h"
 #include "common/hole_map_7.h"
 #include "common/hole_map_8.h"
+#include "common/link.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
 #define COMMON_ICD_DIGEST "92f6b159c3e7d6aa"

@@ -126,6 +126,7 @@
 #include "cubeacp/sd_log2_configuration.h"
 #include "cubeacp/uart_log_configuration.h"
 #include "cubeacp/inertial_pointing_reference_vector.h"
+#include "cubeacp/link.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
 #define CUBEACP_ICD_DIGEST "4fee628809d6c74e"

@@ -24,7 +24,13 @@ typedef enum {
     /** A value does not fit its field, or is not finite. */
     ICD_ERROR_RANGE = 2,
     /** The node has no message of that id. */
-    ICD_ERROR_UNKNOWN_ID = 3
+    ICD_ERROR_UNKNOWN_ID = 3,
+    /** On the wire: the ICD does not describe this part of the protocol. */
+    ICD_ERROR_UNSUPPORTED = 4,
+    /** On the wire: the checksum is not that of the data. */
+    ICD_ERROR_CHECKSUM = 5,
+    /** On the wire: a request is going on, another one would overrun the node. */
+    ICD_ERROR_BUSY = 6
 } icd_status_t;
 
 #if defined(__GNUC__) || defined(__clang__) || defined(_MSC_VER)

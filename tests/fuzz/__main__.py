@@ -1,4 +1,4 @@
-"""``python -m tests.fuzz c|rust|python [--seconds N] [ICD ...]``: builds a harness and runs it; status 0 if nothing is found."""
+"""``python -m tests.fuzz c|c-wire|rust|python [--seconds N] [ICD ...]``: builds a harness and runs it; 0 if nothing is found."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from icdgen.icd.model import Icd
-from icdgen.vectors import make
+from icdgen.vectors import make, protocol
 from tests.conformance.build import BuildError, cache_folder, execute, generated
 from tests.conformance.icds import icd_of
 from tests.conformance.languages import Language
@@ -66,11 +66,39 @@ def seeds(icd: Icd) -> Iterator[bytes]:
                         yield bytes((index, flag | (4 if id > 255 else 0), id & 0xFF)) + row.frame
 
 
+def wire_seeds(icd: Icd) -> Iterator[bytes]:
+    """An input for every stream, row of packets and log of the golden vectors of the protocol, for the harness `c_wire`."""
+    for index, node in enumerate(icd.nodes):
+        for case in protocol.cases(icd, node) if node in protocol.nodes(icd) else ():
+            match case.request:
+                case {"op": "uart_decode", "bytes": stream}:
+                    yield bytes((index, 0, 255, 7)) + bytes.fromhex(stream)
+                    yield bytes((index, 3, 0, 3, 255)) + bytes.fromhex(stream)
+                case {"op": "can_join", "packets": packets}:
+                    yield bytes((index, 1, 3)) + b"".join(_packet(one) for one in packets)
+                case {"op": "log_decode", "bytes": file}:
+                    yield bytes((index, 2, 5)) + bytes.fromhex(file)
+
+
+def _packet(one: dict) -> bytes:
+    id, data = one["id"], bytes.fromhex(one["bytes"])
+    return bytes((id >> 24 & 31, id >> 16 & 255, (id >> 8 & 3) | (id & 3) << 2)) + data.ljust(8, b"\0") + b"\0"
+
+
 def c(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """libFuzzer with the address and the undefined-behaviour sanitizer."""
+    """libFuzzer with the address and the undefined-behaviour sanitizer, on the dispatchers."""
+    return _c(icd, folder, "c_target.c")
+
+
+def c_wire(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
+    """The same on the stream decoders and step machines of the wire layer."""
+    return _c(icd, folder, "c_wire_target.c")
+
+
+def _c(icd: Icd, folder: Path, target: str) -> tuple[list[str], dict[str, str]]:
     source = sources(Language("c", ("c", "c-testee"), (), lambda source, out: []), icd, folder)
     testee = source / "c-testee"
-    files = [HERE / "c_target.c", testee / "testee_nodes.c", *sorted(testee.glob("nodes/*.c"))]
+    files = [HERE / target, testee / "testee_nodes.c", *sorted(testee.glob("nodes/*.c"))]
     flags = ["-O1", "-g", "-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all"]
     execute("clang", "-std=c99", *flags, "-I", source / "c", "-I", testee, *files, "-o", folder / "dispatch")
     return [str(folder / "dispatch")], {}
@@ -108,7 +136,8 @@ def python(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
     return command, {"PYTHONPATH": str(package.parent)}
 
 
-HARNESSES = {"c": c, "rust": rust, "python": python}
+SEEDS = {"c-wire": wire_seeds}
+HARNESSES = {"c": c, "c-wire": c_wire, "rust": rust, "python": python}
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -127,7 +156,7 @@ def main(arguments: list[str] | None = None) -> int:
     except BuildError as error:
         print(error, file=sys.stderr)
         return 2
-    for number, seed in enumerate(seeds(icd)):
+    for number, seed in enumerate(SEEDS.get(options.lang, seeds)(icd)):
         (corpus / f"seed-{number:05}").write_bytes(seed)
     command += [f"-max_total_time={options.seconds}", f"-max_len={LONGEST}", "-timeout=20", "-print_final_stats=1"]
     if options.jobs > 1:

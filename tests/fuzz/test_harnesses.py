@@ -12,7 +12,7 @@ import pytest
 from tests.conformance.build import execute
 from tests.conformance.icds import icd_of
 from tests.conformance.languages import Language
-from tests.fuzz.__main__ import HERE, seeds, sources
+from tests.fuzz.__main__ import HERE, seeds, sources, wire_seeds
 from tests.fuzz.python_dispatch import Dispatch
 
 
@@ -31,10 +31,21 @@ def inputs(icd):
     return found
 
 
-def test_the_c_harness_finds_nothing(icd, inputs, tmp_path):
+@pytest.fixture(scope="module")
+def wire_inputs(icd):
+    source = random.Random(2)
+    found = list(wire_seeds(icd))
+    for seed in found[:]:
+        found.append(seed[:1] + bytes((source.randrange(7),)) + seed[2:] + source.randbytes(source.randrange(64)))
+    return found
+
+
+@pytest.mark.parametrize(("target", "kind"), [("c_target.c", "inputs"), ("c_wire_target.c", "wire_inputs")])
+def test_the_c_harnesses_find_nothing(icd, target, kind, request, tmp_path):
+    inputs = request.getfixturevalue(kind)
     source = sources(Language("c", ("c", "c-testee"), (), lambda source, out: []), icd, tmp_path)
     testee = source / "c-testee"
-    files = [HERE / "c_target.c", HERE / "c_replay.c", testee / "testee_nodes.c", *sorted(testee.glob("nodes/*.c"))]
+    files = [HERE / target, HERE / "c_replay.c", testee / "testee_nodes.c", *sorted(testee.glob("nodes/*.c"))]
     flags = ["-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-Wall", "-Wextra", "-Werror"]
     execute("gcc", "-std=c99", *flags, "-I", source / "c", "-I", testee, *files, "-o", tmp_path / "replay")
     data = b"".join(len(one).to_bytes(2, "little") + one for one in inputs)

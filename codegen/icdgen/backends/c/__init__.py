@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
 
 from icdgen import __version__
 from icdgen.backends import Identifier
@@ -15,6 +16,9 @@ from icdgen.backends.c.statement import STEP
 from icdgen.backends.c.text import comment, literal, plain
 from icdgen.backends.c.words import RESERVED
 from icdgen.icd.model import Enum, Icd, Node
+
+if TYPE_CHECKING:
+    from icdgen.protocol.facts import Facts
 
 _MAX_ENUMERATOR = 32767
 """What every `int` can hold."""
@@ -30,6 +34,12 @@ class CBackend:
         """Every header, the support header first, then node by node."""
         planner = Planner(icd)
         yield PurePosixPath("icdgen.h"), render("icdgen.h.j2", version=__version__)
+        links = {node.name: _facts(icd, node) for node in icd.nodes if icd.protocol_of(node)}
+        if links:
+            from icdgen.backends.c.link import step_bytes
+
+            values = {"version": __version__, "step_bytes": step_bytes(links.values())}
+            yield PurePosixPath("icdgen_wire.h"), render("icdgen_wire.h.j2", **values)
         for node in icd.nodes:
             folder = PurePosixPath(node.name)
             if node.enums:
@@ -38,6 +48,8 @@ class CBackend:
             loggable = {row.id: row.bit for row in node.loggable}
             for plan in plans:
                 yield folder / f"{plan.file}.h", render("message.h.j2", **_message(plan, loggable))
+            if node.name in links:
+                yield folder / "link.h", render("link.h.j2", **_link(node, plans, links[node.name]))
             yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", **_node(node, plans, planner))
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
@@ -72,6 +84,27 @@ def _message(plan: Plan, loggable: dict[int, int]) -> dict[str, object]:
         "whole_accessors": accessors.whole_accessors(plan),
         "accessors": accessors.accessors(plan),
         **rows.heads(plan),
+    }
+
+
+def _facts(icd: Icd, node: Node) -> Facts:
+    from icdgen.protocol import facts
+
+    return facts.of(icd, node)
+
+
+def _link(node: Node, plans: list[Plan], known: Facts) -> dict[str, object]:
+    from icdgen.backends.c.link import LinkTables, aliases, sizes
+
+    return {
+        "version": __version__,
+        "node": node.name,
+        "guard": _guard(node.name, "link"),
+        "about": comment(["@file", f"{plain(node.title)}: how its messages travel."]),
+        "title": plain(node.title),
+        "constants": sizes(known),
+        "aliases": aliases(plans),
+        "tables": LinkTables(known).all(),
     }
 
 
@@ -112,6 +145,7 @@ def _node(node: Node, plans: list[Plan], planner: Planner) -> dict[str, object]:
     headers = [f"{name}.h" for name in node.includes]
     headers += [f"{node.name}/enums.h"] if node.enums else []
     headers += [f"{node.name}/{plan.file}.h" for plan in plans]
+    headers += [f"{node.name}/link.h"] if planner.icd.protocol_of(node) else []
     return {
         "version": __version__,
         "node": node.name,

@@ -16,7 +16,9 @@ from icdgen.icd.tree import Map
 FILE = "C names at file scope"
 FILES = "C header files"
 
-_SUPPORT = ("icd_status_t", "ICD_OK", "ICD_ERROR_LENGTH", "ICD_ERROR_RANGE", "ICD_ERROR_UNKNOWN_ID")
+_STATUS = ("LENGTH", "RANGE", "UNKNOWN_ID", "UNSUPPORTED", "CHECKSUM", "BUSY")
+_SUPPORT = ("icd_status_t", "ICD_OK", *(f"ICD_ERROR_{end}" for end in _STATUS))
+_SIZES = ("LONGEST", "CAN_SLOT_BYTES", "CLIENT_BYTES", "LOG_BYTES", "BLOCK_BYTES", "BLOCK_BITMAP_BYTES")
 
 
 def declared(icd: Icd) -> Iterator[Identifier]:
@@ -25,10 +27,14 @@ def declared(icd: Icd) -> Iterator[Identifier]:
     for name in _SUPPORT:
         yield Identifier(FILE, name, "the support header", None)
     yield Identifier(FILES, "icdgen.h", "the support header", None)
+    yield Identifier(FILES, "icdgen_wire.h", "the wire layer", None)
     for node in icd.nodes:
         yield from _node(node, planner)
+        linked = bool(icd.protocol_of(node))
+        if linked:
+            yield from _link(node)
         for message in node.messages:
-            yield from _message(planner.plan(message))
+            yield from _message(planner.plan(message), linked)
 
 
 def _node(node: Node, planner: Planner) -> Iterator[Identifier]:
@@ -58,12 +64,22 @@ def _node(node: Node, planner: Planner) -> Iterator[Identifier]:
             yield Identifier(FILE, planner.names.member(enum, member), owner, member.source)
 
 
-def _message(plan: Plan) -> Iterator[Identifier]:
+def _link(node: Node) -> Iterator[Identifier]:
+    owner, source = f"the link of node `{node.name}`", node.source
+    yield Identifier(FILES, f"{node.name}/link.h", owner, source)
+    yield Identifier(FILE, f"{node.name}_link", owner, source)
+    for end in (*_SIZES, "LINK_H"):
+        yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source)
+
+
+def _message(plan: Plan, linked: bool) -> Iterator[Identifier]:
     message, stem = plan.message, plan.stem
     owner, source = f"message `{message.name}`", message.source
     yield Identifier(FILES, f"{plan.node.name}/{plan.file}.h", owner, source)
     for end in ("H", "LENGTH", *(("ID",) if message.id is not None else ("SET_ID", "GET_ID"))):
         yield Identifier(FILE, f"{stem.upper()}_{end}", owner, source)
+    if linked and message.telemetry_id is not None:
+        yield Identifier(FILE, f"{stem.upper()}_TELEMETRY", owner, source)
     ends = ("t", "init", "decode", "encode", *(("misfit",) if encoding.excess(plan) else ()))
     for end in ends:
         yield Identifier(FILE, f"{stem}_{end}", owner, source)

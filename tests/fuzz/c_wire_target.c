@@ -1,0 +1,374 @@
+/* libFuzzer harness on the stream decoders and step machines of the C wire layer. See README.md. */
+
+#include "testee.h"
+
+#include <stdlib.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+/* The input, taken piece by piece; zeros follow its end. */
+typedef struct {
+    const uint8_t *at;
+    size_t left;
+} input_t;
+
+static uint8_t take(input_t *input)
+{
+    if (input->left == 0u) {
+        return 0;
+    }
+    input->left--;
+    return *input->at++;
+}
+
+static void require(bool holds)
+{
+    if (!holds) {
+        abort();
+    }
+}
+
+/* Memory of just that size, so that touching anything beyond it is noticed. */
+static uint8_t *memory(size_t size)
+{
+    uint8_t *found = (uint8_t *)malloc(size != 0u ? size : 1u);
+    require(found != NULL);
+    return found;
+}
+
+/* What the events of a run say, and how many there were. */
+typedef struct {
+    const icd_link_t *link;
+    uint32_t digest;
+    size_t on_line;   /* bytes that the messages take on the UART */
+    size_t outcomes;  /* of requests */
+} seen_t;
+
+static void note(seen_t *seen, const void *data, size_t length)
+{
+    const uint8_t *bytes = (const uint8_t *)data;
+    size_t i;
+    for (i = 0; i < length; i++) {
+        seen->digest = (seen->digest ^ bytes[i]) * 16777619u;
+    }
+}
+
+static void on_event(void *context, const icd_event_t *event)
+{
+    seen_t *seen = (seen_t *)context;
+    const uint32_t kind = (uint32_t)event->kind;
+    note(seen, &kind, sizeof kind);
+    note(seen, &event->id, sizeof event->id);
+    note(seen, event->data, event->length);
+    seen->outcomes += event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_REFUSED || event->kind == ICD_EVENT_TIMEOUT;
+}
+
+static void on_uart(void *context, const icd_event_t *event)
+{
+    seen_t *seen = (seen_t *)context;
+    on_event(context, event);
+    if (event->kind == ICD_EVENT_MESSAGE) {
+        const size_t room = ICD_UART_BYTES(event->length);
+        uint8_t *line = memory(room);
+        size_t written = 0;
+        require(icd_uart_encode(seen->link, event->data, event->length, line, room, &written) == ICD_OK);
+        seen->on_line += written;
+        (void)icd_uart_kind(seen->link, event->data, event->length);
+        free(line);
+    } else if (event->kind == ICD_EVENT_EMPTY) {
+        require(event->length == 0u);
+    }
+}
+
+/* Whole, and cut at the places that `cuts` says: the same events, and every byte accounted for. */
+static void uart(const icd_link_t *link, input_t *input)
+{
+    const size_t limit = (take(input) % link->longest) + 1u;
+    const uint8_t cuts = (uint8_t)(take(input) | 1u);
+    uint8_t *stream = memory(input->left), *buffer = memory(limit);
+    seen_t whole = {link, 1, 0, 0}, pieces = {link, 1, 0, 0};
+    icd_uart_decoder_t decoder;
+    size_t at, step = cuts;
+    memcpy(stream, input->at, input->left);
+    if (icd_uart_decoder_init(&decoder, link, buffer, limit) == ICD_OK) {
+        icd_uart_feed(&decoder, stream, input->left, on_uart, &whole);
+        require(decoder.discarded + decoder.pending + whole.on_line == input->left);
+        require(icd_uart_decoder_init(&decoder, link, buffer, limit) == ICD_OK);
+        for (at = 0; at < input->left; at += step, step = ((step * cuts) % 23u) + 1u) {
+            step = step < input->left - at ? step : input->left - at;
+            icd_uart_feed(&decoder, stream + at, step, on_uart, &pieces);
+        }
+        require(whole.digest == pieces.digest && whole.on_line == pieces.on_line);
+    }
+    free(stream);
+    free(buffer);
+}
+
+static icd_can_packet_t packet_of(const icd_link_t *link, input_t *input)
+{
+    icd_can_packet_t packet;
+    const uint8_t type = take(input), id = take(input), addresses = take(input);
+    size_t i;
+    memset(&packet, 0, sizeof packet);
+    packet.id = ((uint32_t)type << link->can->type.shift) | ((uint32_t)id << link->can->channel.shift) |
+        ((addresses & 3u) << link->can->source.shift) | (((addresses >> 2) & 3u) << link->can->destination.shift);
+    packet.id &= 0x1FFFFFFFu;
+    packet.length = (uint8_t)(addresses & 0x80u ? (addresses >> 4) & 7u : 8u);
+    for (i = 0; i < packet.length; i++) {
+        packet.data[i] = take(input);
+    }
+    return packet;
+}
+
+static void can(const icd_link_t *link, input_t *input)
+{
+    const size_t count = (take(input) % 4u) + 1u;
+    const size_t size = link->can != NULL ? count * icd_can_slot_bytes(link) : 0u;
+    uint8_t *buffer = memory(size);
+    icd_can_slot_t slots[4];
+    icd_can_joiner_t joiner;
+    seen_t seen = {link, 1, 0, 0};
+    uint32_t now = 0xFFFFFF00u;
+    if (icd_can_joiner_init(&joiner, link, ICD_CAN_EVERYBODY, slots, count, buffer, size) == ICD_OK) {
+        while (input->left != 0u) {
+            const icd_can_packet_t packet = packet_of(link, input);
+            now += take(input);
+            icd_can_feed(&joiner, now, &packet, on_event, &seen);
+            require(joiner.used <= count);
+        }
+        icd_can_expire(&joiner, now + link->can->packet_timeout, on_event, &seen);
+        require(joiner.used == 0u);
+    }
+    free(buffer);
+}
+
+static void on_entry(void *context, const icd_log_entry_t *entry)
+{
+    seen_t *seen = (seen_t *)context;
+    icd_log_frames_t frames;
+    icd_log_frame_t frame;
+    note(seen, &entry->seconds, sizeof entry->seconds);
+    icd_log_frames(&frames, seen->link, entry->mask, entry->slots);
+    while (icd_log_next(&frames, &frame)) {
+        note(seen, &frame.bit, sizeof frame.bit);
+        note(seen, frame.data, frame.length);
+    }
+}
+
+static void logs(const icd_link_t *link, input_t *input)
+{
+    const uint8_t cuts = (uint8_t)(take(input) | 1u);
+    const size_t size = link->log_file != NULL && link->log_mask != NULL ? icd_log_bytes(link) : 0u;
+    uint8_t *file = memory(input->left), *buffer = memory(size);
+    seen_t whole = {link, 1, 0, 0}, pieces = {link, 1, 0, 0};
+    icd_log_reader_t reader;
+    icd_log_message_t message;
+    size_t at, step = cuts, left;
+    memcpy(file, input->at, input->left);
+    if (icd_log_reader_init(&reader, link, buffer, size) == ICD_OK) {
+        icd_log_feed(&reader, file, input->left, on_entry, &whole);
+        left = reader.length;
+        require(icd_log_reader_init(&reader, link, buffer, size) == ICD_OK);
+        for (at = 0; at < input->left; at += step, step = ((step * cuts) % 23u) + 1u) {
+            step = step < input->left - at ? step : input->left - at;
+            icd_log_feed(&reader, file + at, step, on_entry, &pieces);
+        }
+        require(whole.digest == pieces.digest && reader.length == left);
+    }
+    (void)icd_log_message_decode(link, file, input->left, &message);
+    free(file);
+    free(buffer);
+}
+
+static void drain(icd_client_t *client)
+{
+    const uint8_t *bytes;
+    size_t count, read;
+    icd_can_packet_t packet;
+    while (icd_client_output(client, &bytes, &count)) {
+    }
+    while (icd_client_next_packet(client, &packet)) {
+    }
+    while (icd_client_transfer(client, &bytes, &count, &read)) {
+    }
+}
+
+static void receive(icd_client_t *client, input_t *input, uint32_t now, seen_t *seen)
+{
+    const size_t given = take(input), count = given < input->left ? given : input->left;
+    uint8_t *bytes = memory(count);
+    if (client->bus == ICD_BUS_CAN) {
+        const icd_can_packet_t packet = packet_of(client->link, input);
+        icd_client_packet(client, now, &packet, on_event, seen);
+    } else {
+        memcpy(bytes, input->at, count);
+        input->at += count;
+        input->left -= count;
+        if (client->bus == ICD_BUS_I2C) {
+            icd_client_transferred(client, now, given == 0xFFu ? NULL : bytes, count, on_event, seen);
+        } else {
+            icd_client_received(client, now, bytes, count, on_event, seen);
+        }
+    }
+    free(bytes);
+}
+
+/* Each request ends in exactly one outcome, and time ends all of them. */
+static void client(const icd_link_t *link, icd_bus_t bus, input_t *input)
+{
+    const size_t size = icd_client_bytes(link);
+    uint8_t *buffer = memory(size), *data = memory(link->longest);
+    icd_client_t *one = (icd_client_t *)(void *)memory(sizeof *one);
+    seen_t seen = {link, 1, 0, 0};
+    uint32_t now = 0xFFFFF000u, deadline;
+    size_t started = 0, rounds = 0;
+    memset(data, 0, link->longest);
+    if (icd_client_init(one, link, bus, buffer, size) == ICD_OK) {
+        icd_client_set_address(one, 1);
+        if ((take(input) & 1u) != 0u) {
+            icd_client_use_checksums(one);
+        }
+        while (input->left != 0u) {
+            const uint8_t what = take(input);
+            icd_request_t request;
+            memset(&request, 0, sizeof request);
+            request.direction = (what & 4u) != 0u ? ICD_TELEMETRY : ICD_TELECOMMAND;
+            request.repeat = (what & 8u) != 0u;
+            now += (uint32_t)(what >> 4) * 64u;
+            if ((what & 3u) == 0u) {
+                const icd_message_t *message;
+                request.id = take(input);
+                message = icd_find_message(link, request.direction, request.id);
+                request.data = data;
+                request.length = message != NULL ? message->length : 0u;
+                started += icd_client_start(one, now, &request, on_event, &seen) == ICD_OK;
+            } else if ((what & 3u) == 1u) {
+                drain(one);
+            } else if ((what & 3u) == 2u) {
+                icd_client_tick(one, now, on_event, &seen);
+            } else {
+                receive(one, input, now, &seen);
+            }
+        }
+        for (; icd_client_deadline(one, &deadline); rounds++) {
+            require(rounds < 100000u);
+            drain(one);
+            icd_client_tick(one, deadline, on_event, &seen);
+        }
+        require(seen.outcomes == started);
+    }
+    free(one);
+    free(buffer);
+    free(data);
+}
+
+static void on_block(void *context, uint32_t offset, const uint8_t *block, size_t length)
+{
+    note((seen_t *)context, &offset, sizeof offset);
+    note((seen_t *)context, block, length);
+}
+
+static void on_file(void *context, const icd_file_t *file)
+{
+    note((seen_t *)context, file, sizeof *file);
+}
+
+/* A procedure that is told anything. */
+static void run(icd_procedure_t *procedure, input_t *input)
+{
+    uint32_t now = 0xFFFFF000u;
+    while (input->left != 0u && procedure->result == ICD_RUNNING) {
+        const uint8_t what = take(input);
+        const size_t given = take(input) % 32u, count = given < input->left ? given : input->left;
+        uint8_t *bytes = memory(count);
+        icd_event_t event;
+        icd_request_t request;
+        memset(&event, 0, sizeof event);
+        memcpy(bytes, input->at, count);
+        input->at += count;
+        input->left -= count;
+        now += (uint32_t)(what >> 3) * 16u;
+        event.kind = (what & 7u) < 4u ? ICD_EVENT_DONE
+            : (what & 7u) == 4u       ? ICD_EVENT_TIMEOUT
+            : (what & 7u) == 5u       ? ICD_EVENT_REFUSED
+                                      : ICD_EVENT_PACKET;
+        event.number = take(input);
+        event.data = bytes;
+        event.length = count;
+        if (icd_procedure_next(procedure, now, &request)) {
+            require(request.length == 0u || request.data != NULL);
+        }
+        icd_procedure_event(procedure, now, &event);
+        free(bytes);
+    }
+}
+
+static void procedures(const icd_link_t *link, input_t *input)
+{
+    const uint8_t which = take(input);
+    const uint32_t block = (take(input) * 7u) + 1u;
+    const uint32_t most = link->files != NULL && block > link->files->block_bytes ? link->files->block_bytes : block;
+    uint8_t *buffer = memory(link->files != NULL ? icd_block_buffer(link, most) : 0u);
+    uint8_t *bitmap = memory(link->files != NULL ? icd_block_bitmap(link, most) : 0u);
+    uint8_t *file = memory(1000);
+    seen_t seen = {link, 1, 0, 0};
+    icd_list_t list;
+    icd_download_t download;
+    icd_upload_t upload;
+    icd_erase_t erase;
+    memset(file, which, 1000);
+    if (which % 4u == 0u && icd_list_init(&list, link, on_file, &seen) == ICD_OK) {
+        run(&list.procedure, input);
+    } else if (which % 4u == 1u &&
+               icd_download_init(
+                   &download, link, (icd_bus_t)((which >> 2) % 3u), 1, 2, (which & 0x80u) != 0u ? ICD_SIZE_UNKNOWN : 1000u,
+                   most, buffer, bitmap, on_block, &seen) == ICD_OK) {
+        run(&download.procedure, input);
+    } else if (which % 4u == 2u && icd_upload_init(&upload, link, 3, file, 1000, most, bitmap) == ICD_OK) {
+        run(&upload.procedure, input);
+    } else if (which % 4u == 3u && icd_erase_init(&erase, link, 1, 2, true) == ICD_OK) {
+        run(&erase.procedure, input);
+    }
+    free(buffer);
+    free(bitmap);
+    free(file);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    input_t input = {data, size};
+    const testee_node_t *node;
+    const icd_link_t *link;
+    if (size < 2u) {
+        return 0;
+    }
+    node = testee_nodes[take(&input) % testee_node_count];
+    if (node->link == NULL) {
+        return 0;
+    }
+    link = node->link();
+    switch (take(&input) % 7u) {
+    case 0:
+        uart(link, &input);
+        break;
+    case 1:
+        can(link, &input);
+        break;
+    case 2:
+        logs(link, &input);
+        break;
+    case 3:
+        client(link, ICD_BUS_UART, &input);
+        break;
+    case 4:
+        client(link, ICD_BUS_I2C, &input);
+        break;
+    case 5:
+        client(link, ICD_BUS_CAN, &input);
+        break;
+    default:
+        procedures(link, &input);
+        break;
+    }
+    return 0;
+}
