@@ -5,8 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 ROOT = Path(__file__).parent.parent
+
+# A busy machine makes no test fail, and what was green stays green; `--hypothesis-profile=explore` tries new inputs each time.
+_PATIENT = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow, HealthCheck.data_too_large]}
+settings.register_profile("same", derandomize=True, **_PATIENT)
+settings.register_profile("explore", max_examples=1000, **_PATIENT)
+settings.load_profile("same")
 
 DEMO = """\
 icdgen: 1

@@ -30,7 +30,10 @@ def _main() -> None:
     gc.disable()  # a short run that makes many small objects: the collector doubles its time and frees nothing
     from icdgen import cli
 
-    cli.main(arguments, name)
+    try:
+        cli.main(arguments, name)
+    finally:
+        gc.freeze()  # nor does it free anything that matters when the interpreter ends
 
 
 def _said(note: str) -> bool:

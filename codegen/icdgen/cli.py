@@ -64,10 +64,8 @@ def icdgen(ctx: click.Context) -> None:
 
 def main(arguments: list[str], run: str = "") -> None:
     """Runs a command line and exits. ``run`` names the record under which a generation may be remembered."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
     try:
+        _show_anything()
         status = _run(arguments, run)
     except UserError as error:
         _complain(str(error), error.help)
@@ -95,6 +93,13 @@ def main(arguments: list[str], run: str = "") -> None:
     if status != 0:
         _let_go()
     sys.exit(status)
+
+
+def _show_anything() -> None:
+    """Characters that the terminal's encoding lacks are shown as escapes. Raises OSError if the output is broken already."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def _run(arguments: list[str], run: str) -> int:

@@ -22,6 +22,7 @@ def shell(tmp_path):
     def run(line: str, **more: str) -> subprocess.CompletedProcess:
         path = os.pathsep.join([str(command.parent), os.environ["PATH"]])
         environment = os.environ | {"PYTHONPATH": str(ROOT / "codegen"), "PATH": path} | more
+        environment.pop("PYTHONUNBUFFERED", None)  # a broken output shows later, and more often, with a buffer
         result = subprocess.run(
             ["bash", "-c", line],
             cwd=tmp_path,

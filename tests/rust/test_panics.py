@@ -24,7 +24,10 @@ fn panic(_: &core::panic::PanicInfo) -> ! {
 """
 MESSAGE = """\
 #[no_mangle] pub fn decode_{name}(bytes: &[u8]) -> Result<{type}, icd::Error> {{ {type}::from_bytes(bytes) }}
-#[no_mangle] pub fn encode_{name}(message: &{type}) -> impl Copy {{ message.{encode}() }}
+#[no_mangle] pub fn encode_{name}(message: &{type}) -> impl Copy {{ message.to_bytes() }}
+"""
+CHECKED = """\
+#[no_mangle] pub fn try_encode_{name}(message: &{type}) -> impl Copy {{ message.try_to_bytes() }}
 """
 SCALED = """\
 #[no_mangle] pub fn get_{name}(message: &{type}) -> f64 {{ message.{getter}() }}
@@ -46,7 +49,9 @@ def everything(icd: Icd) -> Iterator[str]:
     for node in icd.nodes:
         for row in message_rows(icd, node, enums):
             name, type_ = f"{node.name}_{row.module}", f"icd::{node.name}::{row.type}"
-            yield MESSAGE.format(name=name, type=type_, encode="try_to_bytes" if row.fallible else "to_bytes")
+            yield MESSAGE.format(name=name, type=type_)
+            if row.fits:
+                yield CHECKED.format(name=name, type=type_)
             for one in row.scaled:
                 yield SCALED.format(name=f"{name}_{one.getter}", type=type_, getter=one.getter, setter=one.setter)
         for way in ("telecommand", "telemetry"):

@@ -69,6 +69,12 @@ class Toolchain:
         run(*self._rustc("icd"), *options, "--out-dir", out, file)
         return out / "libicd.rlib"
 
+    def program(self, file: Path, library: Path, out: Path) -> Path:
+        """Compiles a program that uses the library; its file."""
+        options = ("-C", "panic=abort", "--extern", f"icd={library}")
+        run(*self._rustc("program"), *options, "-o", out, file)
+        return out
+
     def freestanding(self, file: Path, library: Path, out: Path, level: str) -> Path:
         """Compiles a library that stands alone, optimised as a whole; its archive."""
         options = ("--crate-type", "staticlib", "-C", "panic=abort", "-C", "lto=fat", "-C", "codegen-units=1")

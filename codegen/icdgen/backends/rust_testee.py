@@ -103,7 +103,7 @@ class NodeEntry:
     def _message(self, row: MessageRow) -> MessageEntry:
         path = self._path(row)
         ids = ", ".join(f"Self::{one.name} as u16" for one in row.ids)
-        encode = "self.try_to_bytes().map(Vec::from)" if row.fallible else "Ok(Vec::from(self.to_bytes()))"
+        encode = "self.try_to_bytes().map(Vec::from)" if row.fits else "Ok(Vec::from(self.to_bytes()))"
         return MessageEntry(path, ids, encode, [_field(one, row.node) for one in row.fields])
 
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 from icdgen import backends, memo
 from icdgen.checked import load_checked
 from icdgen.errors import UserError
-from icdgen.generation import manifest, write
+from icdgen.generation import manifest, parallel, write
 from icdgen.icd.loaded import Loaded
+from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 
 
@@ -47,17 +49,24 @@ def run(job: Job) -> Outcome:
     if not outcome.loaded.ok:
         return outcome
     outcome.inputs = outcome.loaded.inputs | job.configs
-    for backend in chosen:
-        render = Renderer(backend.name, job.templates)
-        out = job.out / backend.name if len(chosen) > 1 else job.out
-        outcome.plans.append(write.plan(out, backend.name, backend.files(outcome.loaded.icd, render)))
-        outcome.inputs |= render.looked_at
+    renderers = [Renderer(backend.name, job.templates) for backend in chosen]
+    for plan, looked_at in parallel.results(
+        [partial(_plan, job, outcome.loaded.icd, *both) for both in zip(chosen, renderers, strict=True)]
+    ):
+        outcome.plans.append(plan)
+        outcome.inputs |= looked_at
     if not job.check:
         for plan in outcome.plans:
             write.apply(plan)
         if job.depfile is not None:
             _write_depfile(job, outcome)
     return outcome
+
+
+def _plan(job: Job, icd: Icd, backend: backends.Backend, render: Renderer) -> tuple[write.Plan, dict[Path, str]]:
+    """What one backend would change, and which of the user's templates it looked at."""
+    out = job.out / backend.name if len(set(job.languages)) > 1 else job.out
+    return write.plan(out, backend.name, backend.files(icd, render)), render.looked_at
 
 
 def _depfile(outcome: Outcome) -> tuple[bytes, set[str]]:
@@ -92,8 +101,9 @@ def remember(name: str, note: str, job: Job, outcome: Outcome) -> None:
         return
     files = {os.path.abspath(path): seen for path, seen in outcome.inputs.items()}
     for plan in outcome.plans:
-        for file, data in plan.files.items():
-            files[os.path.abspath(plan.out / file)] = manifest.digest(data)
+        out = os.path.abspath(plan.out)
+        for file, digest in plan.digests.items():
+            files[os.path.join(out, file)] = digest
         files[os.path.abspath(manifest.path(plan.out, plan.language))] = manifest.digest(plan.manifest.encode())
     if job.depfile is not None and not job.check:
         files[os.path.abspath(job.depfile)] = manifest.digest(_depfile(outcome)[0])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import os
 import stat
-import tempfile
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
@@ -21,6 +20,7 @@ class Plan:
     out: Path
     language: str
     files: dict[str, bytes]
+    digests: dict[str, str] = field(default_factory=dict)  # of ``files``
     write: list[str] = field(default_factory=list)
     remove: list[str] = field(default_factory=list)
     edited: list[str] = field(default_factory=list)  # ours once, no longer generated, but changed by hand: kept
@@ -35,21 +35,22 @@ def plan(out: Path, language: str, files: Iterable[tuple[PurePosixPath, str]]) -
     """Compares. Raises `UserError` where a file that is not ours stands in the way, or two outputs differ only in case."""
     made = Plan(out, language, {})
     folded: dict[str, str] = {}
-    for name, text in files:
-        other = folded.setdefault(str(name).casefold(), str(name))
-        if other != str(name) or str(name) in made.files:
+    for path, text in files:
+        name = str(path)
+        other = folded.setdefault(name.casefold(), name)
+        if other != name or name in made.files:
             raise UserError(
                 f"two outputs would share the file name {name}",
                 "names that differ only in case clash on some systems: give one of them an `identifier:`",
             )
         try:
-            made.files[str(name)] = text.encode("utf-8")
+            made.files[name] = text.encode("utf-8")
         except UnicodeEncodeError as error:
             what = f"U+{ord(text[error.start]):04X}, which is no character"
             raise UserError(f"{name} would hold {what}", "mend the template") from None
     ours = manifest.read(out, language)
     for name, data in made.files.items():
-        now = read(out / name)
+        now = read(os.path.join(out, name))
         if now == data:
             continue
         if now is not None and name not in ours:
@@ -63,7 +64,8 @@ def plan(out: Path, language: str, files: Iterable[tuple[PurePosixPath, str]]) -
             now = read(out / name) if os.path.isfile(out / name) else None
             if now is not None:
                 (made.remove if manifest.digest(now) == digest else made.edited).append(name)
-    made.manifest = manifest.text({name: manifest.digest(data) for name, data in made.files.items()})
+    made.digests = {name: manifest.digest(data) for name, data in made.files.items()}
+    made.manifest = manifest.text(made.digests)
     return made
 
 
@@ -75,7 +77,7 @@ def apply(made: Plan) -> None:
             known = ours | {name: ours.get(name, "") for name in made.files}
             replace(manifest.path(made.out, made.language), manifest.text(known).encode())
         for name in made.write:
-            replace(made.out / name, made.files[name])
+            replace(os.path.join(made.out, name), made.files[name])
         target = manifest.path(made.out, made.language)
         if read(target) != made.manifest.encode():
             replace(target, made.manifest.encode())
@@ -88,34 +90,41 @@ def apply(made: Plan) -> None:
         ) from None
 
 
-_UMASK = os.umask(0)
-os.umask(_UMASK)
-
-
-def replace(target: Path, data: bytes) -> None:
+def replace(target: str | Path, data: bytes) -> None:
     """Writes a file so that a reader sees the old content or the new one, never a part. The file's mode stays."""
+    target = os.fspath(target)
     try:
         mode = os.stat(target).st_mode
     except OSError:
-        mode = stat.S_IFREG | 0o666 & ~_UMASK
-    if not stat.S_ISREG(mode):
-        raise FileExistsError(errno.EEXIST, "it is not a file", str(target))
+        mode = None
+    if mode is not None and not stat.S_ISREG(mode):
+        raise FileExistsError(errno.EEXIST, "it is not a file", target)
+    folder = os.path.dirname(target)
     try:
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=".icdgen-")
+        handle, name = _new_file(folder)
     except FileNotFoundError:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=".icdgen-")
+        os.makedirs(folder, exist_ok=True)
+        handle, name = _new_file(folder)
     try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-        os.chmod(name, stat.S_IMODE(mode))
+        with open(handle, "wb", buffering=0) as file:
+            rest = memoryview(data)
+            while rest:
+                rest = rest[file.write(rest) :]
+        if mode is not None:
+            os.chmod(name, stat.S_IMODE(mode))
         os.replace(name, target)
     except BaseException:
         os.unlink(name)
         raise
 
 
-def read(path: Path) -> bytes | None:
+def _new_file(folder: str) -> tuple[int, str]:
+    """A file of a name that nobody has, for writing. (`tempfile` costs more than the writing.)"""
+    name = os.path.join(folder, f".icdgen-{os.urandom(8).hex()}")
+    return os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666), name
+
+
+def read(path: str | Path) -> bytes | None:
     """The content of what we may write; None if it is not there. Raises `UserError` if it can't be read."""
     try:
         if not stat.S_ISREG(os.stat(path).st_mode):

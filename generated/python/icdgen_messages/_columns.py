@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ._codec import raw_range
 from ._errors import LengthError
@@ -101,35 +101,59 @@ class _Decoder:
             raise LengthError(message.NAME, (count + 1) * size, view.nbytes)
         data: Any = view if view.readonly and view.c_contiguous else view.tobytes()
         self.numpy, self.message, self.count = numpy, message, count
+        self.words = (count + 7) // 8  # of 64 bits, for a byte of every frame
         self.rows = numpy.frombuffer(data, numpy.uint8).reshape(count, size)
+        if message not in _plans:
+            _plans[message] = _plan(message)
+        plan = _plans[message]
         self.bytes: dict[int, Any] = {}
-        self.flags = self._flags()
+        for byte, width in plan.runs:
+            self._split(self._column(f"<u{width}", byte), byte)
+        self.flags = self._flags(plan)
 
-    def _flags(self) -> dict[str, Any]:
-        """All columns of booleans, a byte's at a time."""
+    def _split(self, run: Any, byte: int) -> None:
+        """Keeps each byte of the integers ``run``, which begin at a byte of the frame.
+
+        Reading a run from every frame takes as long as reading one byte.
+        """
+        width = run.itemsize
+        if width == 1:
+            self._keep(run, byte)
+            return
+        run = self.numpy.ascontiguousarray(run)
+        if width == 2:
+            self._keep(run, byte)
+            self._keep(run >> 8, byte + 1)
+        else:
+            self._split(run.astype("<u2"), byte)
+            self._split((run >> 16).astype("<u2"), byte + 2)
+
+    def _keep(self, values: Any, byte: int) -> None:
+        """Keeps the lowest byte of integers."""
+        self.bytes[byte] = self.numpy.empty(self.words * 8, self.numpy.uint8)
+        self.bytes[byte][: self.count] = values
+
+    def _flags(self, plan: _Plan) -> dict[str, Any]:
+        """All columns of booleans, eight frames at a time in 64-bit words."""
         numpy = self.numpy
-        masks: dict[int, list[tuple[int, str]]] = {}
-        for info in self.message.FIELDS:
-            if info.type == "bool":
-                ((byte, shift, _, _),) = _pieces(info, self.message)
-                masks.setdefault(byte, []).append((1 << shift, info.attribute))
-        names = [name for flags in masks.values() for _, name in flags]
-        columns = numpy.empty((len(names), self.count), numpy.bool_)
-        scratch = numpy.empty((8, self.count), numpy.uint8)
+        flags = numpy.empty((len(plan.names), self.words), numpy.uint64)
+        lowest = numpy.uint64(0x0101010101010101)  # bits of the bytes of a word
         row = 0
-        for byte, flags in masks.items():
-            bits = scratch[: len(flags)]
-            weights = numpy.array([[mask] for mask, _ in flags], numpy.uint8)
-            numpy.bitwise_and(self._byte(byte), weights, out=bits)
-            numpy.not_equal(bits, 0, out=columns[row : row + len(flags)])
-            row += len(flags)
-        return dict(zip(names, columns))
+        for byte, shifts in plan.flags:
+            words = self.bytes[byte].view(numpy.uint64)
+            found = flags[row : row + len(shifts)]
+            by = numpy.array(shifts, numpy.uint64)[:, None]
+            numpy.right_shift(words, by, out=found)
+            numpy.bitwise_and(found, lowest, out=found)
+            row += len(shifts)
+        columns = flags.view(numpy.bool_)[:, : self.count]
+        return dict(zip(plan.names, columns))
 
     def column(self, info: FieldInfo) -> Any:
         """The raw values of a field."""
         if info.type == "bool":
             return self.flags[info.attribute]
-        if info.at % 8 == 0 and (info.type == "bytes" or info.bits in (8, 16, 32, 64)):
+        if _is_whole(info):
             return self._whole(info)
         pieces = list(_pieces(info, self.message))
         if len(pieces) == 1:
@@ -143,17 +167,19 @@ class _Decoder:
         code = {"int": "i", "float": "f"}.get(info.type, "u")
         order = ">" if self.message.BYTE_ORDER == "big" else "<"
         kind = self.numpy.dtype(f"{order}{code}{size}")
-        if not self.count:
-            return self.numpy.empty(0, kind.newbyteorder("="))
-        column = self.numpy.ndarray(
-            self.count, kind, self.rows, start, (self.message.LENGTH,)
-        )
+        column = self._column(kind, start)
         return column if kind.isnative else column.astype(kind.newbyteorder("="))
 
+    def _column(self, kind: Any, start: int) -> Any:
+        """What stands at a byte of every frame, as a view."""
+        if not self.count:
+            return self.numpy.empty(0, kind)
+        return self.numpy.ndarray(
+            self.count, kind, self.rows, start, (self.message.LENGTH,)
+        )
+
     def _byte(self, byte: int) -> Any:
-        if byte not in self.bytes:
-            self.bytes[byte] = self.numpy.ascontiguousarray(self.rows[:, byte])
-        return self.bytes[byte]
+        return self.bytes[byte][: self.count]
 
     def _within(self, info: FieldInfo, byte: int, shift: int, bits: int, _: int) -> Any:
         column = self._byte(byte)
@@ -179,6 +205,48 @@ class _Decoder:
         return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(
             f"i{size // 8}"
         )
+
+
+class _Plan(NamedTuple):
+    """Where the fields of a message are that do not stand on whole bytes."""
+
+    runs: list[tuple[int, int]]
+    """First byte and width of each run of 1, 2 or 4 bytes that hold them."""
+    flags: list[tuple[int, list[int]]]
+    """Each byte that has booleans, with their bits."""
+    names: list[str]
+    """Their attributes, in this order."""
+
+
+_plans: dict[type[Message], _Plan] = {}
+
+
+def _plan(message: type[Message]) -> _Plan:
+    needed: set[int] = set()
+    flags: dict[int, list[int]] = {}
+    names: dict[int, list[str]] = {}
+    for info in message.FIELDS:
+        if _is_whole(info):
+            continue
+        for byte, shift, _, _ in _pieces(info, message):
+            needed.add(byte)
+            if info.type == "bool":
+                flags.setdefault(byte, []).append(shift)
+                names.setdefault(byte, []).append(info.attribute)
+    runs = []
+    while needed:
+        byte = min(needed)
+        width = next(w for w in (4, 2, 1) if needed.issuperset(range(byte, byte + w)))
+        runs.append((byte, width))
+        needed.difference_update(range(byte, byte + width))
+    ordered = [name for found in names.values() for name in found]
+    return _Plan(runs, list(flags.items()), ordered)
+
+
+def _is_whole(info: FieldInfo) -> bool:
+    """Whether it is an array element as it stands."""
+    is_wide = info.type == "bytes" or info.bits in (8, 16, 32, 64)
+    return is_wide and info.at % 8 == 0
 
 
 def _pieces(

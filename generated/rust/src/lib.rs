@@ -11,8 +11,9 @@
 //! - [`cubewheel`], CubeWheel. Reaction or momentum wheel.
 //!
 //! A message holds raw values, as they are on the wire. `from_bytes` takes exactly `LENGTH` bytes and
-//! ignores reserved bits, which `to_bytes` writes as 0. Where a field could hold a value that does not
-//! fit its bits, there is only `try_to_bytes`, which refuses such a value: nothing is ever cut off.
+//! ignores reserved bits, which `to_bytes` writes as 0. Where the type of a field can hold values that
+//! do not fit its bits, `to_bytes` drops their upper bits, so that no other field is touched, and
+//! `try_to_bytes` beside it refuses them; `write_to` refuses them too.
 //!
 //! An enumeration is held as its number, in a [`Coded`], so that numbers without a name are kept; its
 //! `get` gives the enumeration to be matched, and a `Coded` can be made from one with `into` and

@@ -6,6 +6,7 @@ A further language brings a module here and a testee among its backend's templat
 from __future__ import annotations
 
 import shutil
+import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
@@ -27,8 +28,12 @@ class Language:
     kind: str = TESTEE
 
     def missing(self) -> list[str]:
-        """The programs that are not there."""
-        return [tool for tool in self.tools if shutil.which(tool) is None]
+        """The programs that are not there, or are a version manager's word that they are not."""
+        return [tool for tool in self.tools if not _works(tool)]
+
+
+def _works(tool: str) -> bool:
+    return shutil.which(tool) is not None and subprocess.run([tool, "--version"], capture_output=True).returncode == 0
 
 
 def all_languages() -> dict[str, Language]:

@@ -12,7 +12,7 @@ from tests.conformance.languages import Language
 
 def build(source: Path, out: Path, interpreter: str) -> list[str]:
     """Nothing is built: the package is run from its source."""
-    found = sorted((source / "python").rglob("testee.py"))
+    found = sorted((source / "python").rglob("testee.py"), key=lambda path: len(path.parts))
     if not found:
         raise BuildError("the Python package has no testee.py")
     package = found[0].parent

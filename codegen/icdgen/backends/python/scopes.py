@@ -38,7 +38,8 @@ def _node(icd: Icd, node: Node, scope: str) -> Iterator[Identifier]:
 def _message(message: Message, node: Node, scope: str) -> Iterator[Identifier]:
     for field in message.fields:
         attribute = names.attribute(field, node)
-        for name in filter(None, (attribute, names.physical(field, attribute))):
+        physical = (names.physical(field, attribute),) if field.scale is not None else ()
+        for name in (attribute, *physical):
             yield Identifier(scope, name, f"field `{field.name}` of `{message.name}`", field.source)
             if name in names.IN_MESSAGE:
                 yield Identifier(scope, name, names.IN_MESSAGE[name].format(name), None)

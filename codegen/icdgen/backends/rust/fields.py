@@ -10,6 +10,7 @@ from icdgen.icd.model import Field, Node
 from icdgen.layout import Piece, byte_range, is_whole_bytes, pieces
 
 LONG_NAME = 36  # longer names are bound to a short one first, so that no line has to be broken
+CHAIN_WIDTH = 60  # rustfmt's: calls upon calls that are wider are broken
 FLAGS_FROM = 4  # so many flags of one byte are taken from the table of the support module
 
 
@@ -124,8 +125,19 @@ def _bound(name: str) -> tuple[str, tuple[str, ...]]:
     return "value", (statement,)
 
 
-def writing(field: Field, node: Node, enums: Enums, name: str, constant: str) -> list[str]:
-    """Statements that put the raw value into ``bytes``; ``constant`` is the entry that checks a narrow field."""
+def fitting(field: Field, name: str, constant: str) -> list[str]:
+    """Statements that return with an error if the raw value does not fit its bits; ``constant`` is the entry that checks it."""
+    source, before = _bound(name)
+    if field.type == "enum":
+        source = f"{source}.raw()"
+    statement = f"{constant}.fit({source})?;"
+    if len(statement) > (CHAIN_WIDTH if field.type == "enum" else WIDTH - 8):
+        return [*before, *(() if source == "value" else (f"let value = {source};",)), f"{constant}.fit(value)?;"]
+    return [*before, statement]
+
+
+def writing(field: Field, node: Node, enums: Enums, name: str) -> list[str]:
+    """Statements that put the raw value into ``bytes``, without the bits that its field has no room for."""
     source, before = _bound(name)
     lines = list(before)
     if field.type == "bytes":
@@ -144,14 +156,7 @@ def writing(field: Field, node: Node, enums: Enums, name: str, constant: str) ->
         source = f"{source}.raw()"
     elif field.type == "float":
         source = f"{source}.to_bits()"
-    if narrow:
-        statement = f"let value = {constant}.fit({source})?;"
-        if len(statement) > WIDTH - 16:
-            lines += () if source == "value" else (f"let value = {source};",)
-            statement = f"let value = {constant}.fit(value)?;"
-        lines.append(statement)
-        source = "value"
-    elif source != "value" and len(row) > 1:
+    if source != "value" and len(row) > 1:
         lines.append(f"let value = {source};")
         source = "value"
     if field.type == "int":
@@ -191,8 +196,7 @@ def _put(field: Field, piece: Piece, part: str) -> str:
     """The statement that puts the low bits of ``part`` into their byte."""
     if piece.bits == 8:
         return f"bytes[{piece.byte}] = {part};"
-    topmost = piece.at + piece.bits == field.bits and field.type != "int"
-    if not topmost and piece.shift + piece.bits < 8:
+    if piece.shift + piece.bits < 8:
         part = f"{_parenthesised(part)} & {mask((1 << piece.bits) - 1)}"
     if piece.shift:
         part = f"{_parenthesised(part)} << {piece.shift}"

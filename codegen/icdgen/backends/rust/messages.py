@@ -67,7 +67,12 @@ class MessageRow:
         self.tables = sorted(tables)
         self.fields = [_row(field, node, enums, tables) for field in message.fields]
         narrow = [fields.is_narrow(field, enums) for field in message.fields]
-        self.fallible = any(narrow)
+        self.fits = [
+            line
+            for row, thin in zip(self.fields, narrow, strict=True)
+            if thin
+            for line in fields.fitting(row.model, row.name, row.constant)
+        ]
         self.scaled = [_scaled(row) for row in self.fields if row.model.scale is not None]
         self.checked = [
             _checked(row, enums) for row, thin in zip(self.fields, narrow, strict=True) if thin or row.model.scale
@@ -108,7 +113,7 @@ def _row(field: Field, node: Node, enums: Enums, tables: set[int]) -> FieldRow:
         declaration=rhs("    ", f"pub {name}:", kind, ","),
         serde=field.type == "bytes",
         reading=fields.reading(field, node, enums, tables),
-        writing=fields.writing(field, node, enums, name, constant),
+        writing=fields.writing(field, node, enums, name),
         default=_default(field, kind),
     )
 

@@ -91,7 +91,7 @@ class NodeRow:
         if len(decode) > WIDTH or len(value) > CALL_WIDTH:
             bound = rhs(f"{ARM}    ", "let message =", value, ";")
             decode = f"{ARM}{number} => {{\n{bound}\n{ARM}    Self::{row.type}(message)\n{ARM}}}"
-        to_bytes = "message.try_to_bytes()?" if row.fallible else "message.to_bytes()"
+        to_bytes = "message.try_to_bytes()?" if row.fits else "message.to_bytes()"
         write = f"{ARM}{pattern} => write_to(buffer, &{to_bytes}),"
         if len(write) > WIDTH:
             write = (

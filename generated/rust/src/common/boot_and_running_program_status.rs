@@ -85,21 +85,30 @@ impl BootAndRunningProgramStatus {
 
     /// Encodes the message; reserved bits are 0.
     ///
+    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
+    #[inline]
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; 6] {
+        let mut bytes = [0; 6];
+        bytes[0] |= self.cause_of_mcu_reset.raw() & 0x0f;
+        bytes[0] |= self.boot_cause.raw() << 4;
+        put!(self.boot_counter.to_le_bytes() => bytes[1; 2]);
+        bytes[3] = self.boot_program_index.raw();
+        bytes[4] = self.firmware_version_major;
+        bytes[5] = self.firmware_version_minor;
+        bytes
+    }
+
+    /// Encodes the message if every value fits its field; reserved bits are 0.
+    ///
     /// # Errors
     ///
     /// [`Error::Range`] if a value does not fit its field.
     #[inline]
     pub fn try_to_bytes(&self) -> Result<[u8; 6], Error> {
-        let mut bytes = [0; 6];
-        let value = CAUSE_OF_MCU_RESET.fit(self.cause_of_mcu_reset.raw())?;
-        bytes[0] |= value;
-        let value = BOOT_CAUSE.fit(self.boot_cause.raw())?;
-        bytes[0] |= value << 4;
-        put!(self.boot_counter.to_le_bytes() => bytes[1; 2]);
-        bytes[3] = self.boot_program_index.raw();
-        bytes[4] = self.firmware_version_major;
-        bytes[5] = self.firmware_version_minor;
-        Ok(bytes)
+        CAUSE_OF_MCU_RESET.fit(self.cause_of_mcu_reset.raw())?;
+        BOOT_CAUSE.fit(self.boot_cause.raw())?;
+        Ok(self.to_bytes())
     }
 }
 

@@ -87,20 +87,29 @@ impl FileInformation {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
     #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 12], Error> {
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; 12] {
         let mut bytes = [0; 12];
-        let value = FILE_TYPE.fit(self.file_type.raw())?;
-        bytes[0] |= value;
+        bytes[0] |= self.file_type.raw() & 0x0f;
         bytes[0] |= u8::from(self.busy_updating) << 4;
         bytes[1] = self.file_ctr;
         put!(self.file_size.to_le_bytes() => bytes[2; 4]);
         put!(self.file_date_and_time.to_le_bytes() => bytes[6; 4]);
         put!(self.file_crc16_checksum.to_le_bytes() => bytes[10; 2]);
-        Ok(bytes)
+        bytes
+    }
+
+    /// Encodes the message if every value fits its field; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
+    #[inline]
+    pub fn try_to_bytes(&self) -> Result<[u8; 12], Error> {
+        FILE_TYPE.fit(self.file_type.raw())?;
+        Ok(self.to_bytes())
     }
 }
 

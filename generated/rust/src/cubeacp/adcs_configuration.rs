@@ -1095,11 +1095,10 @@ impl AdcsConfiguration {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
     #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 504], Error> {
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; 504] {
         let mut bytes = [0; 504];
         bytes[0] = self.magnetorquer_1_configuration.raw();
         bytes[1] = self.magnetorquer_2_configuration.raw();
@@ -1292,8 +1291,7 @@ impl AdcsConfiguration {
         put!(self.rwheel_proportional_gain.to_le_bytes() => bytes[297; 4]);
         put!(self.rwheel_derivative_gain.to_le_bytes() => bytes[301; 4]);
         put!(self.y_wheel_bias_momentum.to_le_bytes() => bytes[305; 4]);
-        let value = SUN_POINTING_FACET.fit(self.sun_pointing_facet.raw())?;
-        bytes[309] |= value;
+        bytes[309] |= self.sun_pointing_facet.raw() & 0x7f;
         bytes[309] |= u8::from(self.control_transition_on_wheel_error) << 7;
         put!(self.tracking_proportional_gain.to_le_bytes() => bytes[310; 4]);
         put!(self.tracking_derivative_gain.to_le_bytes() => bytes[314; 4]);
@@ -1319,10 +1317,8 @@ impl AdcsConfiguration {
         bytes[375] |= u8::from(self.use_star_tracker) << 3;
         bytes[375] |= u8::from(self.nadir_sensor_terminator_test) << 4;
         bytes[375] |= u8::from(self.automatic_magnetometer_recovery) << 5;
-        let value = MAGNETOMETER_MODE.fit(self.magnetometer_mode.raw())?;
-        bytes[375] |= value << 6;
-        let value = RAW_MAGNETOMETER_SELECTION.fit(self.raw_magnetometer_selection.raw())?;
-        bytes[376] |= value;
+        bytes[375] |= self.magnetometer_mode.raw() << 6;
+        bytes[376] |= self.raw_magnetometer_selection.raw() & 0x03;
         let value = self.estimation_transition_on_rate_sensor_error;
         bytes[376] |= u8::from(value) << 2;
         bytes[377] = self.cam1_and_cam2_sampling_period;
@@ -1345,7 +1341,21 @@ impl AdcsConfiguration {
         put!(self.min_samples.to_le_bytes() => bytes[406; 2]);
         put_array(&mut bytes, 408, &self.user_coded_controller_settings);
         put_array(&mut bytes, 456, &self.user_coded_estimator_settings);
-        Ok(bytes)
+        bytes
+    }
+
+    /// Encodes the message if every value fits its field; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
+    #[inline]
+    pub fn try_to_bytes(&self) -> Result<[u8; 504], Error> {
+        SUN_POINTING_FACET.fit(self.sun_pointing_facet.raw())?;
+        MAGNETOMETER_MODE.fit(self.magnetometer_mode.raw())?;
+        let value = self.raw_magnetometer_selection.raw();
+        RAW_MAGNETOMETER_SELECTION.fit(value)?;
+        Ok(self.to_bytes())
     }
 
     /// X-Rate Sensor Offset in deg/s: -32.768 to 32.767.

@@ -107,35 +107,50 @@ impl AdcsPowerControl {
 
     /// Encodes the message; reserved bits are 0.
     ///
+    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
+    #[inline]
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; 3] {
+        let mut bytes = [0; 3];
+        bytes[0] |= self.cubecontrol_signal_power_selection.raw() & 0x03;
+        bytes[0] |= (self.cubecontrol_motor_power_selection.raw() & 0x03) << 2;
+        bytes[0] |= (self.cubesense1_power_selection.raw() & 0x03) << 4;
+        bytes[0] |= self.cubesense2_power_selection.raw() << 6;
+        bytes[1] |= self.cubestar_power_selection.raw() & 0x03;
+        bytes[1] |= (self.cubewheel1_power_selection.raw() & 0x03) << 2;
+        bytes[1] |= (self.cubewheel2_power_selection.raw() & 0x03) << 4;
+        bytes[1] |= self.cubewheel3_power_selection.raw() << 6;
+        bytes[2] |= self.motor_power.raw() & 0x03;
+        bytes[2] |= (self.gps_power.raw() & 0x03) << 2;
+        bytes
+    }
+
+    /// Encodes the message if every value fits its field; reserved bits are 0.
+    ///
     /// # Errors
     ///
     /// [`Error::Range`] if a value does not fit its field.
     #[inline]
     pub fn try_to_bytes(&self) -> Result<[u8; 3], Error> {
-        let mut bytes = [0; 3];
         let value = self.cubecontrol_signal_power_selection.raw();
-        let value = CUBECONTROL_SIGNAL_POWER_SELECTION.fit(value)?;
-        bytes[0] |= value;
+        CUBECONTROL_SIGNAL_POWER_SELECTION.fit(value)?;
         let value = self.cubecontrol_motor_power_selection.raw();
-        let value = CUBECONTROL_MOTOR_POWER_SELECTION.fit(value)?;
-        bytes[0] |= value << 2;
-        let value = CUBESENSE1_POWER_SELECTION.fit(self.cubesense1_power_selection.raw())?;
-        bytes[0] |= value << 4;
-        let value = CUBESENSE2_POWER_SELECTION.fit(self.cubesense2_power_selection.raw())?;
-        bytes[0] |= value << 6;
-        let value = CUBESTAR_POWER_SELECTION.fit(self.cubestar_power_selection.raw())?;
-        bytes[1] |= value;
-        let value = CUBEWHEEL1_POWER_SELECTION.fit(self.cubewheel1_power_selection.raw())?;
-        bytes[1] |= value << 2;
-        let value = CUBEWHEEL2_POWER_SELECTION.fit(self.cubewheel2_power_selection.raw())?;
-        bytes[1] |= value << 4;
-        let value = CUBEWHEEL3_POWER_SELECTION.fit(self.cubewheel3_power_selection.raw())?;
-        bytes[1] |= value << 6;
-        let value = MOTOR_POWER.fit(self.motor_power.raw())?;
-        bytes[2] |= value;
-        let value = GPS_POWER.fit(self.gps_power.raw())?;
-        bytes[2] |= value << 2;
-        Ok(bytes)
+        CUBECONTROL_MOTOR_POWER_SELECTION.fit(value)?;
+        let value = self.cubesense1_power_selection.raw();
+        CUBESENSE1_POWER_SELECTION.fit(value)?;
+        let value = self.cubesense2_power_selection.raw();
+        CUBESENSE2_POWER_SELECTION.fit(value)?;
+        let value = self.cubestar_power_selection.raw();
+        CUBESTAR_POWER_SELECTION.fit(value)?;
+        let value = self.cubewheel1_power_selection.raw();
+        CUBEWHEEL1_POWER_SELECTION.fit(value)?;
+        let value = self.cubewheel2_power_selection.raw();
+        CUBEWHEEL2_POWER_SELECTION.fit(value)?;
+        let value = self.cubewheel3_power_selection.raw();
+        CUBEWHEEL3_POWER_SELECTION.fit(value)?;
+        MOTOR_POWER.fit(self.motor_power.raw())?;
+        GPS_POWER.fit(self.gps_power.raw())?;
+        Ok(self.to_bytes())
     }
 }
 

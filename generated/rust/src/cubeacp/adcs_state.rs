@@ -390,20 +390,15 @@ impl AdcsState {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
     #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 54], Error> {
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; 54] {
         let mut bytes = [0; 54];
-        let value = ATTITUDE_ESTIMATION_MODE.fit(self.attitude_estimation_mode.raw())?;
-        bytes[0] |= value;
-        let value = CONTROL_MODE.fit(self.control_mode.raw())?;
-        bytes[0] |= value << 4;
-        let value = ADCS_RUN_MODE.fit(self.adcs_run_mode.raw())?;
-        bytes[1] |= value;
-        let value = ASGP4_MODE.fit(self.asgp4_mode.raw())?;
-        bytes[1] |= value << 2;
+        bytes[0] |= self.attitude_estimation_mode.raw() & 0x0f;
+        bytes[0] |= self.control_mode.raw() << 4;
+        bytes[1] |= self.adcs_run_mode.raw() & 0x03;
+        bytes[1] |= (self.asgp4_mode.raw() & 0x03) << 2;
         bytes[1] |= u8::from(self.cubecontrol_signal_enabled) << 4;
         bytes[1] |= u8::from(self.cubecontrol_motor_enabled) << 5;
         bytes[1] |= u8::from(self.cubesense1_enabled) << 6;
@@ -446,9 +441,7 @@ impl AdcsState {
         bytes[6] |= u8::from(self.configuration_is_invalid) << 1;
         bytes[6] |= u8::from(self.control_mode_change_is_not_allowed) << 2;
         bytes[6] |= u8::from(self.estimator_change_is_not_allowed) << 3;
-        let value = self.current_magnetometer_sampling_mode.raw();
-        let value = CURRENT_MAGNETOMETER_SAMPLING_MODE.fit(value)?;
-        bytes[6] |= value << 4;
+        bytes[6] |= (self.current_magnetometer_sampling_mode.raw() & 0x03) << 4;
         bytes[6] |= u8::from(self.magnetic_field_size_mismatch) << 6;
         bytes[6] |= u8::from(self.node_recovery_error) << 7;
         bytes[7] |= u8::from(self.cubesense1_runtime_error);
@@ -482,7 +475,24 @@ impl AdcsState {
         put!(self.ecef_position_x.to_le_bytes() => bytes[48; 2]);
         put!(self.ecef_position_y.to_le_bytes() => bytes[50; 2]);
         put!(self.ecef_position_z.to_le_bytes() => bytes[52; 2]);
-        Ok(bytes)
+        bytes
+    }
+
+    /// Encodes the message if every value fits its field; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
+    #[inline]
+    pub fn try_to_bytes(&self) -> Result<[u8; 54], Error> {
+        let value = self.attitude_estimation_mode.raw();
+        ATTITUDE_ESTIMATION_MODE.fit(value)?;
+        CONTROL_MODE.fit(self.control_mode.raw())?;
+        ADCS_RUN_MODE.fit(self.adcs_run_mode.raw())?;
+        ASGP4_MODE.fit(self.asgp4_mode.raw())?;
+        let value = self.current_magnetometer_sampling_mode.raw();
+        CURRENT_MAGNETOMETER_SAMPLING_MODE.fit(value)?;
+        Ok(self.to_bytes())
     }
 
     /// Estimated Roll Angle in deg: -327.68 to 327.67.

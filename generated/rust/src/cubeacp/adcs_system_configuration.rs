@@ -351,27 +351,21 @@ impl AdcsSystemConfiguration {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
     #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 173], Error> {
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; 173] {
         let mut bytes = [0; 173];
-        let value = ACP_TYPE.fit(self.acp_type.raw())?;
-        bytes[0] |= value;
-        let value = SPECIAL_CONTROL_SELECTION.fit(self.special_control_selection.raw())?;
-        bytes[0] |= value << 4;
+        bytes[0] |= self.acp_type.raw() & 0x0f;
+        bytes[0] |= self.special_control_selection.raw() << 4;
         bytes[1] = self.cubecontrol_signal_version;
         bytes[2] = self.cubecontrol_motor_version;
         bytes[3] = self.cubesense1_version;
         bytes[4] = self.cubesense2_version;
-        let value = CUBESENSE1_CAMERA_TYPE.fit(self.cubesense1_camera_type.raw())?;
-        bytes[5] |= value;
-        let value = CUBESENSE2_CAMERA_TYPE.fit(self.cubesense2_camera_type.raw())?;
-        bytes[5] |= value << 4;
+        bytes[5] |= self.cubesense1_camera_type.raw() & 0x0f;
+        bytes[5] |= self.cubesense2_camera_type.raw() << 4;
         bytes[6] = self.cubestar_version;
-        let value = GPS_TYPE.fit(self.gps_type.raw())?;
-        bytes[7] |= value;
+        bytes[7] |= self.gps_type.raw() & 0x0f;
         bytes[7] |= u8::from(self.redundant_mtm_included) << 4;
         put!(self.magnetorquer_x_max_dipole.to_le_bytes() => bytes[8; 4]);
         put!(self.magnetorquer_y_max_dipole.to_le_bytes() => bytes[12; 4]);
@@ -412,43 +406,73 @@ impl AdcsSystemConfiguration {
         put!(self.redundant_mtm_x_sens_s2.to_le_bytes() => bytes[152; 4]);
         put!(self.redundant_mtm_y_sens_s2.to_le_bytes() => bytes[156; 4]);
         put!(self.redundant_mtm_z_sens_s2.to_le_bytes() => bytes[160; 4]);
-        let value = CC_SIGNAL_ENABLE_PORT.fit(self.cc_signal_enable_port.raw())?;
-        bytes[164] |= value;
-        let value = CC_SIGNAL_ENABLE_PIN.fit(self.cc_signal_enable_pin.raw())?;
-        bytes[164] |= value << 4;
-        let value = CC_MOTOR_ENABLE_PORT.fit(self.cc_motor_enable_port.raw())?;
-        bytes[165] |= value;
-        let value = CC_MOTOR_ENABLE_PIN.fit(self.cc_motor_enable_pin.raw())?;
-        bytes[165] |= value << 4;
-        let value = CC_COMMON_ENABLE_PORT.fit(self.cc_common_enable_port.raw())?;
-        bytes[166] |= value;
-        let value = CC_COMMON_ENABLE_PIN.fit(self.cc_common_enable_pin.raw())?;
-        bytes[166] |= value << 4;
-        let value = CUBESENSE1_ENABLE_PORT.fit(self.cubesense1_enable_port.raw())?;
-        bytes[167] |= value;
-        let value = CUBESENSE1_ENABLE_PIN.fit(self.cubesense1_enable_pin.raw())?;
-        bytes[167] |= value << 4;
-        let value = CUBESENSE2_ENABLE_PORT.fit(self.cubesense2_enable_port.raw())?;
-        bytes[168] |= value;
-        let value = CUBESENSE2_ENABLE_PIN.fit(self.cubesense2_enable_pin.raw())?;
-        bytes[168] |= value << 4;
-        let value = CUBESTAR_ENABLE_PORT.fit(self.cubestar_enable_port.raw())?;
-        bytes[169] |= value;
-        let value = CUBESTAR_ENABLE_PIN.fit(self.cubestar_enable_pin.raw())?;
-        bytes[169] |= value << 4;
-        let value = CUBEWHEEL1_ENABLE_PORT.fit(self.cubewheel1_enable_port.raw())?;
-        bytes[170] |= value;
-        let value = CUBEWHEEL1_ENABLE_PIN.fit(self.cubewheel1_enable_pin.raw())?;
-        bytes[170] |= value << 4;
-        let value = CUBEWHEEL2_ENABLE_PORT.fit(self.cubewheel2_enable_port.raw())?;
-        bytes[171] |= value;
-        let value = CUBEWHEEL2_ENABLE_PIN.fit(self.cubewheel2_enable_pin.raw())?;
-        bytes[171] |= value << 4;
-        let value = CUBEWHEEL3_ENABLE_PORT.fit(self.cubewheel3_enable_port.raw())?;
-        bytes[172] |= value;
-        let value = CUBEWHEEL3_ENABLE_PIN.fit(self.cubewheel3_enable_pin.raw())?;
-        bytes[172] |= value << 4;
-        Ok(bytes)
+        bytes[164] |= self.cc_signal_enable_port.raw() & 0x0f;
+        bytes[164] |= self.cc_signal_enable_pin.raw() << 4;
+        bytes[165] |= self.cc_motor_enable_port.raw() & 0x0f;
+        bytes[165] |= self.cc_motor_enable_pin.raw() << 4;
+        bytes[166] |= self.cc_common_enable_port.raw() & 0x0f;
+        bytes[166] |= self.cc_common_enable_pin.raw() << 4;
+        bytes[167] |= self.cubesense1_enable_port.raw() & 0x0f;
+        bytes[167] |= self.cubesense1_enable_pin.raw() << 4;
+        bytes[168] |= self.cubesense2_enable_port.raw() & 0x0f;
+        bytes[168] |= self.cubesense2_enable_pin.raw() << 4;
+        bytes[169] |= self.cubestar_enable_port.raw() & 0x0f;
+        bytes[169] |= self.cubestar_enable_pin.raw() << 4;
+        bytes[170] |= self.cubewheel1_enable_port.raw() & 0x0f;
+        bytes[170] |= self.cubewheel1_enable_pin.raw() << 4;
+        bytes[171] |= self.cubewheel2_enable_port.raw() & 0x0f;
+        bytes[171] |= self.cubewheel2_enable_pin.raw() << 4;
+        bytes[172] |= self.cubewheel3_enable_port.raw() & 0x0f;
+        bytes[172] |= self.cubewheel3_enable_pin.raw() << 4;
+        bytes
+    }
+
+    /// Encodes the message if every value fits its field; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
+    #[inline]
+    pub fn try_to_bytes(&self) -> Result<[u8; 173], Error> {
+        ACP_TYPE.fit(self.acp_type.raw())?;
+        let value = self.special_control_selection.raw();
+        SPECIAL_CONTROL_SELECTION.fit(value)?;
+        let value = self.cubesense1_camera_type.raw();
+        CUBESENSE1_CAMERA_TYPE.fit(value)?;
+        let value = self.cubesense2_camera_type.raw();
+        CUBESENSE2_CAMERA_TYPE.fit(value)?;
+        GPS_TYPE.fit(self.gps_type.raw())?;
+        let value = self.cc_signal_enable_port.raw();
+        CC_SIGNAL_ENABLE_PORT.fit(value)?;
+        CC_SIGNAL_ENABLE_PIN.fit(self.cc_signal_enable_pin.raw())?;
+        CC_MOTOR_ENABLE_PORT.fit(self.cc_motor_enable_port.raw())?;
+        CC_MOTOR_ENABLE_PIN.fit(self.cc_motor_enable_pin.raw())?;
+        let value = self.cc_common_enable_port.raw();
+        CC_COMMON_ENABLE_PORT.fit(value)?;
+        CC_COMMON_ENABLE_PIN.fit(self.cc_common_enable_pin.raw())?;
+        let value = self.cubesense1_enable_port.raw();
+        CUBESENSE1_ENABLE_PORT.fit(value)?;
+        let value = self.cubesense1_enable_pin.raw();
+        CUBESENSE1_ENABLE_PIN.fit(value)?;
+        let value = self.cubesense2_enable_port.raw();
+        CUBESENSE2_ENABLE_PORT.fit(value)?;
+        let value = self.cubesense2_enable_pin.raw();
+        CUBESENSE2_ENABLE_PIN.fit(value)?;
+        CUBESTAR_ENABLE_PORT.fit(self.cubestar_enable_port.raw())?;
+        CUBESTAR_ENABLE_PIN.fit(self.cubestar_enable_pin.raw())?;
+        let value = self.cubewheel1_enable_port.raw();
+        CUBEWHEEL1_ENABLE_PORT.fit(value)?;
+        let value = self.cubewheel1_enable_pin.raw();
+        CUBEWHEEL1_ENABLE_PIN.fit(value)?;
+        let value = self.cubewheel2_enable_port.raw();
+        CUBEWHEEL2_ENABLE_PORT.fit(value)?;
+        let value = self.cubewheel2_enable_pin.raw();
+        CUBEWHEEL2_ENABLE_PIN.fit(value)?;
+        let value = self.cubewheel3_enable_port.raw();
+        CUBEWHEEL3_ENABLE_PORT.fit(value)?;
+        let value = self.cubewheel3_enable_pin.raw();
+        CUBEWHEEL3_ENABLE_PIN.fit(value)?;
+        Ok(self.to_bytes())
     }
 }
 

@@ -121,15 +121,13 @@ impl Asgp4Tles {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
     #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 33], Error> {
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; 33] {
         let mut bytes = [0; 33];
         bytes[0] |= u8::from(self.asgp4_complete);
-        let value = ASGP4_ERROR.fit(self.asgp4_error.raw())?;
-        bytes[0] |= value << 1;
+        bytes[0] |= self.asgp4_error.raw() << 1;
         put!(self.asgp4_epoch.to_le_bytes() => bytes[1; 4]);
         put!(self.asgp4_inclination.to_le_bytes() => bytes[5; 4]);
         put!(self.asgp4_raan.to_le_bytes() => bytes[9; 4]);
@@ -138,7 +136,18 @@ impl Asgp4Tles {
         put!(self.asgp4_ma.to_le_bytes() => bytes[21; 4]);
         put!(self.asgp4_mm.to_le_bytes() => bytes[25; 4]);
         put!(self.asgp4_bstar.to_le_bytes() => bytes[29; 4]);
-        Ok(bytes)
+        bytes
+    }
+
+    /// Encodes the message if every value fits its field; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
+    #[inline]
+    pub fn try_to_bytes(&self) -> Result<[u8; 33], Error> {
+        ASGP4_ERROR.fit(self.asgp4_error.raw())?;
+        Ok(self.to_bytes())
     }
 }
 

@@ -232,20 +232,15 @@ impl CurrentAdcsState {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
     #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 6], Error> {
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; 6] {
         let mut bytes = [0; 6];
-        let value = ATTITUDE_ESTIMATION_MODE.fit(self.attitude_estimation_mode.raw())?;
-        bytes[0] |= value;
-        let value = CONTROL_MODE.fit(self.control_mode.raw())?;
-        bytes[0] |= value << 4;
-        let value = ADCS_RUN_MODE.fit(self.adcs_run_mode.raw())?;
-        bytes[1] |= value;
-        let value = ASGP4_MODE.fit(self.asgp4_mode.raw())?;
-        bytes[1] |= value << 2;
+        bytes[0] |= self.attitude_estimation_mode.raw() & 0x0f;
+        bytes[0] |= self.control_mode.raw() << 4;
+        bytes[1] |= self.adcs_run_mode.raw() & 0x03;
+        bytes[1] |= (self.asgp4_mode.raw() & 0x03) << 2;
         bytes[1] |= u8::from(self.cubecontrol_signal_enabled) << 4;
         bytes[1] |= u8::from(self.cubecontrol_motor_enabled) << 5;
         bytes[1] |= u8::from(self.cubesense1_enabled) << 6;
@@ -284,7 +279,22 @@ impl CurrentAdcsState {
         bytes[5] |= u8::from(self.coarse_sun_sensor_error) << 5;
         bytes[5] |= u8::from(self.star_tracker_match_error) << 6;
         bytes[5] |= u8::from(self.star_tracker_overcurrent_detected) << 7;
-        Ok(bytes)
+        bytes
+    }
+
+    /// Encodes the message if every value fits its field; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
+    #[inline]
+    pub fn try_to_bytes(&self) -> Result<[u8; 6], Error> {
+        let value = self.attitude_estimation_mode.raw();
+        ATTITUDE_ESTIMATION_MODE.fit(value)?;
+        CONTROL_MODE.fit(self.control_mode.raw())?;
+        ADCS_RUN_MODE.fit(self.adcs_run_mode.raw())?;
+        ASGP4_MODE.fit(self.asgp4_mode.raw())?;
+        Ok(self.to_bytes())
     }
 }
 

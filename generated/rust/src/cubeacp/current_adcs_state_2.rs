@@ -124,19 +124,16 @@ impl CurrentAdcsState2 {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
     #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 6], Error> {
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; 6] {
         let mut bytes = [0; 6];
         bytes[0] |= u8::from(self.orbit_parameters_are_invalid);
         bytes[0] |= u8::from(self.configuration_is_invalid) << 1;
         bytes[0] |= u8::from(self.control_mode_change_is_not_allowed) << 2;
         bytes[0] |= u8::from(self.estimator_change_is_not_allowed) << 3;
-        let value = self.current_magnetometer_sampling_mode.raw();
-        let value = CURRENT_MAGNETOMETER_SAMPLING_MODE.fit(value)?;
-        bytes[0] |= value << 4;
+        bytes[0] |= (self.current_magnetometer_sampling_mode.raw() & 0x03) << 4;
         bytes[0] |= u8::from(self.magnetic_field_size_mismatch) << 6;
         bytes[0] |= u8::from(self.node_recovery_error) << 7;
         bytes[1] |= u8::from(self.cubesense1_runtime_error);
@@ -149,7 +146,19 @@ impl CurrentAdcsState2 {
         bytes[1] |= u8::from(self.cubestar_runtime_error) << 7;
         bytes[2] |= u8::from(self.magnetometer_error);
         bytes[2] |= u8::from(self.rate_sensor_failure) << 1;
-        Ok(bytes)
+        bytes
+    }
+
+    /// Encodes the message if every value fits its field; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
+    #[inline]
+    pub fn try_to_bytes(&self) -> Result<[u8; 6], Error> {
+        let value = self.current_magnetometer_sampling_mode.raw();
+        CURRENT_MAGNETOMETER_SAMPLING_MODE.fit(value)?;
+        Ok(self.to_bytes())
     }
 }
 

@@ -146,11 +146,10 @@ impl EstimationParameters {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
+    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
     #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 31], Error> {
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; 31] {
         let mut bytes = [0; 31];
         let value = self.magnetometer_rate_filter_system_noise;
         put!(value.to_le_bytes() => bytes[0; 4]);
@@ -166,14 +165,25 @@ impl EstimationParameters {
         bytes[28] |= u8::from(self.use_star_tracker) << 3;
         bytes[28] |= u8::from(self.nadir_sensor_terminator_test) << 4;
         bytes[28] |= u8::from(self.automatic_magnetometer_recovery) << 5;
-        let value = MAGNETOMETER_MODE.fit(self.magnetometer_mode.raw())?;
-        bytes[28] |= value << 6;
-        let value = RAW_MAGNETOMETER_SELECTION.fit(self.raw_magnetometer_selection.raw())?;
-        bytes[29] |= value;
+        bytes[28] |= self.magnetometer_mode.raw() << 6;
+        bytes[29] |= self.raw_magnetometer_selection.raw() & 0x03;
         let value = self.estimation_transition_on_rate_sensor_error;
         bytes[29] |= u8::from(value) << 2;
         bytes[30] = self.cam1_and_cam2_sampling_period;
-        Ok(bytes)
+        bytes
+    }
+
+    /// Encodes the message if every value fits its field; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
+    #[inline]
+    pub fn try_to_bytes(&self) -> Result<[u8; 31], Error> {
+        MAGNETOMETER_MODE.fit(self.magnetometer_mode.raw())?;
+        let value = self.raw_magnetometer_selection.raw();
+        RAW_MAGNETOMETER_SELECTION.fit(value)?;
+        Ok(self.to_bytes())
     }
 }
 

@@ -87,19 +87,28 @@ impl SetReactionWheelControlParameters {
 
     /// Encodes the message; reserved bits are 0.
     ///
+    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
+    #[inline]
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; 13] {
+        let mut bytes = [0; 13];
+        put!(self.rwheel_proportional_gain.to_le_bytes() => bytes[0; 4]);
+        put!(self.rwheel_derivative_gain.to_le_bytes() => bytes[4; 4]);
+        put!(self.y_wheel_bias_momentum.to_le_bytes() => bytes[8; 4]);
+        bytes[12] |= self.sun_pointing_facet.raw() & 0x7f;
+        bytes[12] |= u8::from(self.control_transition_on_wheel_error) << 7;
+        bytes
+    }
+
+    /// Encodes the message if every value fits its field; reserved bits are 0.
+    ///
     /// # Errors
     ///
     /// [`Error::Range`] if a value does not fit its field.
     #[inline]
     pub fn try_to_bytes(&self) -> Result<[u8; 13], Error> {
-        let mut bytes = [0; 13];
-        put!(self.rwheel_proportional_gain.to_le_bytes() => bytes[0; 4]);
-        put!(self.rwheel_derivative_gain.to_le_bytes() => bytes[4; 4]);
-        put!(self.y_wheel_bias_momentum.to_le_bytes() => bytes[8; 4]);
-        let value = SUN_POINTING_FACET.fit(self.sun_pointing_facet.raw())?;
-        bytes[12] |= value;
-        bytes[12] |= u8::from(self.control_transition_on_wheel_error) << 7;
-        Ok(bytes)
+        SUN_POINTING_FACET.fit(self.sun_pointing_facet.raw())?;
+        Ok(self.to_bytes())
     }
 }
 
