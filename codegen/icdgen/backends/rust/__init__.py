@@ -37,7 +37,9 @@ class RustBackend:
         rows = {node.name: message_rows(icd, node, enums) for node in icd.nodes}
         for node in icd.nodes:
             folder = PurePosixPath("src") / node.name
-            yield folder / "mod.rs", render("node.rs.j2", node=nodes.NodeRow(icd, node, rows), wired=node.name in wired, **common)
+            yield folder / "mod.rs", render(
+                "node.rs.j2", node=nodes.NodeRow(icd, node, rows), wired=node.name in wired, **common
+            )
             if node.enums:
                 members = [EnumRow(enum, node, enums) for enum in node.enums]
                 yield folder / "enums.rs", render("enums.rs.j2", node=node.name, enums=members, **common)

@@ -14,7 +14,9 @@ def files(known: Facts) -> Struct | None:
     form = known.files
     if form is None:
         return None
-    ids = (Part(bus, Optional(form.packet_ids.get(bus)), f"file_transfer.download.{bus}") for bus in ("uart", "i2c", "can"))
+    ids = (
+        Part(bus, Optional(form.packet_ids.get(bus)), f"file_transfer.download.{bus}") for bus in ("uart", "i2c", "can")
+    )
     return Struct(
         "Files",
         (
@@ -81,7 +83,9 @@ class _Procedure:
         self.whole = self.whole and found is not None
         self.parts.append(Part(name, found, f"file_transfer.{self.name}.{name}"))
 
-    def number(self, key: str, name: str = "", factor: int = 1, truth: bool = False, default: int | None = None) -> None:
+    def number(
+        self, key: str, name: str = "", factor: int = 1, truth: bool = False, default: int | None = None
+    ) -> None:
         found = self.files.numbers.get(f"{self.name}.{key}", default)
         self.whole = self.whole and found is not None
         value = bool(found) if truth else (found or 0) * factor

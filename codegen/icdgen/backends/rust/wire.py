@@ -353,4 +353,3 @@ def _index(known: Facts) -> Struct | None:
     return Struct(
         "IndexForm", (Part("entry_bytes", form.entry_bytes), *spans, Part("file_type", Optional(form.file_type)))
     )
-
