@@ -1,8 +1,9 @@
-"""``python -m tests.fuzz c|c-wire|rust|python [--seconds N] [ICD ...]``: builds a harness and runs it; 0 if nothing is found."""
+"""``python -m tests.fuzz LANG [--seconds N] [ICD ...]``: builds a harness and runs it; status 0 if nothing is found."""
 
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import shutil
 import subprocess
@@ -35,8 +36,8 @@ libfuzzer-sys = "0.4"
 icd = {{ package = "{package}", path = "../source/rust" }}
 
 [[bin]]
-name = "dispatch"
-path = "dispatch.rs"
+name = "{target}"
+path = "{target}.rs"
 test = false
 doc = false
 
@@ -66,7 +67,7 @@ def seeds(icd: Icd) -> Iterator[bytes]:
                         yield bytes((index, flag | (4 if id > 255 else 0), id & 0xFF)) + row.frame
 
 
-def wire_seeds(icd: Icd) -> Iterator[bytes]:
+def c_wire_seeds(icd: Icd) -> Iterator[bytes]:
     """An input for every stream, row of packets and log of the golden vectors of the protocol, for the harness `c_wire`."""
     for index, node in enumerate(icd.nodes):
         for case in protocol.cases(icd, node) if node in protocol.nodes(icd) else ():
@@ -83,6 +84,25 @@ def wire_seeds(icd: Icd) -> Iterator[bytes]:
 def _packet(one: dict) -> bytes:
     id, data = one["id"], bytes.fromhex(one["bytes"])
     return bytes((id >> 24 & 31, id >> 16 & 255, (id >> 8 & 3) | (id & 3) << 2)) + data.ljust(8, b"\0") + b"\0"
+
+
+def rust_wire_seeds(icd: Icd) -> Iterator[bytes]:
+    """An input for every stream, log and set of packets of the golden vectors of the protocol layer."""
+    for index, node in enumerate(json.loads(protocol.text(icd) or '{"nodes": []}')["nodes"]):
+        for case in node["cases"]:
+            request, head = case["request"], bytes((index, 0, 3, 128))
+            if request["op"] == "uart_events":
+                stream = bytes.fromhex("".join(request["chunks"]))[:LONGEST]
+                yield head + stream
+                yield bytes((index, 3, 3, 128)) + stream
+            elif request["op"] == "can_join":
+                rows = (
+                    one["id"].to_bytes(4, "big") + b"\0" + bytes.fromhex(one["bytes"]).ljust(9, b"\0")
+                    for one in request["packets"]
+                )
+                yield bytes((index, 1, 3, 128)) + b"".join(rows)[:LONGEST]
+            elif request["op"] in ("log_decode", "log_message_decode"):
+                yield bytes((index, 2, 3, 128)) + bytes.fromhex(request["bytes"])[:LONGEST]
 
 
 def c(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
@@ -106,23 +126,40 @@ def _c(icd: Icd, folder: Path, target: str) -> tuple[list[str], dict[str, str]]:
 
 def rust(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
     """cargo-fuzz: libFuzzer with the address sanitizer, integer overflow checked."""
+    arms = []
+    for index, node in enumerate(icd.nodes):
+        for flag, pick, name in (("false", "telecommand_id", "Telecommand"), ("true", "telemetry_id", "Telemetry")):
+            if any(getattr(message, pick) is not None for message in icd.messages_of(node)):
+                arms.append(f"    ({index}, {flag}) => exercise!(icd::{node.name}::{name}, id, fit, data),\n")
+    text = f"match (node % {len(icd.nodes)}, telemetry) {{\n{''.join(arms)}    _ => {{}}\n}}\n"
+    return _cargo_fuzz(icd, folder, "dispatch", HERE / "rust_target.rs", {"nodes.rs": text})
+
+
+def rust_wire(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
+    """The same on the stream decoders and the client of the wire layer."""
+    nodes = [node.name for node in icd.nodes if icd.protocol_of(node)]
+    longest = "".join(f" if icd::{name}::LONGEST > longest {{ longest = icd::{name}::LONGEST; }}" for name in nodes)
+    text = f"static LINKS: &[&Link] = &[{', '.join(f'&icd::{name}::LINK' for name in nodes)}];\n"
+    text += f"const LONGEST: usize = {{ let mut longest = 0;{longest} longest }};\n"
+    return _cargo_fuzz(icd, folder, "wire", HERE / "rust_wire_target.rs", {"links.rs": text})
+
+
+def _cargo_fuzz(
+    icd: Icd, folder: Path, target: str, harness: Path, included: dict[str, str]
+) -> tuple[list[str], dict[str, str]]:
     import tomllib
 
     source = sources(Language("rust", ("rust",), (), lambda source, out: []), icd, folder)
     fuzz = folder / "fuzz"
     fuzz.mkdir(exist_ok=True)
     package = tomllib.loads((source / "rust" / "Cargo.toml").read_text())["package"]["name"]
-    (fuzz / "Cargo.toml").write_text(_MANIFEST.format(package=package))
-    shutil.copy(HERE / "rust_target.rs", fuzz / "dispatch.rs")
-    arms = []
-    for index, node in enumerate(icd.nodes):
-        for flag, pick, name in (("false", "telecommand_id", "Telecommand"), ("true", "telemetry_id", "Telemetry")):
-            if any(getattr(message, pick) is not None for message in icd.messages_of(node)):
-                arms.append(f"    ({index}, {flag}) => exercise!(icd::{node.name}::{name}, id, fit, data),\n")
-    (fuzz / "nodes.rs").write_text(f"match (node % {len(icd.nodes)}, telemetry) {{\n{''.join(arms)}    _ => {{}}\n}}\n")
+    (fuzz / "Cargo.toml").write_text(_MANIFEST.format(package=package, target=target))
+    shutil.copy(harness, fuzz / f"{target}.rs")
+    for name, text in included.items():
+        (fuzz / name).write_text(text)
     options = ["--fuzz-dir", str(fuzz), "--dev"]
-    execute("cargo", "+nightly", "fuzz", "build", *options, "dispatch", cwd=fuzz)
-    found = sorted(fuzz.glob("target/*/debug/dispatch"))
+    execute("cargo", "+nightly", "fuzz", "build", *options, target, cwd=fuzz)
+    found = sorted(fuzz.glob(f"target/*/debug/{target}"))
     if not found:
         raise BuildError("cargo fuzz built nothing")
     return [str(found[0])], {}
@@ -136,8 +173,8 @@ def python(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
     return command, {"PYTHONPATH": str(package.parent)}
 
 
-SEEDS = {"c-wire": wire_seeds}
-HARNESSES = {"c": c, "c-wire": c_wire, "rust": rust, "python": python}
+SEEDS = {"c-wire": c_wire_seeds, "rust-wire": rust_wire_seeds}
+HARNESSES = {"c": c, "c-wire": c_wire, "rust": rust, "rust-wire": rust_wire, "python": python}
 
 
 def main(arguments: list[str] | None = None) -> int:

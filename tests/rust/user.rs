@@ -3,6 +3,8 @@
 use icd::common::Reset;
 use icd::cubeacp::enums::{ConModeSelect, EstimModeSelect};
 use icd::cubeacp::{AdcsConfiguration, CurrentAdcsState, EstimatedAttitudeAngles, SetAttitudeControlMode, Telecommand, Telemetry};
+use icd::wire::files::{Download, End, Procedure};
+use icd::wire::{crc16, identify, uart, Bus, Client, Crc, Event, Link, Reason, Started, Table};
 use icd::{Coded, Error};
 
 fn main() {
@@ -11,6 +13,10 @@ fn main() {
     enumerations();
     dispatching();
     floats();
+    requesting();
+    sending();
+    downloading();
+    checking();
 }
 
 fn reading() {
@@ -90,4 +96,146 @@ fn floats() {
     let encoded = configuration.to_bytes();
     let again = AdcsConfiguration::from_bytes(&encoded).unwrap();
     assert_eq!(again.to_bytes(), encoded, "signalling NaNs are kept");
+}
+
+fn requesting() {
+    let mut client = Client::<{ icd::cubeacp::LONGEST }>::uart(&icd::cubeacp::LINK).unwrap();
+    let before = u32::MAX - 5; // time wraps while the reply is awaited
+    client.request::<EstimatedAttitudeAngles>(before).unwrap();
+    assert_eq!(client.request::<CurrentAdcsState>(before), Err(icd::wire::Error::Busy));
+    assert_eq!(client.output(), Some(&[0x1f, 0x7f, 146, 0x1f, 0xff][..]));
+    assert_eq!(client.output(), None);
+    let mut line = [0; 32];
+    let size = uart::encode(&icd::cubeacp::LINK, &[146, 0x2e, 0xfb, 0x0a, 0, 0, 0], &mut line).unwrap();
+    let mut angles = None;
+    for byte in &line[..size] {
+        client.received(before.wrapping_add(50), &[*byte], |event| angles = event.message::<EstimatedAttitudeAngles>());
+    }
+    assert_eq!(angles.unwrap().estimated_roll_angle, -1234);
+    assert_eq!(client.deadline(), None);
+    assert!(Client::<16>::uart(&icd::cubeacp::LINK).is_err(), "a buffer that is too small");
+}
+
+fn sending() {
+    let mut client = Client::<{ icd::cubeacp::LONGEST }>::can(&icd::cubeacp::LINK, 7).unwrap();
+    assert_eq!(client.send(0, &Reset::default()), Ok(Started::Done), "it is answered by a reset");
+    let packet = client.output_packet().unwrap();
+    assert_eq!((packet.id, packet.data()), (0x0101_0701, &[90][..]));
+    assert!(client.output_packet().is_none());
+    let mut client = Client::<{ icd::cubeacp::LONGEST }>::uart(&icd::cubeacp::LINK).unwrap().with_checksums();
+    let command = SetAttitudeControlMode::default();
+    assert_eq!(client.send(10, &command), Ok(Started::Waiting));
+    let mut sent = Vec::new();
+    while let Some(bytes) = client.output() {
+        sent.extend_from_slice(bytes);
+    }
+    assert_eq!(sent.len(), 4 + 1 + 3 + 1);
+    let mut seen = Vec::new();
+    client.received(20, &[0x1f, 0x7f, 13, 3, 0x1f, 0xff], |event| {
+        if let Event::Refused { id, code, reason, .. } = event {
+            seen.push((id, code, reason));
+        }
+    });
+    assert_eq!(seen, [(13, Some(3), Some(Reason::Parameter))]);
+}
+
+/// A node that has one file, and loses every third packet.
+struct Node {
+    file: Vec<u8>,
+    block: Vec<u8>,
+    burst: bool,
+    sent: usize,
+}
+
+impl Node {
+    fn answer(&mut self, link: &'static Link, message: &[u8]) -> Vec<Vec<u8>> {
+        match message {
+            [112, data @ ..] => {
+                let offset = u32::from_le_bytes(data[2..6].try_into().unwrap()) as usize;
+                let length = u16::from_le_bytes(data[6..8].try_into().unwrap()) as usize;
+                self.block = self.file[offset..offset + length].to_vec();
+            }
+            [242] => {
+                let [low, high, ..] = crc16(link, &self.block).unwrap().to_le_bytes();
+                let length = self.block.len() as u16;
+                return vec![[&[242, 1, low, high][..], &length.to_le_bytes()].concat()];
+            }
+            [119, ..] => self.burst = true,
+            _ => {}
+        }
+        let mut out = vec![vec![message[0], 0]];
+        if std::mem::take(&mut self.burst) {
+            for (number, packet) in self.block.chunks(20).enumerate() {
+                self.sent += 1;
+                if self.sent % 3 != 0 {
+                    let mut bytes = [&[119][..], &(number as u16).to_le_bytes(), packet].concat();
+                    bytes.resize(23, 0xff);
+                    out.push(bytes);
+                }
+            }
+        }
+        out
+    }
+}
+
+fn downloading() {
+    let link = &icd::cubeacp::LINK;
+    let mut client = Client::<{ icd::cubeacp::LONGEST }>::uart(link).unwrap();
+    let file: Vec<u8> = (0..45_000_u32).map(|n| (n * n >> 3) as u8).collect();
+    let mut node = Node { file: file.clone(), block: Vec::new(), burst: false, sent: 0 };
+    let (mut buffer, mut found) = (vec![0; 20_480], Vec::new());
+    let mut hears = uart::Decoder::<{ icd::cubeacp::LONGEST }>::new(link).unwrap();
+    let size = Some(45_000);
+    let on_block = |offset, block: &[u8]| {
+        assert_eq!(offset as usize, found.len());
+        found.extend_from_slice(block);
+    };
+    let mut download = Download::new(link, Bus::Uart, (2, 1), size, &mut buffer, on_block).unwrap();
+    let mut now = 0_u32;
+    while download.result().is_none() {
+        assert!(now < 1_000_000);
+        if let Some(request) = download.next(now) {
+            assert_eq!(client.start(now, &request), Ok(Started::Waiting));
+        }
+        let mut answers = Vec::new();
+        while let Some(bytes) = client.output() {
+            hears.feed(bytes, |event| {
+                if let uart::Event::Message(message) = event {
+                    answers.extend(node.answer(link, message));
+                }
+            });
+        }
+        for message in answers {
+            let mut line = [0; 64];
+            let size = uart::encode(link, &message, &mut line).unwrap();
+            client.received(now, &line[..size], |event| download.event(now, &event));
+        }
+        let deadlines = [client.deadline(), download.deadline()];
+        now = deadlines.iter().flatten().copied().min().unwrap_or(now).max(now);
+        client.tick(now, |event| download.event(now, &event));
+    }
+    assert_eq!(download.result(), Some(End::Done));
+    assert_eq!(download.progress(), (45_000, size));
+    drop(download);
+    assert!(found == file);
+}
+
+fn checking() {
+    let link = &icd::cubeacp::LINK;
+    let form = link.crc16.unwrap();
+    let table = Table::new(&form);
+    let mut fast = Crc::with_table(&form, &table);
+    fast.feed(b"1234");
+    fast.feed(b"56789");
+    assert_eq!((fast.result(), crc16(link, b"123456789")), (0x31c3, Ok(0x31c3)));
+    let form = link.checksum.unwrap().crc;
+    let table = Table::new(&form);
+    for bytes in [&b""[..], b"1", b"123456789"] {
+        let mut fast = Crc::with_table(&form, &table);
+        fast.feed(bytes);
+        assert_eq!(Ok(fast.result()), icd::wire::crc8(link, bytes));
+    }
+    let node = identify(link, &[10, 7, 0, 0, 0, 0, 0, 0]).unwrap();
+    assert!(node.matches && node.node_type == 10);
+    assert!(!identify(link, &[11, 7, 0, 0, 0, 0, 0, 0]).unwrap().matches);
 }

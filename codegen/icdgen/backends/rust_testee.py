@@ -11,12 +11,15 @@ from typing import NamedTuple
 
 from icdgen import __version__
 from icdgen.backends import Identifier
-from icdgen.backends.rust import CRATE, constants, message_rows, names
+from icdgen.backends.rust import CRATE, constants, message_rows, names, wire
 from icdgen.backends.rust.messages import FieldRow, MessageRow
 from icdgen.backends.rust.names import Enums
 from icdgen.backends.rust.nodes import id_type
 from icdgen.backends.rust.text import string
 from icdgen.icd.model import Icd, Node
+from icdgen.protocol import facts
+
+WIRE = ("ask", "client", "file", "wire")  # what answers requests about the protocol
 
 
 class Route(NamedTuple):
@@ -138,9 +141,17 @@ class RustTesteeBackend:
         enums = Enums(icd)
         rows = {node.name: message_rows(icd, node, enums) for node in icd.nodes}
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
-        for name in ("main", "json", "protocol", "subject"):
-            yield PurePosixPath(f"src/{name}.rs"), render(f"{name}.rs.j2", **common)
-        yield PurePosixPath("src/nodes/mod.rs"), render("nodes.rs.j2", nodes=icd.nodes, **common)
+        known = [facts.of(icd, node) for node in icd.nodes if icd.protocol_of(node)]
+        for name in ("main", "json", "protocol", "subject", *(WIRE if known else ())):
+            yield PurePosixPath(f"src/{name}.rs"), render(f"{name}.rs.j2", wired=bool(known), **common)
+        yield PurePosixPath("src/nodes/mod.rs"), render(
+            "nodes.rs.j2",
+            nodes=icd.nodes,
+            wired=bool(known),
+            links=[one.node.name for one in known],
+            longest=max(map(wire.longest, known), default=0),
+            **common,
+        )
         for node in icd.nodes:
             entry = NodeEntry(self.crate, icd, node, rows, enums)
             yield PurePosixPath(f"src/nodes/{node.name}.rs"), render("node.rs.j2", node=entry, **common)

@@ -26,6 +26,9 @@
 //! Messages with floats compare as floats do: a message that holds a NaN differs from itself. Its
 //! bits are kept nevertheless.
 //!
+//! How the messages travel is in [`wire`]: UART, I2C, CAN, checksums, a client that sends a request and
+//! waits for its outcome, file transfer and logs.
+//!
 //! Nothing here panics or allocates, whatever the bytes.
 //!
 //! Features, none of them on by default: `std` (`std::error::Error` for [`Error`]), `serde`
@@ -75,3 +78,5 @@ pub mod cubeacp;
 pub mod cubemag;
 
 pub mod cubewheel;
+
+pub mod wire;

@@ -28,24 +28,44 @@ class RustBackend:
         """The crate."""
         common = {"version": __version__, "crate": self.crate}
         enums = names.Enums(icd)
+        wired = {node.name for node in icd.nodes if icd.protocol_of(node)}
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         yield PurePosixPath("src/lib.rs"), render(
-            "lib.rs.j2", nodes=[nodes.Summary(node) for node in icd.nodes], **common
+            "lib.rs.j2", nodes=[nodes.Summary(node) for node in icd.nodes], wired=bool(wired), **common
         )
         yield PurePosixPath("src/support.rs"), render("support.rs.j2", **common)
         rows = {node.name: message_rows(icd, node, enums) for node in icd.nodes}
         for node in icd.nodes:
             folder = PurePosixPath("src") / node.name
-            yield folder / "mod.rs", render("node.rs.j2", node=nodes.NodeRow(icd, node, rows), **common)
+            yield folder / "mod.rs", render(
+                "node.rs.j2", node=nodes.NodeRow(icd, node, rows), wired=node.name in wired, **common
+            )
             if node.enums:
                 members = [EnumRow(enum, node, enums) for enum in node.enums]
                 yield folder / "enums.rs", render("enums.rs.j2", node=node.name, enums=members, **common)
             for row in rows[node.name]:
-                yield folder / f"{row.module}.rs", render("message.rs.j2", m=row, node=node.name, **common)
+                yield folder / f"{row.module}.rs", render(
+                    "message.rs.j2", m=row, node=node.name, wired=bool(wired), **common
+                )
+        if wired:
+            yield from _wire(icd, render, common)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that the crate declares, by scope."""
         return declared.identifiers(icd)
+
+
+def _wire(icd: Icd, render, common: dict[str, object]) -> Iterator[tuple[PurePosixPath, str]]:
+    """How the messages travel."""
+    from icdgen.backends.rust import wire
+
+    folder = PurePosixPath("src/wire")
+    for name in wire.modules():
+        yield folder / f"{name}.rs", render(f"wire/{name}.rs.j2", **common)
+    layer = wire.Wire(icd)
+    yield folder / "links" / "mod.rs", render("wire/links.rs.j2", links=layer.links, sizes=layer.sizes, **common)
+    for link in layer.links:
+        yield folder / "links" / f"{link.node}.rs", render("wire/node_link.rs.j2", link=link, **common)
 
 
 def message_rows(icd: Icd, node: Node, enums: names.Enums) -> list[MessageRow]:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from icdgen.backends.rust import comments, constants, fields, names, scales
 from icdgen.backends.rust.names import Enums
-from icdgen.backends.rust.text import LITERAL_WIDTH, WIDTH, doc, integer, prose, rhs, signature, string
+from icdgen.backends.rust.text import LITERAL_WIDTH, WIDTH, doc, implementation, integer, prose, rhs, signature, string
 from icdgen.icd.model import Field, Message, Node
 
 
@@ -34,6 +34,13 @@ class Checked(NamedTuple):
     factor: str
     offset: str
     divisor: str
+
+
+class Role(NamedTuple):
+    """What a client does with the message."""
+
+    id: int
+    implementation: str
 
 
 class FieldRow(NamedTuple):
@@ -74,6 +81,7 @@ class MessageRow:
             for line in fields.fitting(row.model, row.name, row.constant)
         ]
         self.scaled = [_scaled(row) for row in self.fields if row.model.scale is not None]
+        self.sent, self.received = _roles(message, self.type)
         self.checked = [
             _checked(row, enums) for row, thin in zip(self.fields, narrow, strict=True) if thin or row.model.scale
         ]
@@ -98,6 +106,15 @@ class MessageRow:
         self.uses_enums = any(
             f"{names.ENUMS_MODULE}::" in row.type and "crate::" not in row.type for row in self.fields
         )
+
+
+def _roles(message: Message, type_: str) -> tuple[Role | None, Role | None]:
+    """The message as one that a client sends, and as one that it requests; None if an id is no byte."""
+    found = []
+    for trait, id in (("Telecommand", message.telecommand_id), ("Telemetry", message.telemetry_id)):
+        there = id is not None and id < 256
+        found.append(Role(id, implementation(f"crate::wire::{trait}", type_)) if there else None)
+    return found[0], found[1]
 
 
 def _row(field: Field, node: Node, enums: Enums, tables: set[int]) -> FieldRow:

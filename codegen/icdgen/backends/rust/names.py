@@ -15,7 +15,7 @@ RESERVED = frozenset("""
 # Types and traits that the generated modules call by their bare name, in the scope where a message's type stands.
 USED_TYPES = ("Result", "Error", "Default", "Coded", "Scale", "Telemetry", "Telecommand")
 # What stands beside the modules of the nodes.
-USED_MODULES = ("support", "std")
+USED_MODULES = ("support", "std", "wire")
 ENUMS_MODULE = "enums"
 # What stands beside the modules of a node's messages, and what their parent calls by its bare name.
 USED_IN_NODES = (ENUMS_MODULE, "u8", "u16", "u32", "u64", "usize", "str", "serde", "defmt")

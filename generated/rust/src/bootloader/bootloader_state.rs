@@ -128,3 +128,12 @@ impl BootloaderState {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for BootloaderState {
+    const TELEMETRY_ID: u8 = 132;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -53,3 +53,12 @@ impl ClearErrorFlags {
         [0; 0]
     }
 }
+
+impl crate::wire::Telecommand for ClearErrorFlags {
+    const TELECOMMAND_ID: u8 = 7;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

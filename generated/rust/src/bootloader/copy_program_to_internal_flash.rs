@@ -67,3 +67,12 @@ impl CopyProgramToInternalFlash {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for CopyProgramToInternalFlash {
+    const TELECOMMAND_ID: u8 = 103;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -60,3 +60,12 @@ impl CopyToInternalFlashProgress {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for CopyToInternalFlashProgress {
+    const TELEMETRY_ID: u8 = 233;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -35,6 +35,8 @@ pub use self::program_information::ProgramInformation;
 mod copy_to_internal_flash_progress;
 pub use self::copy_to_internal_flash_progress::CopyToInternalFlashProgress;
 
+pub use crate::wire::links::bootloader::{LINK, LONGEST};
+
 /// What the node answers when asked for its type.
 pub const NODE_TYPE: u8 = 110;
 /// Version of the interface described here.

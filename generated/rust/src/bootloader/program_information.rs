@@ -82,3 +82,12 @@ impl ProgramInformation {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for ProgramInformation {
+    const TELEMETRY_ID: u8 = 232;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

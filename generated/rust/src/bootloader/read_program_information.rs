@@ -55,3 +55,12 @@ impl ReadProgramInformation {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for ReadProgramInformation {
+    const TELECOMMAND_ID: u8 = 102;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

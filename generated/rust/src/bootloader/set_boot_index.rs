@@ -57,3 +57,12 @@ impl SetBootIndex {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for SetBootIndex {
+    const TELECOMMAND_ID: u8 = 100;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -49,3 +49,12 @@ impl AdvanceFileListReadPointer {
         [0; 0]
     }
 }
+
+impl crate::wire::Telecommand for AdvanceFileListReadPointer {
+    const TELECOMMAND_ID: u8 = 113;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -51,3 +51,12 @@ impl AdvanceLogPointer {
         [0; 0]
     }
 }
+
+impl crate::wire::Telecommand for AdvanceLogPointer {
+    const TELECOMMAND_ID: u8 = 5;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

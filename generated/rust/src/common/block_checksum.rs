@@ -59,3 +59,12 @@ impl BlockChecksum {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for BlockChecksum {
+    const TELEMETRY_ID: u8 = 246;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

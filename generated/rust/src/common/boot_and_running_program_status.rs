@@ -129,3 +129,12 @@ const BOOT_CAUSE: Scale = Scale {
     offset: 0,
     divisor: 1,
 };
+
+impl crate::wire::Telemetry for BootAndRunningProgramStatus {
+    const TELEMETRY_ID: u8 = 129;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -63,3 +63,12 @@ impl BootIndexAndStatus {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for BootIndexAndStatus {
+    const TELEMETRY_ID: u8 = 130;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

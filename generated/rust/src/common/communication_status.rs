@@ -130,3 +130,12 @@ impl CommunicationStatus {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for CommunicationStatus {
+    const TELEMETRY_ID: u8 = 144;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -66,3 +66,21 @@ impl CurrentUnixTime {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for CurrentUnixTime {
+    const TELECOMMAND_ID: u8 = 2;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for CurrentUnixTime {
+    const TELEMETRY_ID: u8 = 140;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -74,3 +74,12 @@ impl DownloadBlockReady {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for DownloadBlockReady {
+    const TELEMETRY_ID: u8 = 242;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -72,3 +72,12 @@ impl EdacErrorCounters {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for EdacErrorCounters {
+    const TELEMETRY_ID: u8 = 143;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -70,3 +70,12 @@ impl EraseFile {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for EraseFile {
+    const TELECOMMAND_ID: u8 = 108;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -72,3 +72,12 @@ impl FileDownloadBufferWithFileContents {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for FileDownloadBufferWithFileContents {
+    const TELEMETRY_ID: u8 = 241;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

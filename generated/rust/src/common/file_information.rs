@@ -121,3 +121,12 @@ const FILE_TYPE: Scale = Scale {
     offset: 0,
     divisor: 1,
 };
+
+impl crate::wire::Telemetry for FileInformation {
+    const TELEMETRY_ID: u8 = 243;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -67,3 +67,12 @@ impl FileUploadPacket {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for FileUploadPacket {
+    const TELECOMMAND_ID: u8 = 115;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -73,3 +73,12 @@ impl FinalizeUploadBlock {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for FinalizeUploadBlock {
+    const TELECOMMAND_ID: u8 = 116;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -64,3 +64,12 @@ impl Default for FormatSdCard {
         Self { magic_number: 90 }
     }
 }
+
+impl crate::wire::Telecommand for FormatSdCard {
+    const TELECOMMAND_ID: u8 = 33;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

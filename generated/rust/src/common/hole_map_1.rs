@@ -67,3 +67,21 @@ impl HoleMap1 {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for HoleMap1 {
+    const TELECOMMAND_ID: u8 = 120;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for HoleMap1 {
+    const TELEMETRY_ID: u8 = 247;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

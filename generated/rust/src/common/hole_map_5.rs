@@ -67,3 +67,21 @@ impl HoleMap5 {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for HoleMap5 {
+    const TELECOMMAND_ID: u8 = 124;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for HoleMap5 {
+    const TELEMETRY_ID: u8 = 251;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

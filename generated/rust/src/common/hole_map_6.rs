@@ -67,3 +67,21 @@ impl HoleMap6 {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for HoleMap6 {
+    const TELECOMMAND_ID: u8 = 125;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for HoleMap6 {
+    const TELEMETRY_ID: u8 = 252;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

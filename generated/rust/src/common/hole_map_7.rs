@@ -67,3 +67,21 @@ impl HoleMap7 {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for HoleMap7 {
+    const TELECOMMAND_ID: u8 = 126;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for HoleMap7 {
+    const TELEMETRY_ID: u8 = 253;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -91,3 +91,12 @@ impl Identification {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for Identification {
+    const TELEMETRY_ID: u8 = 128;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -64,3 +64,12 @@ impl InitializeUploadComplete {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for InitializeUploadComplete {
+    const TELEMETRY_ID: u8 = 244;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

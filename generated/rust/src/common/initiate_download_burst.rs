@@ -69,3 +69,12 @@ impl InitiateDownloadBurst {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for InitiateDownloadBurst {
+    const TELECOMMAND_ID: u8 = 119;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -67,3 +67,12 @@ impl InitiateFileUpload {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for InitiateFileUpload {
+    const TELECOMMAND_ID: u8 = 114;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -70,3 +70,12 @@ impl LastLoggedEvent {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for LastLoggedEvent {
+    const TELEMETRY_ID: u8 = 141;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -85,3 +85,12 @@ impl LoadFileDownloadBlock {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for LoadFileDownloadBlock {
+    const TELECOMMAND_ID: u8 = 112;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -131,6 +131,8 @@ pub use self::hole_map_7::HoleMap7;
 mod hole_map_8;
 pub use self::hole_map_8::HoleMap8;
 
+pub use crate::wire::links::common::{LINK, LONGEST};
+
 /// Every telecommand of the node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

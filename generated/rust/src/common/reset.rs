@@ -68,3 +68,12 @@ impl Default for Reset {
         Self { magic_number: 90 }
     }
 }
+
+impl crate::wire::Telecommand for Reset {
+    const TELECOMMAND_ID: u8 = 1;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -50,3 +50,12 @@ impl ResetBootRegisters {
         [0; 0]
     }
 }
+
+impl crate::wire::Telecommand for ResetBootRegisters {
+    const TELECOMMAND_ID: u8 = 6;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -47,3 +47,12 @@ impl ResetFileListReadPointer {
         [0; 0]
     }
 }
+
+impl crate::wire::Telecommand for ResetFileListReadPointer {
+    const TELECOMMAND_ID: u8 = 118;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

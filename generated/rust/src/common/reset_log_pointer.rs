@@ -51,3 +51,12 @@ impl ResetLogPointer {
         [0; 0]
     }
 }
+
+impl crate::wire::Telecommand for ResetLogPointer {
+    const TELECOMMAND_ID: u8 = 4;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -64,3 +64,12 @@ impl SdCardFormatEraseProgress {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for SdCardFormatEraseProgress {
+    const TELEMETRY_ID: u8 = 234;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -58,3 +58,12 @@ impl SramLatchupCounters {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for SramLatchupCounters {
+    const TELEMETRY_ID: u8 = 142;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -58,3 +58,21 @@ impl SramScrubParameters {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for SramScrubParameters {
+    const TELECOMMAND_ID: u8 = 8;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for SramScrubParameters {
+    const TELEMETRY_ID: u8 = 134;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

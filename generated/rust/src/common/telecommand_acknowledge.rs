@@ -88,3 +88,12 @@ impl TelecommandAcknowledge {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for TelecommandAcknowledge {
+    const TELEMETRY_ID: u8 = 240;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

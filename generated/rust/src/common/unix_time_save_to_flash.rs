@@ -82,3 +82,21 @@ impl UnixTimeSaveToFlash {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for UnixTimeSaveToFlash {
+    const TELECOMMAND_ID: u8 = 9;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for UnixTimeSaveToFlash {
+    const TELEMETRY_ID: u8 = 145;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

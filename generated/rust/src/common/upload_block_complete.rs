@@ -72,3 +72,12 @@ impl UploadBlockComplete {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for UploadBlockComplete {
+    const TELEMETRY_ID: u8 = 245;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -61,3 +61,12 @@ impl AcpExecutionState {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for AcpExecutionState {
+    const TELEMETRY_ID: u8 = 220;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -101,3 +101,12 @@ impl ActuatorCommands {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for ActuatorCommands {
+    const TELEMETRY_ID: u8 = 192;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

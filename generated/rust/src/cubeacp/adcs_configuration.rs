@@ -3664,3 +3664,21 @@ const MAX_LAG: Scale = Scale {
     offset: 0,
     divisor: 100,
 };
+
+impl crate::wire::Telecommand for AdcsConfiguration {
+    const TELECOMMAND_ID: u8 = 20;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.try_to_bytes()?)
+    }
+}
+
+impl crate::wire::Telemetry for AdcsConfiguration {
+    const TELEMETRY_ID: u8 = 206;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

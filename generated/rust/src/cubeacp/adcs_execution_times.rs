@@ -69,3 +69,12 @@ impl AdcsExecutionTimes {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for AdcsExecutionTimes {
+    const TELEMETRY_ID: u8 = 196;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -1064,3 +1064,12 @@ const STAR3_ORBIT_Z: Scale = Scale {
     offset: 0,
     divisor: 10_000,
 };
+
+impl crate::wire::Telemetry for AdcsMeasurements {
+    const TELEMETRY_ID: u8 = 191;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -144,3 +144,12 @@ const CUBESTAR_MCU_TEMPERATURE: Scale = Scale {
     offset: 0,
     divisor: 100,
 };
+
+impl crate::wire::Telemetry for AdcsMiscCurrentMeasurements {
+    const TELEMETRY_ID: u8 = 198;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

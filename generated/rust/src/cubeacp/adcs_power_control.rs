@@ -243,3 +243,21 @@ const GPS_POWER: Scale = Scale {
     offset: 0,
     divisor: 1,
 };
+
+impl crate::wire::Telecommand for AdcsPowerControl {
+    const TELECOMMAND_ID: u8 = 11;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.try_to_bytes()?)
+    }
+}
+
+impl crate::wire::Telemetry for AdcsPowerControl {
+    const TELEMETRY_ID: u8 = 197;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

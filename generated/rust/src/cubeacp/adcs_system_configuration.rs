@@ -682,3 +682,21 @@ const CUBEWHEEL3_ENABLE_PIN: Scale = Scale {
     offset: 0,
     divisor: 1,
 };
+
+impl crate::wire::Telecommand for AdcsSystemConfiguration {
+    const TELECOMMAND_ID: u8 = 30;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.try_to_bytes()?)
+    }
+}
+
+impl crate::wire::Telemetry for AdcsSystemConfiguration {
+    const TELEMETRY_ID: u8 = 225;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

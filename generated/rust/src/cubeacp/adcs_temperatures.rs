@@ -126,3 +126,12 @@ const REDUNDANT_MAGNETOMETER_TEMPERATURE: Scale = Scale {
     offset: 0,
     divisor: 10,
 };
+
+impl crate::wire::Telemetry for AdcsTemperatures {
+    const TELEMETRY_ID: u8 = 174;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -144,3 +144,12 @@ const Z_ANGULAR_RATE_COVARIANCE: Scale = Scale {
     offset: 0,
     divisor: 1_000,
 };
+
+impl crate::wire::Telemetry for AngularRateCovariance {
+    const TELEMETRY_ID: u8 = 165;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -57,3 +57,12 @@ impl Asgp4RunMode {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for Asgp4RunMode {
+    const TELECOMMAND_ID: u8 = 31;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -159,3 +159,12 @@ const ASGP4_ERROR: Scale = Scale {
     offset: 0,
     divisor: 1,
 };
+
+impl crate::wire::Telemetry for Asgp4Tles {
+    const TELEMETRY_ID: u8 = 228;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

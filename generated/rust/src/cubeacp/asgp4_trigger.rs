@@ -47,3 +47,12 @@ impl Asgp4Trigger {
         [0; 0]
     }
 }
+
+impl crate::wire::Telecommand for Asgp4Trigger {
+    const TELECOMMAND_ID: u8 = 32;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -544,3 +544,21 @@ const MAX_LAG: Scale = Scale {
     offset: 0,
     divisor: 100,
 };
+
+impl crate::wire::Telecommand for AugmentedSgp4Parameters {
+    const TELECOMMAND_ID: u8 = 28;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for AugmentedSgp4Parameters {
+    const TELEMETRY_ID: u8 = 227;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

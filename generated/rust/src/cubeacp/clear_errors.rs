@@ -66,3 +66,12 @@ impl ClearErrors {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for ClearErrors {
+    const TELECOMMAND_ID: u8 = 12;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

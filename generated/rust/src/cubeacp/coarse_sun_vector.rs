@@ -142,3 +142,12 @@ const COARSE_SUN_Z: Scale = Scale {
     offset: 0,
     divisor: 10_000,
 };
+
+impl crate::wire::Telemetry for CoarseSunVector {
+    const TELEMETRY_ID: u8 = 152;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

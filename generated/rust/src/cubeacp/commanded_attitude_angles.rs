@@ -148,3 +148,21 @@ const COMMANDED_YAW_ANGLE: Scale = Scale {
     offset: 0,
     divisor: 100,
 };
+
+impl crate::wire::Telecommand for CommandedAttitudeAngles {
+    const TELECOMMAND_ID: u8 = 15;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for CommandedAttitudeAngles {
+    const TELEMETRY_ID: u8 = 199;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -68,3 +68,12 @@ impl ConvertToJpgFile {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for ConvertToJpgFile {
+    const TELECOMMAND_ID: u8 = 57;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

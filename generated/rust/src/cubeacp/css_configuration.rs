@@ -409,3 +409,21 @@ const CSS10_RELATIVE_SCALE: Scale = Scale {
     offset: 0,
     divisor: 100,
 };
+
+impl crate::wire::Telecommand for CssConfiguration {
+    const TELECOMMAND_ID: u8 = 24;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for CssConfiguration {
+    const TELEMETRY_ID: u8 = 139;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

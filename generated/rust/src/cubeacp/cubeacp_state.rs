@@ -89,3 +89,12 @@ impl CubeacpState {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for CubeacpState {
+    const TELEMETRY_ID: u8 = 135;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

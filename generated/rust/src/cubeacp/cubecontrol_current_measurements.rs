@@ -138,3 +138,12 @@ const CUBECONTROL_VBAT_CURRENT: Scale = Scale {
     offset: 0,
     divisor: 256,
 };
+
+impl crate::wire::Telemetry for CubecontrolCurrentMeasurements {
+    const TELEMETRY_ID: u8 = 172;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

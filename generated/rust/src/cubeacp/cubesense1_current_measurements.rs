@@ -109,3 +109,12 @@ const CUBESENSE1_CAM_SRAM_CURRENT: Scale = Scale {
     offset: 0,
     divisor: 10,
 };
+
+impl crate::wire::Telemetry for Cubesense1CurrentMeasurements {
+    const TELEMETRY_ID: u8 = 171;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -111,3 +111,12 @@ const CUBESENSE2_CAM_SRAM_CURRENT: Scale = Scale {
     offset: 0,
     divisor: 10,
 };
+
+impl crate::wire::Telemetry for Cubesense2CurrentMeasurements {
+    const TELEMETRY_ID: u8 = 232;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -750,3 +750,21 @@ const CAM2_BORESIGHT_Y: Scale = Scale {
     offset: 0,
     divisor: 100,
 };
+
+impl crate::wire::Telecommand for CubesenseConfiguration {
+    const TELECOMMAND_ID: u8 = 25;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for CubesenseConfiguration {
+    const TELEMETRY_ID: u8 = 203;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

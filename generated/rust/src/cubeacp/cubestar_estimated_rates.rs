@@ -149,3 +149,12 @@ const Z_AXIS_RATE: Scale = Scale {
     offset: 0,
     divisor: 10_000,
 };
+
+impl crate::wire::Telemetry for CubestarEstimatedRates {
+    const TELEMETRY_ID: u8 = 229;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -333,3 +333,12 @@ const ASGP4_MODE: Scale = Scale {
     offset: 0,
     divisor: 1,
 };
+
+impl crate::wire::Telemetry for CurrentAdcsState {
+    const TELEMETRY_ID: u8 = 132;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -170,3 +170,12 @@ const CURRENT_MAGNETOMETER_SAMPLING_MODE: Scale = Scale {
     offset: 0,
     divisor: 1,
 };
+
+impl crate::wire::Telemetry for CurrentAdcsState2 {
+    const TELEMETRY_ID: u8 = 224;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

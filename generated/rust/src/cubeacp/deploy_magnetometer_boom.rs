@@ -56,3 +56,12 @@ impl DeployMagnetometerBoom {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for DeployMagnetometerBoom {
+    const TELECOMMAND_ID: u8 = 7;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

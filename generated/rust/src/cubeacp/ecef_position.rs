@@ -72,3 +72,12 @@ impl EcefPosition {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for EcefPosition {
+    const TELEMETRY_ID: u8 = 219;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

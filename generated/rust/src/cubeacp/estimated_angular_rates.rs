@@ -140,3 +140,12 @@ const ESTIMATED_Z_ANGULAR_RATE: Scale = Scale {
     offset: 0,
     divisor: 100,
 };
+
+impl crate::wire::Telemetry for EstimatedAngularRates {
+    const TELEMETRY_ID: u8 = 147;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

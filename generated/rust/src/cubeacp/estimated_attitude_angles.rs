@@ -140,3 +140,12 @@ const ESTIMATED_YAW_ANGLE: Scale = Scale {
     offset: 0,
     divisor: 100,
 };
+
+impl crate::wire::Telemetry for EstimatedAttitudeAngles {
+    const TELEMETRY_ID: u8 = 146;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -140,3 +140,12 @@ const ESTIMATED_Z_GYRO_BIAS: Scale = Scale {
     offset: 0,
     divisor: 1_000,
 };
+
+impl crate::wire::Telemetry for EstimatedGyroBias {
+    const TELEMETRY_ID: u8 = 161;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

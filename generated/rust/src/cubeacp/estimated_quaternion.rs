@@ -68,3 +68,12 @@ impl EstimatedQuaternion {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for EstimatedQuaternion {
+    const TELEMETRY_ID: u8 = 218;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -701,3 +701,12 @@ const Z_ANGULAR_RATE_COVARIANCE: Scale = Scale {
     offset: 0,
     divisor: 1_000,
 };
+
+impl crate::wire::Telemetry for EstimationData {
+    const TELEMETRY_ID: u8 = 193;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -150,3 +150,12 @@ const INNOVATION_VECTOR_Z: Scale = Scale {
     offset: 0,
     divisor: 10_000,
 };
+
+impl crate::wire::Telemetry for EstimationInnovationVector {
+    const TELEMETRY_ID: u8 = 162;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -204,3 +204,21 @@ const RAW_MAGNETOMETER_SELECTION: Scale = Scale {
     offset: 0,
     divisor: 1,
 };
+
+impl crate::wire::Telecommand for EstimationParameters {
+    const TELECOMMAND_ID: u8 = 27;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.try_to_bytes()?)
+    }
+}
+
+impl crate::wire::Telemetry for EstimationParameters {
+    const TELEMETRY_ID: u8 = 223;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -152,3 +152,12 @@ const ESTIMATED_Z_ANGULAR_RATE: Scale = Scale {
     offset: 0,
     divisor: 1_000,
 };
+
+impl crate::wire::Telemetry for FineEstimatedAngularRates {
+    const TELEMETRY_ID: u8 = 201;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -139,3 +139,12 @@ const SUN_Z: Scale = Scale {
     offset: 0,
     divisor: 10_000,
 };
+
+impl crate::wire::Telemetry for FineSunVector {
+    const TELEMETRY_ID: u8 = 153;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

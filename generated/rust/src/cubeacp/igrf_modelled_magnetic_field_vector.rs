@@ -140,3 +140,12 @@ const IGRF_MODELLED_MAGNETIC_FIELD_Z: Scale = Scale {
     offset: 0,
     divisor: 100,
 };
+
+impl crate::wire::Telemetry for IgrfModelledMagneticFieldVector {
+    const TELEMETRY_ID: u8 = 159;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -156,3 +156,21 @@ const INERTIAL_REFERENCE_Z: Scale = Scale {
     offset: 0,
     divisor: 10_000,
 };
+
+impl crate::wire::Telecommand for InertialPointingReferenceVector {
+    const TELECOMMAND_ID: u8 = 34;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for InertialPointingReferenceVector {
+    const TELEMETRY_ID: u8 = 238;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -65,3 +65,12 @@ impl JpgConversionProgress {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for JpgConversionProgress {
+    const TELEMETRY_ID: u8 = 133;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

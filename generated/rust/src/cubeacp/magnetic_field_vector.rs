@@ -142,3 +142,12 @@ const MAGNETIC_FIELD_Z: Scale = Scale {
     offset: 0,
     divisor: 100,
 };
+
+impl crate::wire::Telemetry for MagneticFieldVector {
+    const TELEMETRY_ID: u8 = 151;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

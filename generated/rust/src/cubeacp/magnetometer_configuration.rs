@@ -631,3 +631,21 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S32: Scale = Scale {
     offset: 0,
     divisor: 1_000,
 };
+
+impl crate::wire::Telecommand for MagnetometerConfiguration {
+    const TELECOMMAND_ID: u8 = 26;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for MagnetometerConfiguration {
+    const TELEMETRY_ID: u8 = 204;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -81,3 +81,12 @@ impl MagnetorquerCommand {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for MagnetorquerCommand {
+    const TELEMETRY_ID: u8 = 157;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -355,6 +355,8 @@ pub use self::uart_log_configuration::UartLogConfiguration;
 mod inertial_pointing_reference_vector;
 pub use self::inertial_pointing_reference_vector::InertialPointingReferenceVector;
 
+pub use crate::wire::links::cubeacp::{LINK, LONGEST};
+
 /// What the node answers when asked for its type.
 pub const NODE_TYPE: u8 = 10;
 /// Version of the interface described here.

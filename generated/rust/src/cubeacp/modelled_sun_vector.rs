@@ -140,3 +140,12 @@ const MODELLED_SUN_VECTOR_Z: Scale = Scale {
     offset: 0,
     divisor: 10_000,
 };
+
+impl crate::wire::Telemetry for ModelledSunVector {
+    const TELEMETRY_ID: u8 = 160;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -76,3 +76,21 @@ impl MomentOfInertiaMatrix {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for MomentOfInertiaMatrix {
+    const TELECOMMAND_ID: u8 = 41;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for MomentOfInertiaMatrix {
+    const TELEMETRY_ID: u8 = 222;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -544,3 +544,12 @@ const REDUNDANT_MAGNETOMETER_TEMPERATURE: Scale = Scale {
     offset: 0,
     divisor: 10,
 };
+
+impl crate::wire::Telemetry for PowerAndTemperatureMeasurements {
+    const TELEMETRY_ID: u8 = 195;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -147,3 +147,12 @@ const QUATERNION_COVARIANCE_Q3_RMS: Scale = Scale {
     offset: 0,
     divisor: 1_000,
 };
+
+impl crate::wire::Telemetry for QuaternionCovariance {
+    const TELEMETRY_ID: u8 = 164;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

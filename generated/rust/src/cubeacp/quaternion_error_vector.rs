@@ -146,3 +146,12 @@ const QUATERNION_ERROR_Q3: Scale = Scale {
     offset: 0,
     divisor: 10_000,
 };
+
+impl crate::wire::Telemetry for QuaternionErrorVector {
+    const TELEMETRY_ID: u8 = 163;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

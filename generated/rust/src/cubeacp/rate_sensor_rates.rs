@@ -142,3 +142,12 @@ const Z_ANGULAR_RATE: Scale = Scale {
     offset: 0,
     divisor: 100,
 };
+
+impl crate::wire::Telemetry for RateSensorRates {
+    const TELEMETRY_ID: u8 = 155;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -72,3 +72,12 @@ impl RateSensorTemperatures {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for RateSensorTemperatures {
+    const TELEMETRY_ID: u8 = 175;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

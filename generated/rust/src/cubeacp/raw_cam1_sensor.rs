@@ -77,3 +77,12 @@ impl RawCam1Sensor {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for RawCam1Sensor {
+    const TELEMETRY_ID: u8 = 167;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -77,3 +77,12 @@ impl RawCam2Sensor {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for RawCam2Sensor {
+    const TELEMETRY_ID: u8 = 166;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -96,3 +96,12 @@ impl RawCss1To6 {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for RawCss1To6 {
+    const TELEMETRY_ID: u8 = 168;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

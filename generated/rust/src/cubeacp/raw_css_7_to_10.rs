@@ -82,3 +82,12 @@ impl RawCss7To10 {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for RawCss7To10 {
+    const TELEMETRY_ID: u8 = 169;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

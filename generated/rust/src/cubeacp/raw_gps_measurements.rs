@@ -233,3 +233,12 @@ const Z_POS_STANDARD_DEVIATION: Scale = Scale {
     offset: 0,
     divisor: 10,
 };
+
+impl crate::wire::Telemetry for RawGpsMeasurements {
+    const TELEMETRY_ID: u8 = 210;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

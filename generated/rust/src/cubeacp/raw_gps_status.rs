@@ -82,3 +82,12 @@ impl RawGpsStatus {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for RawGpsStatus {
+    const TELEMETRY_ID: u8 = 176;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

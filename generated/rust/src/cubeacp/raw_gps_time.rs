@@ -58,3 +58,12 @@ impl RawGpsTime {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for RawGpsTime {
+    const TELEMETRY_ID: u8 = 177;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -64,3 +64,12 @@ impl RawGpsX {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for RawGpsX {
+    const TELEMETRY_ID: u8 = 178;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

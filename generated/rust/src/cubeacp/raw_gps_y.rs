@@ -64,3 +64,12 @@ impl RawGpsY {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for RawGpsY {
+    const TELEMETRY_ID: u8 = 179;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -64,3 +64,12 @@ impl RawGpsZ {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for RawGpsZ {
+    const TELEMETRY_ID: u8 = 180;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -72,3 +72,12 @@ impl RawMagnetometer {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for RawMagnetometer {
+    const TELEMETRY_ID: u8 = 170;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

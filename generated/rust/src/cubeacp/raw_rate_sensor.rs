@@ -72,3 +72,12 @@ impl RawRateSensor {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for RawRateSensor {
+    const TELEMETRY_ID: u8 = 216;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

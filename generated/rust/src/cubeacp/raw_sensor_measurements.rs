@@ -211,3 +211,12 @@ impl RawSensorMeasurements {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for RawSensorMeasurements {
+    const TELEMETRY_ID: u8 = 194;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -434,3 +434,12 @@ const Q2: Scale = Scale {
     offset: 0,
     divisor: 10_000,
 };
+
+impl crate::wire::Telemetry for RawStarTracker {
+    const TELEMETRY_ID: u8 = 211;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -671,3 +671,21 @@ const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S32: Scale = Scale {
     offset: 0,
     divisor: 1_000,
 };
+
+impl crate::wire::Telecommand for RedundantMagnetometerConfiguration {
+    const TELECOMMAND_ID: u8 = 36;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for RedundantMagnetometerConfiguration {
+    const TELEMETRY_ID: u8 = 205;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -135,3 +135,12 @@ const Z_POSITION: Scale = Scale {
     offset: 0,
     divisor: 4,
 };
+
+impl crate::wire::Telemetry for SatellitePositionEci {
+    const TELEMETRY_ID: u8 = 148;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -141,3 +141,12 @@ const ALTITUDE: Scale = Scale {
     offset: 0,
     divisor: 100,
 };
+
+impl crate::wire::Telemetry for SatellitePositionLlh {
+    const TELEMETRY_ID: u8 = 150;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -49,3 +49,12 @@ impl SaveConfiguration {
         [0; 0]
     }
 }
+
+impl crate::wire::Telecommand for SaveConfiguration {
+    const TELECOMMAND_ID: u8 = 63;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -61,3 +61,12 @@ impl SaveImage {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for SaveImage {
+    const TELECOMMAND_ID: u8 = 80;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

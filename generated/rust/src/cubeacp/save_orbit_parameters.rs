@@ -49,3 +49,12 @@ impl SaveOrbitParameters {
         [0; 0]
     }
 }
+
+impl crate::wire::Telecommand for SaveOrbitParameters {
+    const TELECOMMAND_ID: u8 = 64;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -80,3 +80,21 @@ impl SdLog2Configuration {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for SdLog2Configuration {
+    const TELECOMMAND_ID: u8 = 105;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for SdLog2Configuration {
+    const TELEMETRY_ID: u8 = 236;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -76,3 +76,12 @@ impl SecondaryMagnetometerRawMeasurements {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for SecondaryMagnetometerRawMeasurements {
+    const TELEMETRY_ID: u8 = 215;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -61,3 +61,12 @@ impl SetAdcsRunMode {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for SetAdcsRunMode {
+    const TELECOMMAND_ID: u8 = 10;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -65,3 +65,12 @@ impl SetAttitudeControlMode {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for SetAttitudeControlMode {
+    const TELECOMMAND_ID: u8 = 13;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -53,3 +53,12 @@ impl SetAttitudeEstimationMode {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for SetAttitudeEstimationMode {
+    const TELECOMMAND_ID: u8 = 14;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -116,3 +116,21 @@ const REFERENCE_SPIN_RATE: Scale = Scale {
     offset: 0,
     divisor: 1_000,
 };
+
+impl crate::wire::Telecommand for SetDetumblingControlParameters {
+    const TELECOMMAND_ID: u8 = 38;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for SetDetumblingControlParameters {
+    const TELEMETRY_ID: u8 = 208;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -71,3 +71,21 @@ impl SetMagnetorquerConfiguration {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for SetMagnetorquerConfiguration {
+    const TELECOMMAND_ID: u8 = 21;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for SetMagnetorquerConfiguration {
+    const TELEMETRY_ID: u8 = 136;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -169,3 +169,12 @@ const COMMANDED_Z_MAGNETORQUER_DUTY_CYCLE: Scale = Scale {
     offset: 0,
     divisor: 1_000,
 };
+
+impl crate::wire::Telecommand for SetMagnetorquerOutput {
+    const TELECOMMAND_ID: u8 = 16;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

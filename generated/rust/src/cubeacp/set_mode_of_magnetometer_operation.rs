@@ -59,3 +59,12 @@ impl SetModeOfMagnetometerOperation {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for SetModeOfMagnetometerOperation {
+    const TELECOMMAND_ID: u8 = 56;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -177,3 +177,21 @@ const Z_RATE_SENSOR_OFFSET: Scale = Scale {
     offset: 0,
     divisor: 1_000,
 };
+
+impl crate::wire::Telecommand for SetRateGyroConfiguration {
+    const TELECOMMAND_ID: u8 = 23;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for SetRateGyroConfiguration {
+    const TELEMETRY_ID: u8 = 138;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -120,3 +120,21 @@ const SUN_POINTING_FACET: Scale = Scale {
     offset: 0,
     divisor: 1,
 };
+
+impl crate::wire::Telecommand for SetReactionWheelControlParameters {
+    const TELECOMMAND_ID: u8 = 40;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.try_to_bytes()?)
+    }
+}
+
+impl crate::wire::Telemetry for SetReactionWheelControlParameters {
+    const TELEMETRY_ID: u8 = 217;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

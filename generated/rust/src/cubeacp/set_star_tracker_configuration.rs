@@ -440,3 +440,21 @@ const STAR_TRACKING_SEARCH_WIDTH: Scale = Scale {
     offset: 0,
     divisor: 5,
 };
+
+impl crate::wire::Telecommand for SetStarTrackerConfiguration {
+    const TELECOMMAND_ID: u8 = 37;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for SetStarTrackerConfiguration {
+    const TELEMETRY_ID: u8 = 202;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -88,3 +88,21 @@ impl SetTrackingControllerGainParameters {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for SetTrackingControllerGainParameters {
+    const TELECOMMAND_ID: u8 = 54;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for SetTrackingControllerGainParameters {
+    const TELEMETRY_ID: u8 = 221;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -81,3 +81,21 @@ impl SetWheelConfiguration {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for SetWheelConfiguration {
+    const TELECOMMAND_ID: u8 = 22;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for SetWheelConfiguration {
+    const TELEMETRY_ID: u8 = 137;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

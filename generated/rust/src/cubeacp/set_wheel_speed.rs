@@ -64,3 +64,12 @@ impl SetWheelSpeed {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for SetWheelSpeed {
+    const TELECOMMAND_ID: u8 = 17;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -100,3 +100,21 @@ impl SetYWheelControlParameters {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for SetYWheelControlParameters {
+    const TELECOMMAND_ID: u8 = 39;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for SetYWheelControlParameters {
+    const TELEMETRY_ID: u8 = 209;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -89,3 +89,21 @@ impl Sgp4OrbitParameters {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for Sgp4OrbitParameters {
+    const TELECOMMAND_ID: u8 = 45;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for Sgp4OrbitParameters {
+    const TELEMETRY_ID: u8 = 207;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

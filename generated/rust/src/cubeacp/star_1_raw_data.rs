@@ -70,3 +70,12 @@ impl Star1RawData {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for Star1RawData {
+    const TELEMETRY_ID: u8 = 212;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -147,3 +147,12 @@ const STAR2_ORBIT_Z: Scale = Scale {
     offset: 0,
     divisor: 10_000,
 };
+
+impl crate::wire::Telemetry for Star2OrbitVector {
+    const TELEMETRY_ID: u8 = 185;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

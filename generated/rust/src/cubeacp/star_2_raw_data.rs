@@ -70,3 +70,12 @@ impl Star2RawData {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for Star2RawData {
+    const TELEMETRY_ID: u8 = 213;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -70,3 +70,12 @@ impl Star3RawData {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for Star3RawData {
+    const TELEMETRY_ID: u8 = 214;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -74,3 +74,12 @@ impl StarMagnitude {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for StarMagnitude {
+    const TELEMETRY_ID: u8 = 187;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -100,3 +100,12 @@ impl StarPerformance1 {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for StarPerformance1 {
+    const TELEMETRY_ID: u8 = 188;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -111,3 +111,12 @@ impl StarPerformance2 {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for StarPerformance2 {
+    const TELEMETRY_ID: u8 = 231;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

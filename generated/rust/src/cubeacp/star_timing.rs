@@ -62,3 +62,12 @@ impl StarTiming {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for StarTiming {
+    const TELEMETRY_ID: u8 = 189;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

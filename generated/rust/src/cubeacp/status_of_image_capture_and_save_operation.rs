@@ -61,3 +61,12 @@ impl StatusOfImageCaptureAndSaveOperation {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for StatusOfImageCaptureAndSaveOperation {
+    const TELEMETRY_ID: u8 = 233;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -73,3 +73,21 @@ impl TrackingControllerTargetReference {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for TrackingControllerTargetReference {
+    const TELECOMMAND_ID: u8 = 55;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for TrackingControllerTargetReference {
+    const TELEMETRY_ID: u8 = 200;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

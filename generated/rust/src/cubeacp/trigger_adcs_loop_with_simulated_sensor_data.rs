@@ -554,3 +554,12 @@ const Z_POS_STANDARD_DEVIATION: Scale = Scale {
     offset: 0,
     divisor: 10,
 };
+
+impl crate::wire::Telecommand for TriggerAdcsLoopWithSimulatedSensorData {
+    const TELECOMMAND_ID: u8 = 19;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}

@@ -71,3 +71,21 @@ impl UartLogConfiguration {
         bytes
     }
 }
+
+impl crate::wire::Telecommand for UartLogConfiguration {
+    const TELECOMMAND_ID: u8 = 106;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for UartLogConfiguration {
+    const TELEMETRY_ID: u8 = 237;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -74,3 +74,21 @@ impl Default for UserCodedControllerAndEstimatorParameters {
         }
     }
 }
+
+impl crate::wire::Telecommand for UserCodedControllerAndEstimatorParameters {
+    const TELECOMMAND_ID: u8 = 29;
+
+    #[inline]
+    fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
+        crate::support::write_to(buffer, &self.to_bytes())
+    }
+}
+
+impl crate::wire::Telemetry for UserCodedControllerAndEstimatorParameters {
+    const TELEMETRY_ID: u8 = 226;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

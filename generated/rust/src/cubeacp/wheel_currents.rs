@@ -149,3 +149,12 @@ const WHEEL3_CURRENT: Scale = Scale {
     offset: 0,
     divisor: 100,
 };
+
+impl crate::wire::Telemetry for WheelCurrents {
+    const TELEMETRY_ID: u8 = 173;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -66,3 +66,12 @@ impl WheelSpeedCommands {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for WheelSpeedCommands {
+    const TELEMETRY_ID: u8 = 158;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -105,3 +105,12 @@ impl DeploymentStatus {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for DeploymentStatus {
+    const TELEMETRY_ID: u8 = 190;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -88,3 +88,12 @@ impl PrimaryMagnetometerMeasurement {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for PrimaryMagnetometerMeasurement {
+    const TELEMETRY_ID: u8 = 197;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -88,3 +88,12 @@ impl RedundantMagnetometerMeasurement {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for RedundantMagnetometerMeasurement {
+    const TELEMETRY_ID: u8 = 193;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

@@ -81,3 +81,12 @@ impl State {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for State {
+    const TELEMETRY_ID: u8 = 188;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

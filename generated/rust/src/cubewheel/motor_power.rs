@@ -64,3 +64,12 @@ impl MotorPower {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for MotorPower {
+    const TELEMETRY_ID: u8 = 197;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

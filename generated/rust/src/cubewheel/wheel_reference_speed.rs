@@ -68,3 +68,12 @@ impl WheelReferenceSpeed {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for WheelReferenceSpeed {
+    const TELEMETRY_ID: u8 = 196;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}

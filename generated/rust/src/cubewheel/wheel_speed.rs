@@ -69,3 +69,12 @@ impl WheelSpeed {
         bytes
     }
 }
+
+impl crate::wire::Telemetry for WheelSpeed {
+    const TELEMETRY_ID: u8 = 188;
+
+    #[inline]
+    fn from_frame(bytes: &[u8]) -> Result<Self, crate::Error> {
+        Self::from_bytes(bytes)
+    }
+}
