@@ -68,15 +68,31 @@ class Session:
     ) -> P:
         """Runs a procedure to its end; ``progress`` is told of bytes, and of how many.
 
-        Raises `FailedError`.
+        A refusal with a code that the ICD does not have is taken for a damaged
+        acknowledge, which tells nothing. Raises `FailedError`.
         """
         events: list[Event] = []
         shown: tuple[int, int | None] | None = None
+        asked: Request | None = None
+        left = 0
         while True:
+            is_again = False
             for event in events:
+                if isinstance(event, Refused) and _is_damaged(event):
+                    is_again = asked is not None and asked.repeat and left > 0
+                    if is_again:
+                        continue
+                    event = Timeout(event.id, event.attempts)
                 procedure.event(self._now(), event)
             events = []
-            request = None if self.client.busy else procedure.next(self._now())
+            if is_again:
+                left -= 1
+            elif not self.client.busy:
+                asked = procedure.next(self._now())
+                left = self.client.settings.retries
+            if asked and not self.client.busy:
+                events = self.client.start(self._now(), asked)
+            self._flush()
             if progress and procedure.progress != shown:
                 shown = procedure.progress
                 progress(*shown)
@@ -84,9 +100,6 @@ class Session:
                 return procedure
             if procedure.result:
                 raise FailedError(procedure.result)
-            if request:
-                events = self.client.start(self._now(), request)
-                self._flush()
             if not events:
                 events = self.wait(procedure.deadline)
 
@@ -133,3 +146,8 @@ def _done(outcome: Outcome) -> Done:
     if isinstance(outcome, Timeout):
         raise ReplyTimeoutError(outcome)
     return outcome
+
+
+def _is_damaged(event: Refused) -> bool:
+    """Whether the code is one that the ICD does not have."""
+    return event.code is not None and event.reason is None
