@@ -1,4 +1,4 @@
-"""``python -m tests.fuzz c|rust|python [--seconds N] [ICD ...]``: builds a harness and runs it; status 0 if nothing is found."""
+"""``python -m tests.fuzz LANG [--seconds N] [ICD ...]``: builds a harness and runs it; status 0 if nothing is found."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from icdgen.icd.model import Icd
-from icdgen.vectors import make
+from icdgen.vectors import make, protocol
 from tests.conformance.build import BuildError, cache_folder, execute, generated
 from tests.conformance.icds import icd_of
 from tests.conformance.languages import Language
@@ -100,15 +100,41 @@ def rust(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
     return [str(found[0])], {}
 
 
+def stream_seeds(icd: Icd) -> Iterator[bytes]:
+    """Inputs of the harnesses on stream decoders, from the golden vectors of the protocol."""
+    for index, node in enumerate(protocol.nodes(icd)):
+        for case in protocol.cases(icd, node):
+            asked = case.request
+            if asked["op"] in ("uart_decode", "log_decode"):
+                part = 0 if asked["op"] == "uart_decode" else 2
+                yield bytes((part, index + 1, len(case.why))) + bytes.fromhex(asked["bytes"])
+            elif asked["op"] == "uart_events":
+                yield bytes((0, index + 1, 7)) + bytes.fromhex("".join(asked["chunks"]))
+            elif asked["op"] == "client":
+                part = 3 + ("uart", "can", "i2c").index(asked["bus"])
+                heard = [row["receive"] for row in asked["script"] if isinstance(row.get("receive"), str)]
+                yield bytes((part, index + 1, len(heard))) + bytes.fromhex("".join(heard))
+
+
 def python(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
     """atheris."""
+    return atheris(icd, folder, "python_target.py")
+
+
+def python_streams(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
+    """atheris, on the stream decoders."""
+    return atheris(icd, folder, "python_streams_target.py")
+
+
+def atheris(icd: Icd, folder: Path, target: str) -> tuple[list[str], dict[str, str]]:
     source = sources(Language("python", ("python",), (), lambda source, out: []), icd, folder)
     package = sorted((source / "python").rglob("testee.py"))[0].parent
-    command = [sys.executable, str(HERE / "python_target.py"), package.name]
+    command = [sys.executable, str(HERE / target), package.name]
     return command, {"PYTHONPATH": str(package.parent)}
 
 
-HARNESSES = {"c": c, "rust": rust, "python": python}
+HARNESSES = {"c": c, "rust": rust, "python": python, "python-streams": python_streams}
+STREAMS = ("python-streams",)
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -127,7 +153,7 @@ def main(arguments: list[str] | None = None) -> int:
     except BuildError as error:
         print(error, file=sys.stderr)
         return 2
-    for number, seed in enumerate(seeds(icd)):
+    for number, seed in enumerate(stream_seeds(icd) if options.lang in STREAMS else seeds(icd)):
         (corpus / f"seed-{number:05}").write_bytes(seed)
     command += [f"-max_total_time={options.seconds}", f"-max_len={LONGEST}", "-timeout=20", "-print_final_stats=1"]
     if options.jobs > 1:
