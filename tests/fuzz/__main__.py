@@ -165,16 +165,48 @@ def _cargo_fuzz(
     return [str(found[0])], {}
 
 
+def stream_seeds(icd: Icd) -> Iterator[bytes]:
+    """Inputs of the harnesses on stream decoders, from the golden vectors of the protocol."""
+    for index, node in enumerate(protocol.nodes(icd)):
+        for case in protocol.cases(icd, node):
+            asked = case.request
+            if asked["op"] in ("uart_decode", "log_decode"):
+                part = 0 if asked["op"] == "uart_decode" else 2
+                yield bytes((part, index + 1, len(case.why))) + bytes.fromhex(asked["bytes"])
+            elif asked["op"] == "uart_events":
+                yield bytes((0, index + 1, 7)) + bytes.fromhex("".join(asked["chunks"]))
+            elif asked["op"] == "client":
+                part = 3 + ("uart", "can", "i2c").index(asked["bus"])
+                heard = [row["receive"] for row in asked["script"] if isinstance(row.get("receive"), str)]
+                yield bytes((part, index + 1, len(heard))) + bytes.fromhex("".join(heard))
+
+
 def python(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
     """atheris."""
+    return atheris(icd, folder, "python_target.py")
+
+
+def python_streams(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
+    """atheris, on the stream decoders."""
+    return atheris(icd, folder, "python_streams_target.py")
+
+
+def atheris(icd: Icd, folder: Path, target: str) -> tuple[list[str], dict[str, str]]:
     source = sources(Language("python", ("python",), (), lambda source, out: []), icd, folder)
     package = sorted((source / "python").rglob("testee.py"))[0].parent
-    command = [sys.executable, str(HERE / "python_target.py"), package.name]
+    command = [sys.executable, str(HERE / target), package.name]
     return command, {"PYTHONPATH": str(package.parent)}
 
 
-SEEDS = {"c-wire": c_wire_seeds, "rust-wire": rust_wire_seeds}
-HARNESSES = {"c": c, "c-wire": c_wire, "rust": rust, "rust-wire": rust_wire, "python": python}
+SEEDS = {"c-wire": c_wire_seeds, "rust-wire": rust_wire_seeds, "python-wire": stream_seeds}
+HARNESSES = {
+    "c": c,
+    "c-wire": c_wire,
+    "rust": rust,
+    "rust-wire": rust_wire,
+    "python": python,
+    "python-wire": python_streams,
+}
 
 
 def main(arguments: list[str] | None = None) -> int:

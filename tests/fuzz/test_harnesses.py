@@ -12,8 +12,9 @@ import pytest
 from tests.conformance.build import execute
 from tests.conformance.icds import icd_of
 from tests.conformance.languages import Language
-from tests.fuzz.__main__ import HERE, seeds, sources, wire_seeds
+from tests.fuzz.__main__ import HERE, c_wire_seeds, seeds, sources, stream_seeds
 from tests.fuzz.python_dispatch import Dispatch
+from tests.fuzz.python_streams import Streams
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +35,7 @@ def inputs(icd):
 @pytest.fixture(scope="module")
 def wire_inputs(icd):
     source = random.Random(2)
-    found = list(wire_seeds(icd))
+    found = list(c_wire_seeds(icd))
     for seed in found[:]:
         found.append(seed[:1] + bytes((source.randrange(7),)) + seed[2:] + source.randbytes(source.randrange(64)))
     return found
@@ -54,17 +55,46 @@ def test_the_c_harnesses_find_nothing(icd, target, kind, request, tmp_path):
     assert done.stdout == f"{len(inputs)} inputs\n".encode()
 
 
-def test_the_python_harness_finds_nothing(icd, inputs, tmp_path, monkeypatch):
+@pytest.fixture
+def package(icd, tmp_path, monkeypatch):
+    """The generated package, imported afresh."""
     source = sources(Language("python", ("python",), (), lambda source, out: []), icd, tmp_path)
     package = sorted((source / "python").rglob("testee.py"))[0].parent
     monkeypatch.syspath_prepend(str(package.parent))
     for name in [name for name in sys.modules if name.split(".")[0] == package.name]:
         monkeypatch.delitem(sys.modules, name)
-    dispatch = Dispatch(importlib.import_module(package.name))
-    for one in inputs:
-        dispatch.one(one)
+    yield importlib.import_module(package.name)
     for name in [name for name in sys.modules if name.split(".")[0] == package.name]:
         monkeypatch.delitem(sys.modules, name)
+
+
+def test_the_python_harness_finds_nothing(inputs, package):
+    dispatch = Dispatch(package)
+    for one in inputs:
+        dispatch.one(one)
+
+
+def test_the_python_harness_of_streams_finds_nothing(icd, package):
+    importlib.import_module(f"{package.__name__}.wire")
+    streams, source = Streams(package), random.Random(1)
+    seeds = list(stream_seeds(icd))
+    assert {seed[0] for seed in seeds} >= {0, 2, 3, 5}
+    for seed in seeds:
+        streams.one(seed)
+        spoilt = bytearray(seed)
+        spoilt[source.randrange(len(spoilt))] = source.randrange(256)
+        streams.one(bytes(spoilt))
+    for _ in range(2000):
+        streams.one(source.randbytes(source.randrange(200)))
+
+
+def test_the_python_harness_of_streams_notices_a_decoder_that_is_wrong(package, monkeypatch):
+    wire = importlib.import_module(f"{package.__name__}.wire")
+    streams = Streams(package)
+    streams.one(b"\0\0\0\x1f\x7f\x80\x1f\xff")
+    monkeypatch.setattr(wire.UartDecoder, "_within", lambda self, data, position, events: len(data))
+    with pytest.raises(AssertionError):
+        streams.one(b"\0\0\0\x1f\x7f\x80\x1f\xff")
 
 
 def test_the_python_harness_notices_a_codec_that_is_wrong():

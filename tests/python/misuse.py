@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from icdgen_messages import cubeacp
-from icdgen_messages.cubeacp import EstimatedAttitudeAngles
+from icdgen_messages.cubeacp import LINK, EstimatedAttitudeAngles
+from icdgen_messages.wire import Client, Session
 
 angles = EstimatedAttitudeAngles()
 angles.roll = 1  # expect
@@ -13,3 +14,7 @@ EstimatedAttitudeAngles.from_bytes("2efb")  # expect
 EstimatedAttitudeAngles.from_physical(estimated_roll_angle=1)  # expect
 print(cubeacp.Nonsense)  # expect
 text: str = angles.estimated_roll_angle_deg  # expect
+Client(LINK, "spi")  # expect
+Client(LINK, "uart").request(0, angles)  # expect
+Client(LINK, "uart").received(0, "1f7f")  # expect
+number: int = Session(LINK, print, lambda s: b"").get(EstimatedAttitudeAngles)  # expect

@@ -27,6 +27,33 @@ def test_importing_a_node_loads_no_message(shipped):
     assert run(shipped, f"import icdgen_messages.cubeacp\n{LOADED}") == "['_errors', '_lazy', 'cubeacp']"
 
 
+def test_the_wire_layer_is_loaded_when_it_is_used(shipped):
+    code = "from icdgen_messages import cubeacp, wire\n"
+    assert "wire.link" not in run(shipped, f"{code}{LOADED}")
+    assert "wire.link" in run(shipped, f"{code}cubeacp.LINK\n{LOADED}")
+    loaded = run(shipped, f"{code}wire.UartDecoder(cubeacp.LINK)\n{LOADED}")
+    assert (
+        "wire.uart" in loaded and "wire.client" not in loaded and "_types" not in loaded.replace("'cubeacp._types'", "")
+    )
+
+
+def test_every_name_of_the_wire_layer_is_listed_and_there(shipped):
+    wire = shipped.module("wire")
+    for name in wire._HOME:
+        assert name in dir(wire)
+        assert getattr(wire, name) is not None
+    with pytest.raises(AttributeError, match="nonsense"):
+        _ = wire.nonsense
+
+
+def test_only_nodes_with_a_protocol_have_a_link(shipped, ordered):
+    assert {node.name for node in shipped.icd.nodes if hasattr(shipped.module(node.name), "LINK")} == {
+        "bootloader", "common", "cubeacp",
+    }  # fmt: skip
+    for node in ordered.icd.nodes:
+        assert not hasattr(ordered.module(node.name), "LINK")
+
+
 def test_importing_a_node_needs_nothing_that_is_slow_to_import(shipped):
     code = (
         "before = set(sys.modules)\nimport icdgen_messages.cubeacp\n"

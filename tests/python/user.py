@@ -12,6 +12,7 @@ from icdgen_messages.cubeacp import (
     decode_telecommand,
     decode_telemetry,
 )
+from icdgen_messages.wire import Client, Done, Download, Event, Refused, Session, UartDecoder
 
 
 def roll(id: int, data: bytes) -> float:
@@ -45,3 +46,26 @@ def commands() -> list[bytes]:
 def columns(data: bytes) -> float:
     """The mean of a column."""
     return float(EstimatedAttitudeAngles.decode_many(data, physical=True)["estimated_roll_angle_deg"].mean())
+
+
+def talk(client: Client, now: float, data: bytes) -> list[str]:
+    """A request, and what came of it."""
+    events: list[Event] = client.request(now, EstimatedAttitudeAngles)
+    print(client.output(), client.deadline)
+    events += client.received(now, data)
+    found = []
+    for event in events:
+        if isinstance(event, Done) and isinstance(event.message, EstimatedAttitudeAngles):
+            found.append(f"{event.message.estimated_roll_angle_deg}")
+        elif isinstance(event, Refused):
+            found.append(event.reason or "unknown")
+    return found
+
+
+def wait(session: Session) -> tuple[float, bytes]:
+    """A typed answer, and a file."""
+    session.send(Reset())
+    decoder = UartDecoder(cubeacp.LINK)
+    print([event.event for event in decoder.feed(b"")], cubeacp.LINK.assumptions[0].why)
+    download = session.run(Download(cubeacp.LINK, "uart", 2, 0, 100))
+    return session.get(EstimatedAttitudeAngles).estimated_roll_angle_deg, download.data

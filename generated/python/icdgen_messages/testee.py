@@ -36,9 +36,10 @@ def answer(line: bytes) -> dict[str, Any]:
         request = json.loads(line.decode("utf-8"))
         if not isinstance(request, dict):
             raise Refusal("request")
-        operation = _OPERATIONS.get(_key(request, "op", str))
+        name = _key(request, "op", str)
+        operation = _OPERATIONS.get(name)
         if operation is None:
-            raise Refusal("request")
+            return _wire(name, request)
         return {"ok": True, **operation(request)}
     except Refusal as refusal:
         return refusal.answer
@@ -71,6 +72,15 @@ def _bytes(text: object, size: int | None = None) -> bytes:
     if size is not None and len(text) != 2 * size:
         raise Refusal("request", detail=f"these are not {2 * size} hex digits")
     return bytes.fromhex(text)
+
+
+def _wire(name: str, request: dict[str, Any]) -> dict[str, Any]:
+    """The answer to a request about the wire layer."""
+    from .wire import _testee
+
+    if name not in _testee.OPERATIONS:
+        raise Refusal("request")
+    return _testee.answer(request)
 
 
 def _node(request: dict[str, Any]) -> Any:

@@ -7,12 +7,16 @@ from pathlib import PurePosixPath
 
 from icdgen import __version__
 from icdgen.backends import Identifier
-from icdgen.backends.python import messages, names, nodes, scopes
+from icdgen.backends.python import links, messages, names, nodes, scopes
 from icdgen.backends.python.text import prose
 from icdgen.icd.model import Icd
 
 # What all nodes share.
 _SUPPORT = ("_base", "_codec", "_columns", "_enumeration", "_errors", "_floats", "_lazy", "testee")
+_WIRE = (
+    "__init__", "_testee", "_testee_link", "_testee_scripts", "can", "client", "crc", "errors", "events", "files", "i2c",
+    "identity", "link", "logs", "procedures", "session", "times", "transfer", "uart",
+)  # fmt: skip
 
 
 class PythonBackend:
@@ -41,6 +45,8 @@ class PythonBackend:
         yield root / "py.typed", ""
         for name in _SUPPORT:
             yield root / f"{name}.py", render(f"{name}.py.j2", **common)
+        for name in _WIRE:
+            yield root / names.WIRE / f"{name}.py", render(f"{names.WIRE}/{name}.py.j2", **common, **listed)
         enums = messages.EnumNames(icd)
         for node in icd.nodes:
             folder = root / node.name
@@ -49,6 +55,8 @@ class PythonBackend:
                 "node.py.j2", header=f"{origin}, ICD {node.digest[:16]}. Do not edit.", **nodes.values(icd, node)
             )
             header = f"{origin}. Do not edit."
+            if icd.protocol_of(node):
+                yield folder / "_link.py", render("link.py.j2", header=header, **links.values(icd, node))
             folder /= names.TYPES
             yield folder / "__init__.py", render("types.py.j2", header=header, title=prose(node.title))
             for enum in node.enums:

@@ -23,11 +23,13 @@ def values(icd: Icd, node: Node) -> dict[str, object]:
     for enum in node.enums:
         enums.append(f'{literal(enum.name)}: "{names.class_name(enum, node)}"')
     homes.sort(key=by_module)
+    linked = [("._link", "LINK")] if icd.protocol_of(node) else []
     messages = [(m, classes[m.node, m.name]) for m in icd.messages_of(node)]
     return {
         "doc": docstring(0, _documentation(node)),
-        "imports": [f"    {imported(4, home, name, name)}" for home, name in homes],
+        "imports": [f"    {imported(4, home, name, name)}" for home, name in sorted(homes + linked, key=by_module)],
         "constants": _constants(node),
+        "linked": bool(linked),
         "homes": exploded(0, "{", [f'"{name}": "{home}"' for home, name in homes], "}"),
         "telecommands": _by_id((m.telecommand_id, name) for m, name in messages),
         "telemetry": _by_id((m.telemetry_id, name) for m, name in messages),
@@ -97,5 +99,6 @@ def listed(icd: Icd) -> dict[str, object]:
     return {
         "imports": [imported(4, ".", name, name) for name in found],
         "nodes": display(0, "NODES = (", [f'"{name}"' for name in found], ")"),
+        "order": display(0, "(", [f'"{node.name}"' for node in icd.nodes], ")"),
         "titles": [(node.name, prose(node.title)) for node in icd.nodes],
     }

@@ -108,6 +108,7 @@ if TYPE_CHECKING:
     from ..common._types.upload_block_complete import (
         UploadBlockComplete as UploadBlockComplete,
     )
+    from ._link import LINK as LINK
     from ._types.boot_set_programs_list import (
         BootSetProgramsList as BootSetProgramsList,
     )
@@ -283,7 +284,8 @@ def decode_telemetry(id: int, data: _base.Buffer) -> _base.Message:
 if not TYPE_CHECKING:
 
     def __getattr__(name):
-        return _lazy.attribute(globals(), _HOMES, name)
+        homes = {"LINK": "._link"} if name == "LINK" else _HOMES
+        return _lazy.attribute(globals(), homes, name)
 
     def __dir__():
-        return sorted({*globals(), *_HOMES})
+        return sorted({*globals(), *_HOMES, "LINK"})

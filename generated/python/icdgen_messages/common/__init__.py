@@ -13,6 +13,7 @@ from .. import _lazy
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from .. import _base
+    from ._link import LINK as LINK
     from ._types.advance_file_list_read_pointer import (
         AdvanceFileListReadPointer as AdvanceFileListReadPointer,
     )
@@ -225,7 +226,8 @@ def decode_telemetry(id: int, data: _base.Buffer) -> _base.Message:
 if not TYPE_CHECKING:
 
     def __getattr__(name):
-        return _lazy.attribute(globals(), _HOMES, name)
+        homes = {"LINK": "._link"} if name == "LINK" else _HOMES
+        return _lazy.attribute(globals(), homes, name)
 
     def __dir__():
-        return sorted({*globals(), *_HOMES})
+        return sorted({*globals(), *_HOMES, "LINK"})

@@ -107,6 +107,7 @@ if TYPE_CHECKING:
     from ..common._types.upload_block_complete import (
         UploadBlockComplete as UploadBlockComplete,
     )
+    from ._link import LINK as LINK
     from ._types.acp_execution_state import AcpExecutionState as AcpExecutionState
     from ._types.acp_program_type import AcpProgramType as AcpProgramType
     from ._types.actuator_commands import ActuatorCommands as ActuatorCommands
@@ -788,7 +789,8 @@ def decode_telemetry(id: int, data: _base.Buffer) -> _base.Message:
 if not TYPE_CHECKING:
 
     def __getattr__(name):
-        return _lazy.attribute(globals(), _HOMES, name)
+        homes = {"LINK": "._link"} if name == "LINK" else _HOMES
+        return _lazy.attribute(globals(), homes, name)
 
     def __dir__():
-        return sorted({*globals(), *_HOMES})
+        return sorted({*globals(), *_HOMES, "LINK"})

@@ -1,0 +1,159 @@
+"""What the Python harness of the stream decoders does with an input; needs no atheris. See README.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from types import ModuleType
+
+STEPS = 400  # of a procedure
+
+
+class Streams:
+    """Feeds inputs to everything of a generated package that takes a stream. Raises what it should not have raised."""
+
+    def __init__(self, package: ModuleType) -> None:
+        self.package = package
+        nodes = [getattr(package, name) for name in package.NODES]
+        self.links = [node.LINK for node in nodes if hasattr(node, "LINK")]
+        self.wire = package.wire
+        self.parts = (self.uart, self.can, self.log, self.client_uart, self.client_can, self.client_i2c, self.download)
+
+    def one(self, data: bytes) -> None:
+        """Part, node, and how it is cut: a byte each; then the stream."""
+        if len(data) < 3:
+            return
+        part = self.parts[data[0] % len(self.parts)]
+        try:
+            part(self.links[data[1] % len(self.links)], data[2], data[3:])
+        except self.wire.UnsupportedError:
+            return
+
+    def uart(self, link, size: int, data: bytes) -> None:
+        limit = link.longest if size & 1 else 1 + size % link.longest
+        whole, cut = (self.wire.UartDecoder(link, limit) for _ in range(2))
+        found, again = whole.feed(data), []
+        for piece in pieces(data, size):
+            again += cut.feed(piece)
+            assert len(cut._buffer) <= limit
+        assert found == again
+        assert (whole.discarded, whole.pending) == (cut.discarded, cut.pending)
+        messages = [event.message for event in found if event.event == "message"]
+        on_line = sum(len(self.wire.uart_encode(link, message)) for message in messages)
+        # An escape byte that the ICD has skipped stands in no message.
+        assert whole.discarded + whole.pending + on_line == len(data) or link.framing.ignores_other
+        for message in messages:
+            self.wire.uart_kind(link, message)
+
+    def packets(self, data: bytes) -> Iterator[tuple[int, object]]:
+        """Packets that mostly belong together: 29 bits of which few differ, up to 8 bytes, and times."""
+        now = 0
+        while len(data) >= 3:
+            head, id, size = data[0], data[1], data[2] % 9
+            now += 0 if head & 0xC0 else 300
+            number = (head & 15) << 24 | id << 16 | (head >> 4 & 1) << 8 | (head >> 5 & 1)
+            yield now, self.wire.CanPacket(number, data[3 : 3 + size])
+            data = data[3 + size :]
+
+    def can(self, link, size: int, data: bytes) -> None:
+        joiner = self.wire.CanJoiner(link, None, 1 + size % 4)
+        for now, packet in self.packets(data):
+            for event in joiner.feed(now, packet):
+                if event.message:
+                    assert len(event.message.data) <= max(8, link.longest_data + 8)
+            assert len(joiner._open) <= 1 + size % 4
+        joiner.expire(1 << 40)
+        assert not joiner._open
+
+    def log(self, link, size: int, data: bytes) -> None:
+        whole, cut = self.wire.LogReader(link), self.wire.LogReader(link)
+        found = whole.feed(data)
+        assert found == [entry for piece in pieces(data, size) for entry in cut.feed(piece)]
+        assert (whole.mask, whole.truncated) == (cut.mask, cut.truncated)
+        if whole.mask is not None:
+            writer = self.wire.LogWriter(link, whole.mask)
+            again = writer.header() + b"".join(
+                writer.entry(entry.seconds, entry.milliseconds, [frame.data for frame in entry.frames])
+                for entry in found
+            )
+            assert len(again) == len(data) - whole.truncated
+
+    def client_uart(self, link, size: int, data: bytes) -> None:
+        client, now, ends = self.asked(link, "uart", size), 0, 0
+        for piece in pieces(data, size):
+            now += 40
+            ends += self.ends(client.received(now, piece))
+            client.output()
+        self.idle(client, now, ends)
+
+    def client_can(self, link, size: int, data: bytes) -> None:
+        client, last, ends = self.asked(link, "can", size), 0, 0
+        for now, packet in self.packets(data):
+            ends += self.ends(client.packet(now, packet))
+            client.packets()
+            last = now
+        self.idle(client, last, ends)
+
+    def client_i2c(self, link, size: int, data: bytes) -> None:
+        client, now, ends = self.asked(link, "i2c", size), 0, 0
+        for piece in pieces(data, size):
+            now += 7
+            if client.transfers():
+                ends += self.ends(client.transferred(now, piece))
+            else:
+                ends += self.ends(client.tick(now))
+        self.idle(client, now, ends)
+
+    def asked(self, link, bus: str, pick: int):
+        """A client with a request that goes on."""
+        client = self.wire.Client(link, bus, crc=bool(pick & 2))
+        kind, ids = ("telecommand", link.commands) if pick & 4 else ("telemetry", link.frames)
+        id = [id for id in ids if kind == "telemetry" or ids[id].acknowledged][pick % 7]
+        data = bytes(link.commands[id].length) if kind == "telecommand" else b""
+        client.start(0, self.wire.Request(kind, id, data, bool(pick & 8)))
+        return client
+
+    def ends(self, events) -> int:
+        ends = (self.wire.Done, self.wire.Refused, self.wire.Timeout)
+        for event in events:
+            if isinstance(event, self.wire.Done):
+                _ = event.message
+        return sum(isinstance(event, ends) for event in events)
+
+    def idle(self, client, now: float, ends: int) -> None:
+        """Each request ends, once, whatever has come."""
+        for _ in range(1000):
+            if not client.busy:
+                break
+            now = max(now, client.deadline)
+            ends += self.ends(client.transferred(now, None) if client.transfers() else client.tick(now))
+            client.output()
+            client.packets()
+        assert not client.busy and ends == 1
+
+    def download(self, link, size: int, data: bytes) -> None:
+        """Outcomes and packets of any kind; the procedure ends, and delivers what it was given."""
+        download = self.wire.Download(link, ("uart", "i2c", "can")[size % 3], 2, size, size or None)
+        now, events = 0, iter(data)
+        for _ in range(STEPS):
+            request = download.next(now)
+            if download.result:
+                break
+            code = next(events, 0)
+            now += code * 8
+            if request is None:
+                now = max(now, download.deadline or 0)
+                count = link.files.packet_bytes
+                download.event(now, self.wire.Packet(next(events, 0), bytes(next(events, 0) for _ in range(count))))
+            elif code & 15 == 1:
+                download.event(now, self.wire.Refused(request.id, 1))
+            elif code & 15 == 2:
+                download.event(now, self.wire.Timeout(request.id, 1))
+            else:
+                length = link.frames.get(request.id, 0) if request.kind == "telemetry" else 0
+                download.event(now, self.wire.Done(request.id, 1, bytes(next(events, 0) for _ in range(length))))
+        assert sum(len(block) for _, block in download.blocks) == download.progress[0]
+
+
+def pieces(data: bytes, size: int) -> list[bytes]:
+    """The stream in pieces of 1 to 256 bytes."""
+    return [data[at : at + size + 1] for at in range(0, len(data), size + 1)]

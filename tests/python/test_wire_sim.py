@@ -1,0 +1,183 @@
+"""The client over a simulated device, in a time that passes as fast as it can."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from random import Random
+
+import pytest
+
+from tests.conftest import ROOT
+from tests.python import packages
+
+pytest.importorskip("icdgen.sim", reason="the simulator is another part")
+from icdgen.sim import run
+
+RESETS = ("Reset", "Run Selected Program")
+
+
+class Port:
+    """A byte port with the device behind it. Nothing sleeps: reading moves the clock."""
+
+    def __init__(self, node: str, **options) -> None:
+        self.line, _ = run.build(packages.shipped(), node, run.Options(**options))
+        self.now = 0.0
+
+    def clock(self) -> float:
+        return self.now / 1000
+
+    def write(self, data: bytes) -> None:
+        self.line.received(int(self.now), data)
+
+    def read(self, seconds: float) -> bytes:
+        end = self.now + seconds * 1000
+        while True:
+            data = self.line.take(int(self.now))
+            due = self.line.deadline
+            if data or self.now >= end:
+                return data
+            self.now = end if due is None else min(end, max(self.now + 1, due))
+            self.line.tick(int(self.now))
+
+
+@pytest.fixture(scope="module")
+def wire(shipped):
+    return shipped.module("wire")
+
+
+def session(shipped, node: str = "cubeacp", **options):
+    port = Port(node, **options)
+    wire = shipped.module("wire")
+    return wire.Session(shipped.module(node).LINK, port.write, port.read, clock=port.clock), port
+
+
+def test_the_node_is_the_one_that_the_package_was_made_for(shipped, wire):
+    acp = shipped.module("cubeacp")
+    talking, _ = session(shipped)
+    assert wire.identify(acp.LINK, talking.get(acp.Identification).to_bytes()).matches
+
+
+def test_all_telemetry_can_be_requested(shipped):
+    acp = shipped.module("cubeacp")
+    talking, _ = session(shipped)
+    for _, message in acp.TELEMETRY.items():
+        assert isinstance(talking.get(message), message)
+
+
+def test_every_setting_reads_back_what_was_set(shipped):
+    acp = shipped.module("cubeacp")
+    talking, _ = session(shipped)
+    settings = [message for _, message in acp.TELECOMMANDS.items() if message.KIND == "configuration"]
+    clock = {"Current Unix Time"}  # goes on
+    assert len(settings) > 20
+    for message in settings:
+        made = message.from_bytes(message().to_bytes())
+        for info in message.FIELDS:
+            if info.type in ("uint", "int") and info.const is None:
+                setattr(made, info.attribute, 1)
+        talking.send(made)
+        if message.NAME not in clock:
+            assert talking.get(message) == made
+
+
+def test_every_telecommand_has_an_outcome(shipped, wire):
+    acp = shipped.module("cubeacp")
+    talking, _ = session(shipped)
+    for _, message in acp.TELECOMMANDS.items():
+        if message.NAME not in RESETS:
+            try:
+                talking.send(message())
+            except wire.RefusedError as error:
+                assert error.event.reason == "parameter"
+    assert talking.get(acp.Identification).node_type == acp.NODE_TYPE
+
+
+def test_a_refusal_and_a_silent_node_are_errors(shipped, wire):
+    acp = shipped.module("cubeacp")
+    talking, _ = session(shipped, faults=["nack=100%"])
+    with pytest.raises(wire.RefusedError):
+        talking.send(acp.ClearErrors())
+    talking, port = session(shipped, faults=["drop=100%"])
+    with pytest.raises(wire.ReplyTimeoutError, match="4 attempts"):
+        talking.get(acp.Identification)
+    assert 3.9 < port.clock() < 4.1
+
+
+@pytest.mark.parametrize("faults", ["corrupt=10%", "late=10%", "cut=10%", "noise=20%", "duplicate=30%", "repeat=10%"])
+def test_nothing_hangs_and_telemetry_gets_through_whatever_happens_to_the_bytes(shipped, wire, faults):
+    acp = shipped.module("cubeacp")
+    talking, port = session(shipped, faults=[faults], seed=3, late=700)
+    got = 0
+    for _ in range(100):
+        try:
+            talking.send(acp.ClearErrors(), repeat=True)
+            got += isinstance(talking.get(acp.EstimatedAttitudeAngles), acp.EstimatedAttitudeAngles)
+        except (wire.RefusedError, wire.ReplyTimeoutError):
+            continue
+    assert got >= 95
+    assert port.clock() < 600
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "file.bin"
+    path.write_bytes(Random(1).randbytes(61_441))
+    return path
+
+
+@pytest.mark.parametrize("loss", [0, 1, 10, 30])
+def test_a_file_arrives_byte_for_byte(shipped, wire, file, loss):
+    talking, _ = session(shipped, files=[f"2:5={file}"], faults=[f"drop={loss}%@packet"] * bool(loss), seed=loss)
+    (entry,) = talking.run(wire.FileList(shipped.module("cubeacp").LINK)).entries
+    assert (entry.type, entry.counter, entry.size) == (2, 5, 61_441)
+    shown = []
+    download = wire.Download(shipped.module("cubeacp").LINK, "uart", 2, 5, entry.size)
+    talking.run(download, lambda *now: shown.append(now))
+    assert download.data == file.read_bytes()
+    assert [one for one, _ in shown] == [0, 20480, 40960, 61440, 61441]
+
+
+@pytest.mark.parametrize("loss", [0, 1, 10, 30])
+def test_a_program_arrives_byte_for_byte(shipped, wire, file, tmp_path, loss):
+    faults = [f"drop={loss}%@upload", f"corrupt={loss / 10}%@acknowledge", f"late={loss / 10}%@acknowledge"]
+    talking, _ = session(shipped, "bootloader", uploads=tmp_path, faults=faults * bool(loss), seed=loss, boot=10**9)
+    upload = wire.Upload(shipped.module("bootloader").LINK, 3, file.read_bytes())
+    talking.run(upload)
+    assert upload.progress == (61_441, 61_441)
+    (program,) = tmp_path.glob("3.bin")
+    assert program.read_bytes()[:61_441] == file.read_bytes()
+
+
+def test_a_node_that_loses_every_packet_is_given_up(shipped, wire, file):
+    talking, _ = session(shipped, files=[f"2:5={file}"], faults=["drop=100%@packet"])
+    with pytest.raises(wire.FailedError, match="rounds"):
+        talking.run(wire.Download(shipped.module("cubeacp").LINK, "uart", 2, 5, 100))
+
+
+def test_logs_that_come_unasked_are_told(shipped, wire):
+    heard = []
+    talking, port = session(shipped)
+    talking._on_event = heard.append
+    acp = shipped.module("cubeacp")
+    mask = bytes([1]) + bytes(9)
+    message = wire.LogMessage.encode(acp.LINK, mask, [bytes(b.length) for b in acp.LINK.mask.selected(mask)])
+    port.line._send(0, "log", message)
+    talking.get(acp.Identification)
+    assert [type(event) for event in heard] == [wire.Log]
+
+
+def test_the_example_talks_to_the_simulator_of_the_command_line(shipped):
+    told = ["--set", "Estimated Attitude Angles", "Estimated Roll Angle=-12.34"]
+    command = [sys.executable, "-m", "icdgen", "sim", "--node", "cubeacp", "--tcp", "0", *told]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as simulator:
+        try:
+            port = simulator.stdout.readline().strip().rpartition(":")[2]
+            program = [sys.executable, "-B", str(ROOT / "examples" / "talk.py"), port]
+            path = {"PATH": os.environ["PATH"], "PYTHONPATH": str(shipped.folder)}  # without icdgen
+            done = subprocess.run(program, capture_output=True, text=True, timeout=60, env=path)
+        finally:
+            simulator.terminate()
+    assert not done.returncode, done.stderr
+    assert done.stdout.splitlines() == ["Identity(node_type=10, interface_version=7, matches=True)", "roll -12.34 deg"]
