@@ -21,6 +21,7 @@ _COMMANDS = {
     "show": "show",
     "decode": "codec",
     "encode": "codec",
+    "sim": "sim",
 }
 _DEFAULT = "generate"
 
