@@ -128,7 +128,7 @@
 #include "cubeacp/inertial_pointing_reference_vector.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-#define CUBEACP_ICD_DIGEST "0a42ff70a812c9ee"
+#define CUBEACP_ICD_DIGEST "f63fe8ab56315d07"
 /** What the node answers when asked for its type. */
 #define CUBEACP_NODE_TYPE 10u
 /** Version of the interface that it reports. */
