@@ -22,6 +22,9 @@ _COMMANDS = {
     "decode": "codec",
     "encode": "codec",
     "sim": "sim",
+    "log": "log",
+    "monitor": "monitor",
+    "send": "send",
 }
 _DEFAULT = "generate"
 
