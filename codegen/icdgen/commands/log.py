@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -71,7 +70,7 @@ def _convert(found, form: str, out: Path | None, head: int | None, done: Callabl
             raise UserError("standard output is closed", "--out FILE")
         convert(found, sys.stdout, head, done)
         return
-    with _whole(out) as partial, io.open(partial, "w", encoding="utf-8", newline="", buffering=1 << 20) as stream:
+    with _whole(out) as partial, open(partial, "w", encoding="utf-8", newline="", buffering=1 << 20) as stream:
         convert(found, stream, head, done)
 
 

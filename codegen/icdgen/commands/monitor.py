@@ -25,8 +25,9 @@ from icdgen.link.options import session_options
 def monitor(node, messages, icds, every, count, once, form, **options) -> None:
     """Show live telemetry of NODE as a table: MESSAGEs by id or name, default the identification.
 
-    Frames that the device sends of its own accord (logs) are shown as well. On a terminal the table stays in its place; in a pipe each
-    round is printed; --format json prints an object for each frame. Exit status: 1 if a frame was not answered in the last round.
+    Frames that the device sends of its own accord (logs) are shown as well. On a terminal the table stays in its place; in a
+    pipe each round is printed; --format json prints an object for each frame. Exit status: 1 if a frame was not answered in
+    the last round.
     """
     from icdgen.link.live import Monitor, Screen
     from icdgen.link.options import open_session, stranger

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import queue
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -59,7 +59,8 @@ def _ahead(items: Iterator[pa.Table]) -> Iterator[pa.Table]:
     def put(item: object) -> None:
         while not stop.is_set():
             try:
-                return made.put(item, timeout=0.2)
+                made.put(item, timeout=0.2)
+                return
             except queue.Full:
                 continue
 
@@ -117,7 +118,8 @@ class _Reader:
         import pyarrow as pa
 
         self.column, self.stride = column, entry_bytes
-        self.names: pa.Array | None = None
+        self.members: dict[int, str] = {}
+        self.names: pa.Array | None = None  # of all values, where there are few
         metadata = {"frame": column.frame, "field": column.field.name if column.field else "", "unit": column.unit}
         if column.field and column.field.enum:
             metadata["members"] = json.dumps({m.value: m.name for m in column.field.enum.members})
@@ -133,9 +135,11 @@ class _Reader:
             return pa.bool_()
         if column.kind == "float":
             return pa.float32() if column.field.bits == 32 else pa.float64()
-        if column.kind == "enum" and column.field.bits <= 8:
-            known = {m.value: m.name for m in column.field.enum.members}  # type: ignore[union-attr]
-            self.names = pa.array([known.get(raw) or f"unknown {raw}" for raw in range(1 << column.field.bits)])
+        if column.kind == "enum":
+            self.members = {m.value: m.name for m in column.field.enum.members}  # type: ignore[union-attr]
+            if column.field.bits > 8:
+                return pa.dictionary(pa.int32(), pa.string())
+            self.names = pa.array(self._named(range(1 << column.field.bits)))
             return pa.dictionary(pa.uint8(), pa.string())
         if column.linear:
             return pa.float64()
@@ -154,6 +158,10 @@ class _Reader:
         raw = self._raw(data)
         if self.names is not None:
             return pa.DictionaryArray.from_arrays(pa.array(raw.astype(np.uint8)), self.names)
+        if column.kind == "enum":
+            different, where = np.unique(raw, return_inverse=True)
+            names = pa.array(self._named(int(one) for one in different), pa.string())
+            return pa.DictionaryArray.from_arrays(pa.array(where.astype(np.int32)), names)
         if column.linear:
             return pa.array(self._physical(raw))
         if column.kind == "bool":
@@ -162,6 +170,9 @@ class _Reader:
             bits = raw.astype(np.uint32 if type_ == pa.float32() else np.uint64)
             return pa.array(bits.view(np.float32 if type_ == pa.float32() else np.float64))
         return pa.array(raw.astype(type_.to_pandas_dtype()))
+
+    def _named(self, values: Iterable[int]) -> list[str]:
+        return [self.members.get(value) or f"unknown {value}" for value in values]
 
     def _raw(self, data: bytes) -> np.ndarray:
         import numpy as np

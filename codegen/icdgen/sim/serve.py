@@ -6,6 +6,7 @@ import asyncio
 import os
 import time
 from collections.abc import Callable
+from contextlib import suppress
 
 from icdgen.errors import UserError
 from icdgen.sim.line import Line
@@ -136,10 +137,8 @@ async def pty(server: Server) -> tuple[str, object]:
         server.received(data)
 
     def write() -> None:
-        try:
+        with suppress(BlockingIOError):
             del waiting[: os.write(master, waiting)]
-        except BlockingIOError:
-            pass
         if not waiting:
             loop.remove_writer(master)
 
