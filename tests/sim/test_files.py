@@ -1,6 +1,7 @@
 """Files arrive byte for byte over a real port, whatever is lost.
 
-Small files here; a megabyte each way is a command of its own: ``python -m tests.sim.megabyte``.
+Small files here; a megabyte each way is a command of its own, `tests.sim.harness`:
+``python -m tests.sim.harness -- python -m tests.sim.client``.
 """
 
 from __future__ import annotations
