@@ -247,7 +247,7 @@ def test_strict_refuses_what_no_enumeration_has():
         (("--tcp", "0"), "it is not said which node is meant"),
         (("--tcp", "0", "--node", "cubeacp", "--fault", "rain=1"), "is no fault"),
         (("--tcp", "0", "--node", "cubeacp", "--fault", "drop=2"), "not between 0 and 1"),
-        (("--tcp", "0", "--node", "cubeacp", "--fault", "drop=1@tea"), "there is no `tea`"),
+        (("--tcp", "0", "--node", "cubeacp", "--fault", "drop=1@tea"), "cannot be on `tea`"),
         (("--tcp", "0", "--node", "cubeacp", "--file", "2:1"), "is no file of the device"),
         (("--tcp", "0", "--node", "cubeacp", "--file", "2:1=missing.bin"), "cannot read missing.bin"),
         (("--tcp", "0", "--node", "cubeacp", "--script", "missing.yaml"), "cannot read missing.yaml"),
@@ -267,7 +267,8 @@ def test_what_cannot_be_is_said(options, text, tmp_path):
     "script",
     ["{", "a: 1", "- {at: x}", "- {set: {Identification: 1}}", "- {what: 1}",
      "- {set: {Identification: {major: {wave: tsunami}}}}", "- {set: {Identification: {major: {min: x}}}}",
-     "- {faults: drop}", "- {faults: [drop=9]}", "- {set: {Identification: {major: x}}}"],
+     "- {faults: drop}", "- {faults: [drop=9]}", "- {set: {Identification: {major: x}}}",
+     "- {set: {Identification: {major: 300}}}"],
 )  # fmt: skip
 def test_a_wrong_script_is_refused_before_anything_runs(script, tmp_path):
     from icdgen.errors import UserError

@@ -51,7 +51,7 @@ def open_session(
         reply_timeout=known.client.reply_timeout if timeout is None else timeout,
         retries=known.client.retries if retries is None else retries,
     )
-    opened: object = open_port(port, icd.protocol_of(node))
+    opened = open_port(port, icd.protocol_of(node))
     assert isinstance(opened, Can) == is_can
     return Session(icd, node, opened, crc, address, settings, on_event)
 

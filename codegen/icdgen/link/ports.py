@@ -210,6 +210,8 @@ def open_port(text: str, protocol: dict) -> Port | Can:
         return makers[scheme]()
     if _is_pty(text):
         return Terminal(text)
+    if text.startswith("/") and not os.path.exists(text):
+        raise PortError(f"there is no port {text}", f"a port is named so: {FORMS}")
     return Serial(text, protocol.get("uart", {}))
 
 

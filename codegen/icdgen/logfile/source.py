@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Node
@@ -51,7 +52,7 @@ class Source:
 
     def time(self, entry: bytes) -> int:
         """Milliseconds since 1970."""
-        order = "little" if self.plan.little else "big"
+        order: Literal["little", "big"] = "little" if self.plan.little else "big"
         (at, size), (after, rest) = self.plan.seconds, self.plan.milliseconds
         return int.from_bytes(entry[at : at + size], order) * 1000 + int.from_bytes(entry[after : after + rest], order)
 

@@ -74,9 +74,7 @@ class Orders:
         if isinstance(value, Mapping):
             self.moving.append((message, one, value))
             return
-        raw = from_physical(one, "true" if value is True else "false" if value is False else str(value))
-        if isinstance(raw, int) and not one.raw_min <= raw <= one.raw_max:
-            raise UserError(f"{message.name}, {one.name}: {value} does not fit", f"{one.bits} bits hold the raw value")
+        raw = fitting(message, one, value)
         self.line.computer.settings.values.setdefault(message.name, {})[one.name] = raw
         values = self.line.computer.program.values
         if message.name in values.frames:
@@ -126,6 +124,14 @@ def locate(icd: Icd, node: Node, name: str, key: str) -> tuple[Message, Field]:
     return message, find_field(message, key, find_node(icd, message.node).vocabulary)
 
 
+def fitting(message: Message, one: Field, value: object) -> int | bytes:
+    """The raw value of what a user gave. Raises `icdgen.errors.UserError`."""
+    raw = from_physical(one, "true" if value is True else "false" if value is False else str(value))
+    if isinstance(raw, int) and one.type != "float" and not one.raw_min <= raw <= one.raw_max:
+        raise UserError(f"{message.name}, {one.name}: {value} does not fit", f"{one.bits} bits hold the raw value")
+    return raw
+
+
 def at(wave: Mapping, seconds: float, random) -> float:
     """The physical value of a wave at a time."""
     low, high = float(wave.get("min", -1)), float(wave.get("max", 1))
@@ -167,11 +173,11 @@ def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
         raise UserError(f"{where}: `set` is no mapping of messages to fields", HELP)
     for name, fields in values.items():
         for key, value in fields.items():
-            _, one = locate(icd, node, str(name), str(key))
+            message, one = locate(icd, node, str(name), str(key))
             if isinstance(value, Mapping):
                 _check_wave(f"{where}, {name}, {key}", one, value)
             else:
-                from_physical(one, "true" if value is True else "false" if value is False else str(value))
+                fitting(message, one, value)
     spoiled = row.get("faults")
     if spoiled is not None and not (isinstance(spoiled, list) and all(isinstance(one, str) for one in spoiled)):
         raise UserError(f"{where}: `faults` is no list of texts", HELP)

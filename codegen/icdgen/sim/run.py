@@ -64,9 +64,7 @@ def build(icd: Icd, name: str | None, options: Options) -> tuple[Line, orders.Or
     """The device on its line, and who gives it orders. Raises `icdgen.errors.UserError`."""
     node = node_of(icd, name)
     storage = Storage(on_upload=_saver(options.uploads))
-    for text in options.files:
-        key, file = _file(icd, node, text)
-        storage.files[key] = file
+    storage.files.update(_file(icd, node, text) for text in options.files)
     settings = Settings(options.boot, options.busy, options.processing, options.strict)
     spoil = faults.Faults(Random(options.seed), [faults.parse(one) for one in options.faults], options.late)
     line = Line(Computer(icd, node, settings, storage), spoil)

@@ -95,13 +95,13 @@ async def udp(server: Server, host: str, port: int) -> tuple[str, object]:
     class Protocol(asyncio.DatagramProtocol):
         def __init__(self) -> None:
             self.transport: asyncio.DatagramTransport | None = None
-            self.peer: object = None
+            self.peer: tuple | None = None
 
         def connection_made(self, transport) -> None:
             self.transport = transport
             server.clients.append(self.send)
 
-        def datagram_received(self, data: bytes, addr: object) -> None:
+        def datagram_received(self, data: bytes, addr: tuple) -> None:
             self.peer = addr
             server.received(data)
 

@@ -6,8 +6,11 @@ import binascii
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from icdgen.protocol import crc, files
+from icdgen.protocol import crc
 from icdgen.protocol.facts import Crc, Facts
+from icdgen.protocol.files import IndexEntry, index_encode
+
+LARGEST = 1 << 24  # bytes of a program: no offset makes us run out of memory
 
 
 @dataclass
@@ -29,26 +32,29 @@ class Storage:
     def read(self, known: Facts, type_: int, counter: int) -> bytes | None:
         """The content of a file, or of the index file; None if there is none."""
         if known.index and type_ == known.index.file_type:
-            return files.index_encode(known, [self._entry(known, key) for key in self.files])
+            return index_encode(known, [self._entry(known, key) for key in self.files])
         found = self.files.get((type_, counter))
         return found.data if found else None
 
-    def _entry(self, known: Facts, key: tuple[int, int]) -> files.IndexEntry:
+    def _entry(self, known: Facts, key: tuple[int, int]) -> IndexEntry:
         file = self.files[key]
         size = known.index.fields["meta"].bytes if known.index and "meta" in known.index.fields else 0
         form, mask, meta = known.log_file, known.mask, b""
         if form and mask and key[0] == form.file_type:
             meta = file.data[form.mask_at : form.mask_at + mask.size]
         checksum = checksum_of(known.crc16, file.data)
-        return files.IndexEntry(key[0], key[1], checksum, len(file.data), file.time, meta[:size].ljust(size, b"\0"))
+        return IndexEntry(key[0], key[1], checksum, len(file.data), file.time, meta[:size].ljust(size, b"\0"))
 
-    def write(self, destination: int, offset: int, data: bytes) -> None:
-        """Commits a block of a program."""
+    def write(self, destination: int, offset: int, data: bytes) -> bool:
+        """Commits a block of a program; whether there is room for it."""
+        if offset + len(data) > LARGEST:
+            return False
         program = self.programs.setdefault(destination, bytearray())
         program.extend(bytes(max(0, offset - len(program))))
         program[offset : offset + len(data)] = data
         if self.on_upload:
             self.on_upload(destination, bytes(program))
+        return True
 
 
 def checksum_of(form: Crc | None, data: bytes) -> int:

@@ -40,19 +40,18 @@ class Transfers:
         self.received: dict[int, bytes] = {}
         self.failed = False
         self.busy: dict[str, int] = {}  # step -> until when
+        self.fetched = Packet(0, bytes([form.fill]) * form.packet_bytes)  # by the last request
         self.burst: list[int] = []  # positions still to be fetched, where packets are requested one by one
         self.pushed: list[Packet] = []  # packets to be sent of the device's own accord
         self.maps = {m.name: at for at, m in enumerate(known.hole_map.messages)} if known.hole_map else {}
         self.telecommands: dict[str, tuple[str, Callable[[int, Raw], None]]] = {}
         self.frames: dict[str, list[tuple[str, Callable[[int], Raw]]]] = {}
-        for table, handlers in ((self.telecommands, self._takers()), (self.frames, self._givers())):
-            for step, handler in handlers:
-                if step in form.steps:
-                    name = form.steps[step].message.name
-                    if table is self.frames:
-                        self.frames.setdefault(name, []).append((step, handler))  # type: ignore[arg-type]
-                    else:
-                        self.telecommands[name] = step, handler  # type: ignore[assignment]
+        for step, take in self._takers():
+            if step in form.steps:
+                self.telecommands[form.steps[step].message.name] = step, take
+        for step, give in self._givers():
+            if step in form.steps:
+                self.frames.setdefault(form.steps[step].message.name, []).append((step, give))
 
     def _takers(self) -> Iterator[tuple[str, Callable[[int, Raw], None]]]:
         yield "list.reset", self._reset_list
@@ -102,8 +101,8 @@ class Transfers:
     def fetch(self) -> Packet:
         """The next packet of the burst; the last one again when there is none left, nothing but fill before any."""
         if self.burst:
-            self._last = self._packet_at(self.burst.pop(0))
-        return getattr(self, "_last", Packet(0, bytes([self.form.fill]) * self.form.packet_bytes))
+            self.fetched = self._packet_at(self.burst.pop(0))
+        return self.fetched
 
     def _is_busy(self, step: str, now: int) -> int:
         return int(now < self.busy.get(step, now))
@@ -206,9 +205,8 @@ class Transfers:
     def _finalize(self, now: int, values: Raw) -> None:
         self._work("upload.finalize", now)
         block, length = self._upload_block(), int(values["length"])  # type: ignore[arg-type]
-        self.failed = length > len(block)
-        if not self.failed:
-            self.storage.write(int(values["destination"]), int(values["offset"]), block[:length])  # type: ignore[arg-type]
+        destination, offset = int(values["destination"]), int(values["offset"])  # type: ignore[arg-type]
+        self.failed = length > len(block) or not self.storage.write(destination, offset, block[:length])
 
     def _erase(self, now: int, values: Raw) -> None:
         if values.get("all"):
