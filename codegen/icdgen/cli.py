@@ -25,6 +25,10 @@ _COMMANDS = {
     "encode": "codec",
     "diff": "diff",
     "import": "import_",
+    "sim": "sim",
+    "log": "log",
+    "monitor": "monitor",
+    "send": "send",
 }
 _DEFAULT = "generate"
 

@@ -129,7 +129,7 @@
 #include "cubeacp/link.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-#define CUBEACP_ICD_DIGEST "4fee628809d6c74e"
+#define CUBEACP_ICD_DIGEST "55213899f415043e"
 /** What the node answers when asked for its type. */
 #define CUBEACP_NODE_TYPE 10u
 /** Version of the interface that it reports. */

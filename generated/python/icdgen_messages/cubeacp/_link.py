@@ -840,6 +840,12 @@ LINK = link.Link(
             ),
         ),
         link.Assumption(
+            section="unsolicited_log.configured_by",
+            key="period_unit_ms",
+            value=1000,
+            why="No unit is given. The control loop runs once a second.",
+        ),
+        link.Assumption(
             section="message Reset",
             key="acknowledge",
             value="reset",

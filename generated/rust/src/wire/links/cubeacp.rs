@@ -10,6 +10,9 @@ pub const LONGEST: usize = 506;
 
 /// The protocol of node `cubeacp`. What the manual leaves open is marked as assumed.
 ///
+/// Assumed (`unsolicited_log.configured_by`, `period_unit_ms`): No unit is given. The control loop
+/// runs once a second.
+///
 /// Assumed (`message Reset`, `acknowledge`): Whether the acknowledge comes before the restart is
 /// not said. None is waited for, and one that comes is accepted.
 #[rustfmt::skip]

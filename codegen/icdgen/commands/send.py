@@ -1,0 +1,61 @@
+"""``icdgen send``"""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import click
+
+from icdgen.commands.common import icd_option, load_or_exit, say
+from icdgen.link.options import session_options
+
+
+@click.command()
+@click.argument("node")
+@click.argument("message")
+@click.argument("assignments", nargs=-1, metavar="[FIELD=VALUE]...")
+@session_options
+@icd_option
+@click.option("--raw", is_flag=True, help="Values are raw values, and are not held against limits.")
+@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+def send(node, message, assignments, icds, raw, form, **options) -> None:
+    """Send one telecommand to NODE and wait for its acknowledge: icdgen send wheels "Set Speed" x=100 --port tcp://host:4000
+
+    Exit status: 0 acknowledged (or sent, if it is never acknowledged), 1 refused or no answer, 2 misuse.
+    """
+    from icdgen import values
+    from icdgen.link.options import open_session
+
+    icd = load_or_exit(icds).icd
+    found = values.find_node(icd, node)
+    frame = values.encode(icd, node, message, list(assignments), raw=raw, kind="telecommand")
+    with open_session(icd, found, **options) as session:
+        outcome = session.telecommand(frame.message, frame.data)
+    ok = outcome["event"] == "done"
+    if form == "json":
+        answer = {key: outcome[key] for key in ("event", "code", "reason", "attempts") if outcome.get(key) is not None}
+        click.echo(json.dumps({"message": frame.message.name, **answer}))
+    elif ok:
+        say(f"{frame.message.name}: {_done(frame.message)}")
+    else:
+        say(f"{frame.message.name}: {_failed(icd, found, outcome)}", err=True)
+    sys.exit(0 if ok else 1)
+
+
+def _done(message) -> str:
+    if message.expects_reset:
+        return "sent; the device restarts instead of acknowledging"
+    return "acknowledged" if message.acknowledge else "sent; it is never acknowledged"
+
+
+def _failed(icd, node, outcome: dict) -> str:
+    if outcome["event"] == "timeout":
+        tries = outcome["attempts"]
+        return f"no answer{f' to {tries} attempts' if tries > 1 else ''}; whether it was executed is not known"
+    if outcome["code"] is None:
+        return "refused"
+    name = icd.protocol_of(node).get("errors", {}).get("enum")
+    enums = {e.name: e for n in (*icd.included(node), node) for e in n.enums}
+    members = {m.value: m.name for m in enums[name].members} if name in enums else {}
+    return f"refused: {members.get(outcome['code'], 'unknown error')} (code {outcome['code']})"

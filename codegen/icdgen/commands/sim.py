@@ -1,0 +1,61 @@
+"""``icdgen sim``"""
+
+from __future__ import annotations
+
+import sys
+
+import click
+
+from icdgen.commands.common import PATH, icd_option, load_or_exit, say
+from icdgen.errors import UserError
+
+_PORT = click.IntRange(0, 65535)
+
+
+@click.command()
+@click.option("--node", "name", help="The program that runs; one that starts another does so after the boot time.")
+@click.option("--pty", is_flag=True, help="Serve on a pseudo-terminal, whose path is printed.")
+@click.option("--tcp", type=_PORT, metavar="PORT", help="Serve on a TCP port; 0 takes a free one, which is printed.")
+@click.option("--udp", type=_PORT, metavar="PORT", help="Serve on a UDP port: each datagram is a piece of the stream.")
+@click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
+@click.option(
+    "--set", "values", nargs=2, multiple=True, metavar="MESSAGE FIELD=VALUE", help="A value of a frame. Repeatable."
+)
+@click.option("--script", type=PATH, metavar="FILE", help="Values, waves, faults and logs over time, as YAML.")
+@click.option("--file", "files", multiple=True, metavar="TYPE:COUNTER=PATH", help="A file that it has. Repeatable.")
+@click.option("--uploads", type=PATH, metavar="FOLDER", help="Where uploaded programs are written, DESTINATION.bin.")
+@click.option(
+    "--fault", "faults", multiple=True, metavar="KIND=SHARE[@WHAT]", help="A fault, e.g. drop=10%@acknowledge."
+)
+@click.option("--loss", metavar="SHARE", help="Short for --fault drop=SHARE@packet,upload: packets of files are lost.")
+@click.option("--late", type=click.IntRange(1), default=1500, show_default=True, help="How late is late at most, ms.")
+@click.option("--seed", type=int, default=0, show_default=True, help="The same seed, the same faults.")
+@click.option("--boot", type=click.IntRange(0), help="Boot time in ms (default: the ICD's).")
+@click.option("--busy", type=click.IntRange(0), default=20, show_default=True, help="Loading, erasing ... takes, ms.")
+@click.option("--processing", type=click.IntRange(0), default=0, show_default=True, help="A telecommand takes, ms.")
+@click.option("--strict", is_flag=True, help="Refuse also values that are no member, or beyond a limit.")
+@click.option("--orders", is_flag=True, help="Take orders from standard input: set, fault, log, restart.")
+@icd_option
+def sim(name, pty, tcp, udp, host, icds, **options) -> None:
+    """A device made from its ICD, on a pseudo-terminal, a TCP or a UDP port.
+
+    Prints where it listens, one line for each, and serves until it is interrupted or, with --orders, its input ends.
+    """
+    from icdgen.sim import run
+
+    ways: list[tuple] = [("pty",)] if pty else []
+    ways += [(way, host, port) for way, port in (("tcp", tcp), ("udp", udp)) if port is not None]
+    if not ways:
+        raise UserError("it is not said where to listen", "--pty, --tcp PORT or --udp PORT")
+    if pty and sys.platform == "win32":
+        raise UserError("there are no pseudo-terminals here", "use --tcp PORT")
+    loss = options.pop("loss")
+    if loss is not None:
+        options["faults"] = (*options["faults"], f"drop={loss}@packet,upload")
+    run.run(load_or_exit(icds).icd, name, ways, run.Options(**options), lambda text: _print(text))
+
+
+def _print(text: str) -> None:
+    say(text)
+    if sys.stdout is not None:
+        sys.stdout.flush()  # whoever started it waits for the line

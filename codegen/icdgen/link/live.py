@@ -1,0 +1,120 @@
+"""The table of live telemetry."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+
+from icdgen import tables, values
+from icdgen.errors import UserError
+from icdgen.icd.model import Icd, Message
+from icdgen.protocol import facts, logs
+from icdgen.protocol.i2c import WrongLength
+from icdgen.tables import Column, clean
+from icdgen.values.frame import Frame, frame
+
+_COLUMNS = ("frame", "field", "value", "unit", "remarks")
+
+
+class Monitor:
+    """The frames that are watched, as they came last."""
+
+    def __init__(self, icd: Icd, node: str, names: Sequence[str]) -> None:
+        self.icd, self.node = icd, values.find_node(icd, node)
+        self.known = facts.of(icd, self.node)
+        self.messages: list[Message] = []
+        for name in names:
+            message = values.find_message(icd, node, name, "telemetry")
+            if message not in self.messages:
+                self.messages.append(message)
+        if not names:
+            if self.known.identification is None:
+                raise UserError("it is not said what to show", "name messages: icdgen monitor NODE MESSAGE ...")
+            self.messages.append(self.known.identification.message)
+        self.last: dict[str, bytes] = {}
+        self.silent: set[str] = set()  # what was not answered in this round
+
+    def took(self, message: Message, data: bytes | None) -> None:
+        """The answer to a request; None: there was none."""
+        if data is None:
+            self.silent.add(message.name)
+        else:
+            self.silent.discard(message.name)
+            self.last[message.name] = data
+
+    def event(self, event: dict) -> None:
+        """Takes what came unasked: frames of a log."""
+        if event["event"] != "log":
+            return
+        try:
+            _, found = logs.decode_message(self.known, bytes.fromhex(event["bytes"]))
+        except WrongLength:
+            return
+        for one in found:
+            message = self.known.telemetry.get(one.id) if one.id is not None else None
+            if message and message.length == len(one.data):
+                self.last[message.name] = one.data
+
+    def frames(self) -> Iterator[Frame]:
+        """What was answered, and what came unasked."""
+        for name in self._names():
+            if name in self.last and name not in self.silent:
+                message = next(m for m in self.known.telemetry.values() if m.name == name)
+                yield frame(self.icd, self.node, message, self.last[name])
+
+    def rows(self) -> Iterator[tuple[str, str, str, str, str]]:
+        """Frame, field, value, unit, remarks."""
+        found = {one.message.name: one for one in self.frames()}
+        for name in self._names():
+            if name in self.silent:
+                yield name, "", "", "", "no answer"
+            elif name in found:
+                for number, row in enumerate(found[name].rows):
+                    unit = row.field.unit.symbol if row.field.unit else ""
+                    yield name if number == 0 else "", row.field.name, row.text, unit, "; ".join(row.remarks)
+
+    def _names(self) -> list[str]:
+        wanted = [message.name for message in self.messages]
+        return wanted + [name for name in self.last if name not in wanted]
+
+    def text(self) -> str:
+        """The table for a pipe, or for a single round."""
+        columns = [Column(title, right=title == "value") for title in _COLUMNS]
+        return tables.render(columns, list(self.rows()), tables.width_of(sys.stdout)).rstrip("\n")
+
+
+class Screen:
+    """A table that stays in its place. Nothing happens unless ``live``."""
+
+    def __init__(self, monitor: Monitor, live: bool) -> None:
+        self.monitor, self.live = monitor, None
+        if live:
+            from rich.live import Live
+
+            self.live = Live(get_renderable=self._table, auto_refresh=False)
+
+    def __enter__(self) -> Screen:
+        if self.live:
+            self.live.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self.live:
+            self.live.stop()
+
+    def show(self) -> None:
+        """Draws the table anew."""
+        if self.live:
+            self.live.refresh()
+
+    def _table(self):
+        from rich.table import Table
+        from rich.text import Text
+
+        table = Table(box=None, padding=(0, 2, 0, 0), pad_edge=False)
+        for title in _COLUMNS:
+            table.add_column(title, justify="right" if title == "value" else "left")
+        for row in self.monitor.rows():
+            style = "red" if row[4] == "no answer" else ""
+            table.add_row(*(Text(clean(cell), style=style) for cell in row))
+        return table

@@ -1,0 +1,250 @@
+"""Ports: where bytes or CAN packets go and come from.
+
+A port is named by a text: ``tcp://host:port``, ``udp://host:port``, the path of a terminal or the name of a serial
+port, ``can://interface/channel`` (of python-can).
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import socket
+import stat
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Protocol
+from urllib.parse import urlsplit
+
+from icdgen.errors import UserError
+from icdgen.protocol.can import Packet
+
+CONNECT_TIMEOUT = 5.0  # s
+WRITE_TIMEOUT = 5.0
+FORMS = "tcp://HOST:PORT, udp://HOST:PORT, /dev/ttyUSB0, COM3, can://socketcan/can0"
+
+
+class PortError(UserError):
+    """The port cannot be opened, or is gone."""
+
+
+class Port(Protocol):
+    """A stream of bytes. Times are seconds."""
+
+    def read(self, timeout: float) -> bytes:
+        """What has come, after ``timeout`` nothing. Raises `PortError`."""
+
+    def write(self, data: bytes) -> None:
+        """Sends everything. Raises `PortError`."""
+
+    def close(self) -> None: ...
+
+
+class Socket:
+    """TCP or UDP."""
+
+    def __init__(self, kind: str, host: str, port: int) -> None:
+        self.name = f"{kind}://{host}:{port}"
+        try:
+            if kind == "tcp":
+                self.socket = socket.create_connection((host, port), CONNECT_TIMEOUT)
+                self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            else:
+                family, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
+                self.socket = socket.socket(family, socket.SOCK_DGRAM)
+                self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
+                self.socket.connect(address)
+        except OSError as error:
+            raise PortError(f"cannot connect to {self.name}: {error.strerror or error}", "is it running?") from None
+        self.stream = kind == "tcp"
+
+    def read(self, timeout: float) -> bytes:
+        try:
+            self.socket.settimeout(max(timeout, 1e-6))
+            data = self.socket.recv(65536)
+        except (TimeoutError, BlockingIOError):
+            return b""
+        except ConnectionRefusedError as error:
+            raise PortError(f"{self.name}: {error.strerror}", "is it running?") from None
+        except OSError as error:
+            raise PortError(f"{self.name}: {error.strerror or error}") from None
+        if not data and self.stream:
+            raise PortError(f"{self.name}: the other end closed the connection")
+        return data
+
+    def write(self, data: bytes) -> None:
+        try:
+            self.socket.settimeout(WRITE_TIMEOUT)
+            if self.stream:
+                self.socket.sendall(data)
+            else:
+                for at in range(0, len(data), 1400):
+                    self.socket.send(data[at : at + 1400])
+        except OSError as error:
+            raise PortError(f"{self.name}: {error.strerror or error}") from None
+
+    def close(self) -> None:
+        self.socket.close()
+
+
+class Terminal:
+    """A pseudo-terminal, by its path."""
+
+    def __init__(self, path: str) -> None:
+        import tty
+
+        self.path = path
+        try:
+            self.file = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+        except OSError as error:
+            raise PortError(f"cannot open {path}: {error.strerror}", "check the path and your rights to it") from None
+        with suppress(OSError):
+            tty.setraw(self.file)
+
+    def read(self, timeout: float) -> bytes:
+        try:
+            if select.select([self.file], [], [], max(timeout, 0))[0]:
+                data = os.read(self.file, 65536)
+                if data:
+                    return data
+                raise PortError(f"{self.path}: the other end is gone")
+        except BlockingIOError:
+            pass
+        except OSError as error:
+            raise PortError(f"{self.path}: {error.strerror}", "the other end is gone") from None
+        return b""
+
+    def write(self, data: bytes) -> None:
+        while data:
+            try:
+                if not select.select([], [self.file], [], WRITE_TIMEOUT)[1]:
+                    raise PortError(f"{self.path}: nothing can be written any more")
+                data = data[os.write(self.file, data) :]
+            except BlockingIOError:
+                continue
+            except OSError as error:
+                raise PortError(f"{self.path}: {error.strerror}") from None
+
+    def close(self) -> None:
+        os.close(self.file)
+
+
+class Serial:
+    """A serial port, by pyserial."""
+
+    def __init__(self, name: str, settings: dict) -> None:
+        serial = _library("serial", "pyserial")
+        self.name, self.error = name, (serial.SerialException, OSError)
+        try:
+            self.serial = serial.Serial(
+                name,
+                settings.get("baud_rate", 115200),
+                bytesize=settings.get("data_bits", 8),
+                parity=str(settings.get("parity", "none"))[0].upper(),
+                stopbits=settings.get("stop_bits", 1),
+                write_timeout=WRITE_TIMEOUT,
+            )
+        except (*self.error, ValueError) as error:
+            raise PortError(f"cannot open {name}: {error}", f"a port is named so: {FORMS}") from None
+
+    def read(self, timeout: float) -> bytes:
+        try:
+            self.serial.timeout = max(timeout, 0)
+            first = self.serial.read(1)
+            return first + self.serial.read(self.serial.in_waiting) if first else b""
+        except self.error as error:
+            raise PortError(f"{self.name}: {error}") from None
+
+    def write(self, data: bytes) -> None:
+        try:
+            self.serial.write(data)
+        except self.error as error:
+            raise PortError(f"{self.name}: {error}") from None
+
+    def close(self) -> None:
+        self.serial.close()
+
+
+class Can:
+    """A CAN bus, by python-can. What goes and comes are packets."""
+
+    def __init__(self, interface: str, channel: str, bit_rate: int) -> None:
+        self.can = _library("can", "python-can")
+        self.name = f"can://{interface}/{channel}"
+        try:
+            self.bus = self.can.Bus(interface=interface, channel=channel, bitrate=bit_rate)
+        except (self.can.CanError, OSError, ValueError, ImportError) as error:
+            raise PortError(f"cannot open {self.name}: {error}", f"a port is named so: {FORMS}") from None
+
+    def receive(self, timeout: float) -> Packet | None:
+        """The next packet with a 29-bit identifier, after ``timeout`` none. Raises `PortError`."""
+        try:
+            found = self.bus.recv(max(timeout, 0))
+        except (self.can.CanError, OSError) as error:
+            raise PortError(f"{self.name}: {error}") from None
+        if found is None or not found.is_extended_id or found.is_error_frame or found.is_remote_frame:
+            return None
+        return Packet(found.arbitration_id, bytes(found.data))
+
+    def send(self, packet: Packet) -> None:
+        message = self.can.Message(arbitration_id=packet.id, data=packet.data, is_extended_id=True)
+        try:
+            self.bus.send(message, timeout=WRITE_TIMEOUT)
+        except (self.can.CanError, OSError) as error:
+            raise PortError(f"{self.name}: {error}") from None
+
+    def close(self) -> None:
+        self.bus.shutdown()
+
+
+def open_port(text: str, protocol: dict) -> Port | Can:
+    """The port. ``protocol`` is the ICD's section: baud rate and the like. Raises `icdgen.errors.UserError`."""
+    scheme, separator, rest = text.partition("://")
+    if separator:
+        makers: dict[str, Callable[[], Port | Can]] = {
+            "tcp": lambda: Socket("tcp", *_address(text)),
+            "udp": lambda: Socket("udp", *_address(text)),
+            "can": lambda: _can(rest, protocol.get("can", {})),
+        }
+        if scheme not in makers:
+            raise PortError(f"there is no port `{text}`", f"a port is named so: {FORMS}")
+        return makers[scheme]()
+    if _is_pty(text):
+        return Terminal(text)
+    if text.startswith("/") and not os.path.exists(text):
+        raise PortError(f"there is no port {text}", f"a port is named so: {FORMS}")
+    return Serial(text, protocol.get("uart", {}))
+
+
+def _address(text: str) -> tuple[str, int]:
+    try:
+        parts = urlsplit(text)
+        host, port = parts.hostname, parts.port
+    except ValueError:
+        host = port = None
+    if not host or not port:
+        raise PortError(f"`{text}` is no address", f"a port is named so: {FORMS}")
+    return host, port
+
+
+def _can(rest: str, section: dict) -> Can:
+    interface, separator, channel = rest.partition("/")
+    if not separator or not interface or not channel:
+        raise PortError(f"`can://{rest}` is no CAN bus", "can://INTERFACE/CHANNEL, as python-can names them")
+    return Can(interface, channel, section.get("bit_rate", 500_000))
+
+
+def _is_pty(path: str) -> bool:
+    try:
+        found = os.stat(path)
+    except OSError:
+        return False
+    return stat.S_ISCHR(found.st_mode) and os.path.realpath(path).startswith("/dev/pts/")
+
+
+def _library(name: str, package: str):
+    from importlib import import_module
+
+    try:
+        return import_module(name)
+    except ImportError:
+        raise PortError(f"{package} is not installed", "pip install 'icdgen[link]'") from None

@@ -1,0 +1,121 @@
+"""The columns of a log: which bits of an entry are which field."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from math import lcm
+
+from icdgen import layout, naming
+from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.layout import Piece
+from icdgen.protocol.facts import Facts, LogBit, need
+
+TIME = "time"
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A field of a frame, or a whole slot without a frame. Bytes are counted from the start of an entry."""
+
+    name: str
+    frame: str
+    message: Message | None
+    field: Field | None  # None: the slot as it is
+    start: int  # of the slot
+    length: int
+    byte_order: str
+    pieces: tuple[Piece, ...]  # of a number, in the entry
+
+    @property
+    def at(self) -> int:
+        """First byte."""
+        return self.start + (self.field.at // 8 if self.field else 0)
+
+    @property
+    def size(self) -> int:
+        """Bytes that it touches."""
+        return len(layout.byte_range(self.field)) if self.field else self.length
+
+    @property
+    def kind(self) -> str:
+        return self.field.type if self.field else "bytes"
+
+    @property
+    def unit(self) -> str:
+        return self.field.unit.symbol if self.field and self.field.unit else ""
+
+    @property
+    def linear(self) -> tuple[int, int, int] | None:
+        """The scale as whole numbers: physical = (raw * a + b) / d."""
+        if self.field is None or self.field.scale is None:
+            return None
+        factor, offset = Fraction(self.field.scale.factor), Fraction(self.field.scale.offset)
+        d = lcm(factor.denominator, offset.denominator)
+        return int(factor * d), int(offset * d), d
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """How entries of a log with that mask are read. ``seconds``, ``milliseconds``: offset and size."""
+
+    node: Node
+    slots: tuple[LogBit, ...]
+    entry_bytes: int
+    seconds: tuple[int, int]
+    milliseconds: tuple[int, int]
+    little: bool
+    columns: tuple[Column, ...]
+
+
+def plan(icd: Icd, known: Facts, mask: bytes) -> Plan:
+    """The columns of all frames that the mask selects. Raises `icdgen.protocol.facts.Unsupported`."""
+    form, slot_bytes = need(known.log_file, "telemetry_log"), need(known.mask, "log_mask").slot_bytes
+    slots = need(known.mask, "log_mask").selected(mask)
+    columns: list[Column] = []
+    for number, slot in enumerate(slots):
+        columns += _columns(icd, known, slot, form.frames_at + number * slot_bytes)
+    return Plan(
+        known.node,
+        tuple(slots),
+        form.frames_at + len(slots) * slot_bytes,
+        form.seconds,
+        form.milliseconds,
+        known.little,
+        tuple(_unique(columns)),
+    )
+
+
+def _columns(icd: Icd, known: Facts, slot: LogBit, start: int) -> Iterator[Column]:
+    message = known.telemetry.get(slot.id) if slot.id is not None else None
+    if message is None:
+        yield Column(f"bit_{slot.bit}", slot.name or f"bit {slot.bit}", None, None, start, slot.length, "", ())
+        return
+    owner = icd.node(message.node)
+    frame = _identifier(message, owner.vocabulary)
+    for field in message.fields:
+        if field.at + field.bits > slot.length * 8:
+            continue  # the slot does not hold it
+        name = f"{frame}__{_identifier(field, owner.vocabulary)}"
+        if field.unit:
+            name += f"_{naming.snake(naming.words(field.unit.identifier))}"
+        pieces = tuple(p._replace(byte=p.byte + start) for p in layout.pieces(field, owner))
+        yield Column(name, message.name, message, field, start, slot.length, owner.byte_order, pieces)
+
+
+def _identifier(item: Message | Field, vocabulary: tuple[str, ...]) -> str:
+    return naming.snake(naming.words(item.identifier or item.name, vocabulary)) or "unnamed"
+
+
+def _unique(columns: list[Column]) -> Iterator[Column]:
+    from dataclasses import replace
+
+    seen: set[str] = {TIME}
+    for column in columns:
+        name, number = column.name, 1
+        while name in seen:
+            number += 1
+            name = f"{column.name}_{number}"
+        seen.add(name)
+        yield column if name == column.name else replace(column, name=name)

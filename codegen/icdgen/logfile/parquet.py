@@ -1,0 +1,232 @@
+"""Parquet: whole columns at once, by numpy and pyarrow. One thread decodes while another writes."""
+
+from __future__ import annotations
+
+import json
+import queue
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from icdgen.errors import UserError
+from icdgen.logfile.columns import TIME, Column, Plan
+from icdgen.logfile.source import Source
+
+if TYPE_CHECKING:
+    import numpy as np
+    import pyarrow as pa
+
+EXACT = 1 << 53  # whole numbers below it are exact as doubles, and so is the rounding of their quotient
+PIECE = 6 << 20  # bytes that are decoded at once: what stays in the cache
+GROUP = 24 << 20  # bytes of the log that become a row group, about
+
+
+def to_parquet(source: Source, path: Path, head: int | None, done: Callable[[int], None]) -> None:
+    """Writes the file; units and names stand in the metadata of each column. Raises `icdgen.errors.UserError`."""
+    try:
+        import numpy  # noqa: F401
+        import pyarrow.parquet as pq
+    except ImportError:
+        raise UserError("pyarrow and numpy are not installed", "pip install 'icdgen[arrow]'") from None
+    decoder = Decoder(source.plan)
+    tables = _ahead(_groups(source, decoder, head, done))
+    with pq.ParquetWriter(path, decoder.schema, compression="lz4", write_page_index=True) as writer:
+        for table in tables:
+            writer.write_table(table, row_group_size=table.num_rows)
+
+
+def _groups(source: Source, decoder: Decoder, head: int | None, done: Callable[[int], None]) -> Iterator[pa.Table]:
+    import pyarrow as pa
+
+    batches, size = [], 0
+    for piece in source.pieces(head, PIECE):
+        batches.append(decoder.batch(piece))
+        size += len(piece)
+        if size >= GROUP:
+            yield pa.Table.from_batches(batches)
+            batches, size = [], 0
+        done(len(piece))
+    if batches:
+        yield pa.Table.from_batches(batches)
+
+
+def _ahead(items: Iterator[pa.Table]) -> Iterator[pa.Table]:
+    """The items, made in a thread, one ahead."""
+    made: queue.Queue = queue.Queue(maxsize=1)
+    stop = threading.Event()
+
+    def put(item: object) -> None:
+        while not stop.is_set():
+            try:
+                made.put(item, timeout=0.2)
+                return
+            except queue.Full:
+                continue
+
+    def make() -> None:
+        try:
+            for item in items:
+                put(item)
+                if stop.is_set():
+                    return
+            put(None)
+        except BaseException as error:
+            put(error)
+
+    thread = threading.Thread(target=make, daemon=True)
+    thread.start()
+    try:
+        while (item := made.get()) is not None:
+            if isinstance(item, BaseException):
+                raise item
+            yield item
+    finally:
+        stop.set()
+        thread.join()
+
+
+class Decoder:
+    """Entries -> Arrow."""
+
+    def __init__(self, plan: Plan) -> None:
+        import pyarrow as pa
+
+        self.plan = plan
+        self.columns = [_Reader(column, plan.entry_bytes) for column in plan.columns]
+        time = pa.field(TIME, pa.timestamp("ms", tz="UTC"), nullable=False)
+        metadata = {"icdgen.node": plan.node.name, "icdgen.icd_sha256": plan.node.digest}
+        self.schema = pa.schema([time, *(reader.field for reader in self.columns)], metadata)
+
+    def batch(self, data: bytes) -> pa.RecordBatch:
+        """The entries in ``data``."""
+        import numpy as np
+        import pyarrow as pa
+
+        plan, count = self.plan, len(data) // self.plan.entry_bytes
+        seconds = _whole(data, plan.entry_bytes, plan.seconds[0], plan.seconds[1], plan.little)
+        rest = _whole(data, plan.entry_bytes, plan.milliseconds[0], plan.milliseconds[1], plan.little)
+        time = pa.array(seconds.astype(np.int64) * 1000 + rest, pa.int64()).cast(self.schema.field(0).type)
+        arrays = [time, *(reader.read(data, count) for reader in self.columns)]
+        return pa.RecordBatch.from_arrays(arrays, schema=self.schema)
+
+
+class _Reader:
+    """A column of Arrow."""
+
+    def __init__(self, column: Column, entry_bytes: int) -> None:
+        import pyarrow as pa
+
+        self.column, self.stride = column, entry_bytes
+        self.members: dict[int, str] = {}
+        self.names: pa.Array | None = None  # of all values, where there are few
+        metadata = {"frame": column.frame, "field": column.field.name if column.field else "", "unit": column.unit}
+        if column.field and column.field.enum:
+            metadata["members"] = json.dumps({m.value: m.name for m in column.field.enum.members})
+        self.field = pa.field(column.name, self._type(), nullable=False, metadata=metadata)
+
+    def _type(self) -> pa.DataType:
+        import pyarrow as pa
+
+        column = self.column
+        if column.kind == "bytes" or column.field is None:
+            return pa.binary(column.size)
+        if column.kind == "bool":
+            return pa.bool_()
+        if column.kind == "float":
+            return pa.float32() if column.field.bits == 32 else pa.float64()
+        if column.kind == "enum":
+            self.members = {m.value: m.name for m in column.field.enum.members}  # type: ignore[union-attr]
+            if column.field.bits > 8:
+                return pa.dictionary(pa.int32(), pa.string())
+            self.names = pa.array(self._named(range(1 << column.field.bits)))
+            return pa.dictionary(pa.uint8(), pa.string())
+        if column.linear:
+            return pa.float64()
+        size = next(size for size in (8, 16, 32, 64) if column.field.bits <= size)
+        return pa.type_for_alias(f"{'int' if column.field.signed else 'uint'}{size}")
+
+    def read(self, data: bytes, count: int) -> pa.Array:
+        import numpy as np
+        import pyarrow as pa
+
+        column, type_ = self.column, self.field.type
+        if pa.types.is_fixed_size_binary(type_):
+            table = np.frombuffer(data, np.uint8).reshape(count, self.stride)
+            part = np.ascontiguousarray(table[:, column.at : column.at + column.size])
+            return pa.FixedSizeBinaryArray.from_buffers(type_, count, [None, pa.py_buffer(part)])
+        raw = self._raw(data)
+        if self.names is not None:
+            return pa.DictionaryArray.from_arrays(pa.array(raw.astype(np.uint8)), self.names)
+        if column.kind == "enum":
+            different, where = np.unique(raw, return_inverse=True)
+            names = pa.array(self._named(int(one) for one in different), pa.string())
+            return pa.DictionaryArray.from_arrays(pa.array(where.astype(np.int32)), names)
+        if column.linear:
+            return pa.array(self._physical(raw))
+        if column.kind == "bool":
+            return pa.array(raw != 0)
+        if column.kind == "float":
+            bits = raw.astype(np.uint32 if type_ == pa.float32() else np.uint64)
+            return pa.array(bits.view(np.float32 if type_ == pa.float32() else np.float64))
+        return pa.array(raw.astype(type_.to_pandas_dtype()))
+
+    def _named(self, values: Iterable[int]) -> list[str]:
+        return [self.members.get(value) or f"unknown {value}" for value in values]
+
+    def _raw(self, data: bytes) -> np.ndarray:
+        import numpy as np
+
+        column, field = self.column, self.column.field
+        assert field
+        if field.at % 8 == 0 and field.bits in (8, 16, 32, 64):
+            little = column.byte_order == "little"
+            return _whole(data, self.stride, column.at, field.bits // 8, little, "i" if field.signed else "u")
+        if len(column.pieces) == 1:
+            (piece,) = column.pieces
+            value = _whole(data, self.stride, piece.byte, 1, True) & piece.mask
+            if column.kind == "bool":
+                return value
+            value = value >> piece.shift
+        else:
+            value = np.zeros(len(data) // self.stride, np.uint64)
+            for piece in column.pieces:
+                part = (_whole(data, self.stride, piece.byte, 1, True) & piece.mask) >> piece.shift
+                value |= part.astype(np.uint64) << np.uint64(piece.at)
+        if field.signed:
+            up = np.int64(64 - field.bits)
+            return value.astype(np.uint64).view(np.int64) << up >> up
+        return value
+
+    def _physical(self, raw: np.ndarray) -> np.ndarray:
+        """The correctly rounded doubles."""
+        import numpy as np
+
+        assert self.column.field and self.column.linear
+        (a, b, d), field = self.column.linear, self.column.field
+        if max(abs(field.raw_min * a + b), abs(field.raw_max * a + b), field.raw_max, abs(b), d) < EXACT:
+            value = raw.astype(np.float64)
+            if a != 1:
+                value *= a
+            if b:
+                value += b
+            if d != 1:
+                value /= d
+            return value
+        different, where = np.unique(raw, return_inverse=True)
+        return np.array([(int(one) * a + b) / d for one in different], np.float64)[where]
+
+
+def _whole(data: bytes, stride: int, at: int, size: int, little: bool, kind: str = "u") -> np.ndarray:
+    """A number of whole bytes in every entry; not a copy where numpy has the size."""
+    import numpy as np
+
+    count = len(data) // stride
+    if size in (1, 2, 4, 8):
+        return np.ndarray((count,), f"{'<' if little else '>'}{kind}{size}", data, at, (stride,))
+    value = np.zeros(count, np.uint64)
+    for number in range(size):
+        byte = np.ndarray((count,), np.uint8, data, at + number, (stride,))
+        shift = 8 * (number if little else size - 1 - number)
+        value |= byte.astype(np.uint64) << np.uint64(shift)
+    return value

@@ -1,0 +1,94 @@
+"""Entries as values of Python, one by one, with the standard library alone."""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Callable, Iterator
+from datetime import UTC, datetime, timedelta
+
+from icdgen.logfile.columns import Column
+from icdgen.logfile.source import Source
+
+Value = int | float | str | bool
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+
+
+def rows(source: Source, head: int | None, done: Callable[[int], None]) -> Iterator[tuple[str, list[Value]]]:
+    """Time and values of each entry. ``done`` is told how many bytes have been read."""
+    readers, size = [reader(column) for column in source.plan.columns], source.plan.entry_bytes
+    for piece in source.pieces(head, 1 << 18):
+        for at in range(0, len(piece), size):
+            entry = piece[at : at + size]
+            yield time_text(source.time(entry)), [read(entry) for read in readers]
+        done(len(piece))
+
+
+def time_text(milliseconds: int) -> str:
+    """ISO 8601 in UTC."""
+    return (_EPOCH + timedelta(milliseconds=milliseconds)).isoformat(timespec="milliseconds")[:-6] + "Z"
+
+
+def reader(column: Column) -> Callable[[bytes], Value]:
+    """What takes the value of a column out of an entry."""
+    return _READERS.get(column.kind, _integer)(column)
+
+
+def _raw(column: Column) -> Callable[[bytes], int]:
+    assert column.field
+    field, first, last = column.field, column.at, column.at + column.size
+    if field.at % 8 == 0 and field.bits % 8 == 0:
+        order, signed = column.byte_order, field.signed
+        return lambda entry: int.from_bytes(entry[first:last], order, signed=signed)  # type: ignore[arg-type]
+    if len(column.pieces) == 1 and not field.signed:
+        (piece,) = column.pieces
+        byte, shift, mask = piece.byte, piece.shift, (1 << piece.bits) - 1
+        return lambda entry: entry[byte] >> shift & mask
+    pieces, sign = column.pieces, 1 << field.bits - 1 if field.signed else 0
+
+    def read(entry: bytes) -> int:
+        value = sum((entry[p.byte] & p.mask) >> p.shift << p.at for p in pieces)
+        return value - (value & sign) * 2
+
+    return read
+
+
+def _integer(column: Column) -> Callable[[bytes], Value]:
+    raw, linear = _raw(column), column.linear
+    if linear is None:
+        return raw
+    a, b, d = linear
+    return lambda entry: (raw(entry) * a + b) / d
+
+
+def _bool(column: Column) -> Callable[[bytes], Value]:
+    raw = _raw(column)
+    return lambda entry: bool(raw(entry))
+
+
+def _enum(column: Column) -> Callable[[bytes], Value]:
+    assert column.field and column.field.enum
+    raw, names = _raw(column), {m.value: m.name for m in column.field.enum.members}
+    return lambda entry: names.get(value := raw(entry)) or f"unknown {value}"
+
+
+def _float(column: Column) -> Callable[[bytes], Value]:
+    from icdgen.values.numbers import float_text
+
+    assert column.field
+    raw, bits = _raw(column), column.field.bits
+    form, whole = ("<f", "<I") if bits == 32 else ("<d", "<Q")
+
+    def read(entry: bytes) -> Value:
+        value = struct.unpack(form, struct.pack(whole, raw(entry)))[0]
+        return float(float_text(value, bits)) if math.isfinite(value) else value  # 0.1, not 0.10000000149011612
+
+    return read
+
+
+def _bytes(column: Column) -> Callable[[bytes], Value]:
+    first, last = column.at, column.at + column.size
+    return lambda entry: entry[first:last].hex()
+
+
+_READERS = {"bool": _bool, "enum": _enum, "float": _float, "bytes": _bytes}

@@ -1,0 +1,89 @@
+"""A log file on the disk, read in pieces of whole entries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from icdgen.errors import UserError
+from icdgen.icd.model import Icd, Node
+from icdgen.logfile.columns import Plan, plan
+from icdgen.protocol import facts
+
+PIECE = 4 << 20  # bytes that are read at once, about
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """``entries`` whole ones, after them ``truncated`` bytes of one that was cut off."""
+
+    path: Path
+    mask: bytes
+    header_bytes: int
+    size: int
+    plan: Plan
+
+    @property
+    def entries(self) -> int:
+        return (self.size - self.header_bytes) // self.plan.entry_bytes
+
+    @property
+    def truncated(self) -> int:
+        return (self.size - self.header_bytes) % self.plan.entry_bytes
+
+    def pieces(self, head: int | None = None, size: int = PIECE) -> Iterator[bytes]:
+        """The entries, many at once; ``head``: only so many. Raises `icdgen.errors.UserError`."""
+        left = self.entries if head is None else min(head, self.entries)
+        some, one = max(1, size // self.plan.entry_bytes), self.plan.entry_bytes
+        try:
+            with self.path.open("rb") as file:
+                file.seek(self.header_bytes)
+                while left:
+                    data = file.read(min(some, left) * one)
+                    whole = len(data) // one
+                    if not whole:
+                        return  # it has become shorter meanwhile
+                    yield data[: whole * one]
+                    left -= whole
+        except OSError as error:
+            raise _unreadable(self.path, error) from None
+
+    def time(self, entry: bytes) -> int:
+        """Milliseconds since 1970."""
+        order: Literal["little", "big"] = "little" if self.plan.little else "big"
+        (at, size), (after, rest) = self.plan.seconds, self.plan.milliseconds
+        return int.from_bytes(entry[at : at + size], order) * 1000 + int.from_bytes(entry[after : after + rest], order)
+
+    def entry(self, number: int) -> bytes:
+        """One entry. Raises `icdgen.errors.UserError`."""
+        try:
+            with self.path.open("rb") as file:
+                file.seek(self.header_bytes + number * self.plan.entry_bytes)
+                return file.read(self.plan.entry_bytes)
+        except OSError as error:
+            raise _unreadable(self.path, error) from None
+
+
+def open_log(icd: Icd, node: Node, path: Path) -> Source:
+    """The log file. Raises `icdgen.errors.UserError`."""
+    known = facts.of(icd, node)
+    if known.log_file is None or known.mask is None:
+        raise UserError(f"the ICD of {node.name} describes no log files", "--node names another one")
+    header = known.log_file.header_bytes
+    try:
+        if path.is_dir():
+            raise UserError(f"{path} is a folder", "name a log file")
+        with path.open("rb") as file:
+            head, size = file.read(header), file.seek(0, 2)
+    except OSError as error:
+        raise _unreadable(path, error) from None
+    if len(head) < header:
+        raise UserError(f"{path} is no log: it has {size} bytes, the header alone has {header}", "is it whole?")
+    mask = head[known.log_file.mask_at : known.log_file.mask_at + known.mask.size]
+    return Source(path, mask, header, size, plan(icd, known, mask))
+
+
+def _unreadable(path: Path, error: OSError) -> UserError:
+    return UserError(f"cannot read {path}: {error.strerror}", "check the path")

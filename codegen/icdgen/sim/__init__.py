@@ -1,0 +1,5 @@
+"""A device made from its ICD, for tests and for trying things out: what `icdgen sim` runs.
+
+`computer.Computer` is the device, without clock and without I/O; `line.Line` puts it on a UART with faults on demand;
+`serve` carries that line over a pseudo-terminal, TCP or UDP.
+"""

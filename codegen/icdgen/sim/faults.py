@@ -1,0 +1,83 @@
+"""Faults on demand, from a seed: what happens to a message on its way."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from random import Random
+
+from icdgen.errors import UserError
+
+OUT = ("acknowledge", "reply", "packet", "log")  # what the device sends
+IN = ("telecommand", "request", "upload")  # what it receives
+KINDS = {
+    "drop": "the message is lost",
+    "corrupt": "one of its bytes becomes another one",
+    "cut": "one of its bytes is lost",
+    "duplicate": "it comes twice",
+    "repeat": "one of its bytes comes twice",
+    "late": "it comes later",
+    "noise": "bytes that mean nothing come before it",
+    "nack": "the telecommand is refused",
+}
+_SPEC = re.compile(r"(?P<kind>[a-z]+)=(?P<share>[0-9.]+%?)(?:@(?P<on>[a-z,]+))?")
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """``share`` of the messages ``on`` that it concerns, from 0 to 1."""
+
+    kind: str
+    share: float
+    on: tuple[str, ...]
+
+
+@dataclass
+class Faults:
+    """The faults in force. ``late_ms``: how late at most."""
+
+    random: Random
+    faults: list[Fault] = field(default_factory=list)
+    late_ms: int = 1500
+
+    def hits(self, kind: str, on: str) -> bool:
+        """Whether this message has that fault."""
+        return any(f.kind == kind and on in f.on and self.random.random() < f.share for f in self.faults)
+
+    def spoil(self, on: str, data: bytes) -> list[tuple[int, bytes]]:
+        """What becomes of the bytes of a message: pieces, each with its delay in milliseconds."""
+        if self.hits("drop", on):
+            return []
+        out = bytearray(data)
+        if out and self.hits("corrupt", on):
+            out[self.random.randrange(len(out))] ^= self.random.randrange(1, 256)
+        if out and self.hits("cut", on):
+            del out[self.random.randrange(len(out))]
+        if out and self.hits("repeat", on):
+            at = self.random.randrange(len(out))
+            out.insert(at, out[at])
+        if self.hits("noise", on):
+            out[:0] = self.random.randbytes(self.random.randrange(1, 32))
+        pieces = [bytes(out)] * (2 if self.hits("duplicate", on) else 1)
+        return [(self.random.randrange(1, self.late_ms + 1) if self.hits("late", on) else 0, one) for one in pieces]
+
+
+def parse(text: str) -> Fault:
+    """``drop=10%@acknowledge``, ``corrupt=0.01``. Raises `icdgen.errors.UserError`."""
+    match = _SPEC.fullmatch(text.strip())
+    help = f"KIND=SHARE or KIND=SHARE@WHAT, for instance drop=10%@acknowledge; kinds: {', '.join(KINDS)}"
+    if match is None or match["kind"] not in KINDS:
+        raise UserError(f"`{text}` is no fault", help)
+    share = match["share"]
+    try:
+        value = float(share.rstrip("%")) / (100 if share.endswith("%") else 1)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value <= 1:
+        raise UserError(f"`{text}`: the share is not between 0 and 1 (100%)", help)
+    known = {"nack": ("telecommand",), "late": OUT}.get(match["kind"], (*OUT, *IN))
+    on = tuple(match["on"].split(",")) if match["on"] else (known if match["kind"] == "nack" else OUT)
+    for one in on:
+        if one not in known:
+            raise UserError(f"`{text}`: it cannot be on `{one}`", f"what it can be on: {', '.join(known)}")
+    return Fault(match["kind"], value, on)

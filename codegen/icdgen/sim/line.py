@@ -1,0 +1,120 @@
+"""The device on a UART: bytes in, bytes out, each with its time. Faults happen here."""
+
+from __future__ import annotations
+
+import heapq
+
+from icdgen.protocol import uart
+from icdgen.protocol.facts import UART, need
+from icdgen.sim.computer import Computer
+from icdgen.sim.faults import Faults
+from icdgen.sim.program import Outcome
+
+FLAGS = {
+    uart.UNEXPECTED_START: "uart_incomplete",
+    uart.PROTOCOL_ERROR: "uart_protocol",
+    uart.OVERRUN: "overrun",
+}
+
+
+class Line:
+    """Every call is given the time in milliseconds; `take` gives the bytes that are due."""
+
+    def __init__(self, computer: Computer, faults: Faults) -> None:
+        self.computer, self.faults = computer, faults
+        known = computer.program.known
+        # Programs of a device share its line, and its framing.
+        self.decoder = uart.Decoder(need(known.framing, "uart"), known.longest_telecommand)
+        self._queue: list[tuple[int, int, bytes]] = []
+        self._sent = 0
+
+    def received(self, now: int, data: bytes) -> None:
+        """The next bytes from the client."""
+        self.tick(now)
+        for event in self.decoder.feed(data):
+            if event.event == uart.MESSAGE:
+                self._message(now, event.message)
+            elif event.event in FLAGS:
+                self.computer.program.count(FLAGS[event.event])
+
+    def tick(self, now: int) -> None:
+        """Lets time pass."""
+        self.computer.tick(now)
+        log = self.computer.program.log_due(now)
+        if log is not None:
+            self._send(now, "log", log)
+
+    def log(self, now: int) -> None:
+        """Sends an unsolicited log message at once."""
+        message = self.computer.program.log_message(now)
+        if message is not None:
+            self._send(now, "log", message)
+
+    def take(self, now: int) -> bytes:
+        """The bytes that are due."""
+        out = bytearray()
+        while self._queue and self._queue[0][0] <= now:
+            out += heapq.heappop(self._queue)[2]
+        return bytes(out)
+
+    @property
+    def deadline(self) -> int | None:
+        """When `tick` and `take` want to be called at the latest."""
+        times = [self._queue[0][0]] if self._queue else []
+        if self.computer.deadline is not None:
+            times.append(self.computer.deadline)
+        return min(times, default=None)
+
+    def _message(self, now: int, message: bytes) -> None:
+        known = self.computer.program.known
+        if known.telemetry_ids.first <= message[0] <= known.telemetry_ids.last:
+            for _, one in self.faults.spoil("request", message):
+                self._request(now, one)
+            return
+        step = known.files.steps.get("upload.packet") if known.files else None
+        upload = step is not None and step.message.telecommand_id == message[0]
+        for _, one in self.faults.spoil("upload" if upload else "telecommand", message):
+            self._telecommand(now, one)
+
+    def _request(self, now: int, message: bytes) -> None:
+        if len(message) != 1:
+            return
+        frame = self.computer.frame(now, message[0])
+        if frame is not None:
+            self._send(now, "reply", message + frame)
+
+    def _telecommand(self, now: int, message: bytes) -> None:
+        if not message:
+            return
+        program = self.computer.program
+        outcome: Outcome | None
+        if self.faults.hits("nack", "telecommand"):
+            outcome = program.refuse(message)
+        else:
+            outcome = self.computer.take(now, message, UART)
+        if outcome is None:
+            return
+        form = program.known.acknowledge
+        if outcome.acknowledge and form:
+            answer = bytearray(form.length)
+            answer[form.id_at], answer[form.error_at] = message[0], outcome.code
+            self._send(now + self.computer.settings.processing_ms, "acknowledge", bytes(answer))
+        if outcome.reset is None:
+            self._push(now)
+
+    def _push(self, now: int) -> None:
+        """Packets of a burst, which come by themselves on a UART."""
+        program = self.computer.program
+        transfers = program.transfers
+        if transfers is None or not transfers.pushed or UART not in transfers.form.packet_ids:
+            return
+        pushed, transfers.pushed, transfers.burst = transfers.pushed, [], []
+        head = bytes([transfers.form.packet_ids[UART]])
+        for packet in pushed:
+            number = program.known.bytes_of(packet.number, transfers.form.counter_bytes)
+            self._send(now, "packet", head + number + packet.data)
+
+    def _send(self, now: int, on: str, message: bytes) -> None:
+        for delay, data in self.faults.spoil(on, uart.encode(self.decoder.framing, message)):
+            self._sent += 1
+            heapq.heappush(self._queue, (now + delay, self._sent, data))

@@ -1,0 +1,197 @@
+"""One program of the simulated device: takes telecommands, answers requests."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
+from icdgen.protocol import facts, i2c, logs
+from icdgen.sim.settings import Settings
+from icdgen.sim.storage import Storage
+from icdgen.sim.transfers import Raw, Refused, Transfers
+from icdgen.sim.values import Values
+from icdgen.values.frame import violations
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of a telecommand. ``reset``: the message that restarts the device, which then does not answer."""
+
+    code: int
+    parameter: int = 0
+    acknowledge: bool = True
+    reset: Message | None = None
+
+
+class Program:
+    """A program that has just been started."""
+
+    def __init__(self, icd: Icd, node: Node, storage: Storage, settings: Settings, now: int) -> None:
+        self.icd, self.node, self.settings = icd, node, settings
+        self.known = facts.of(icd, node)
+        self.values = Values(icd, node)
+        form = self.known.files
+        self.transfers = Transfers(self.known, form, storage, settings.busy_ms) if form else None
+        self.counts: dict[str, int] = {}  # statistics by role
+        self.last = (0, True, 0, 0)  # id, processed, code and parameter of the last telecommand
+        self.free_at = now  # when the last telecommand is processed
+        self.log_at: int | None = None
+        self._identify()
+        for name, raw in settings.values.items():
+            if name in self.values.frames:
+                self.values.update(self.values.messages[name], raw)
+        self._plan_log(now)
+
+    def count(self, role: str) -> None:
+        """Raises a counter of the statistics, or sets a flag of it."""
+        self.counts[role] = self.counts.get(role, 0) + 1
+
+    def take(self, now: int, message: bytes, bus: str) -> Outcome | None:
+        """A telecommand, id first, as it came. None: it was lost, for the one before is not processed yet."""
+        if now < self.free_at:
+            self.count("overrun")
+            return None
+        self.count("telecommands")
+        outcome = self._take(now, message, bus)
+        self.free_at = now + self.settings.processing_ms
+        self.last = (message[0], True, outcome.code, outcome.parameter)
+        return outcome
+
+    def refuse(self, message: bytes) -> Outcome:
+        """Refuses a telecommand without looking at it."""
+        self.count("telecommands")
+        outcome = self._refusal("parameter")
+        self.last = (message[0], True, outcome.code, outcome.parameter)
+        known = self.known.telecommands.get(message[0])
+        return Outcome(outcome.code, 0, known is None or known.acknowledge)
+
+    def frame(self, now: int, id: int) -> bytes | None:
+        """The frame with that id; None if there is none."""
+        message = self.known.telemetry.get(id)
+        if message is None:
+            return None
+        self.count("requests")
+        return self.current(now, message)
+
+    def current(self, now: int, message: Message) -> bytes:
+        """The frame as it is now."""
+        raw: Raw = {}
+        if self.transfers:
+            raw |= self.transfers.answer(now, message)
+            buses = self.transfers.form.packet_ids
+            if message.telemetry_id in (buses.get("i2c"), buses.get("can")):
+                return self._fetched(message)
+        raw |= self._statistics(message) | self._acknowledged(now, message)
+        return self.values.encode(message, {**self.values.raw(message), **raw}) if raw else self.values.frame(message)
+
+    def log_due(self, now: int) -> bytes | None:
+        """The unsolicited log message that is to be sent now."""
+        if self.log_at is None or now < self.log_at:
+            return None
+        self._plan_log(now)
+        return self.log_message(now)
+
+    def log_message(self, now: int) -> bytes | None:
+        """An unsolicited log message with what the mask selects; None if the ICD has no such messages."""
+        asked, layout = self._log_setting(), self.known.mask
+        if asked is None or layout is None:
+            return None
+        frames = []
+        for slot in layout.selected(asked[0]):
+            message = self.known.telemetry.get(slot.id) if slot.id is not None else None
+            data = self.current(now, message) if message else bytes([layout.fill]) * slot.length
+            frames.append(data[: slot.length].ljust(slot.length, bytes([layout.fill])))
+        return logs.encode_message(self.known, asked[0], frames)
+
+    def _take(self, now: int, message: bytes, bus: str) -> Outcome:
+        known = self.known.telecommands.get(message[0])
+        if known is None:
+            return self._refusal("unknown_id")
+        data, form = message[1:], self.known.checksum
+        if form and bus in form.telecommand_buses and len(data) == known.length + form.bytes:
+            data, given = data[: known.length], data[known.length :]
+            if self.known.number(given) != i2c.checksum(self.known, message[0], data):
+                return self._refusal("checksum")
+        if len(data) != known.length:
+            return self._refusal("length")
+        raw = self._decoded(known, data)
+        for index, field in enumerate(known.fields):
+            value = raw[field.name]
+            wrong = isinstance(value, int) and (
+                bool(violations(field, value)) and not any(s.value == value for s in field.special)
+                if self.settings.strict
+                else field.const is not None and value != field.const
+            )
+            if wrong:
+                return self._refusal("parameter", index)
+        if known.kind == CONFIGURATION:
+            self.values.put(known, data)
+        if self.transfers:
+            try:
+                self.transfers.telecommand(now, known, raw, data)
+            except Refused as refused:
+                return self._refusal("parameter", refused.index)
+        if known.name == self._log_role().get("message"):
+            self._plan_log(now)
+        if known.expects_reset:
+            return Outcome(self.known.errors.get("none", 0), 0, False, known)
+        return Outcome(self.known.errors.get("none", 0), 0, known.acknowledge)
+
+    def _decoded(self, message: Message, data: bytes) -> Raw:
+        from icdgen import codec
+
+        return codec.decode(self.icd.node(message.node), message, data)
+
+    def _refusal(self, reason: str, parameter: int = 0) -> Outcome:
+        return Outcome(self.known.errors.get(reason, 1), parameter)
+
+    def _identify(self) -> None:
+        step = self.known.identification
+        if step:
+            given = {"node_type": self.node.node_type, "interface_version": self.node.interface_version}
+            self.values.update(step.message, {n: given.get(r) or 0 for r, n in step.fields.items() if r in given})  # type: ignore[arg-type]
+
+    def _statistics(self, message: Message) -> Raw:
+        step = self.known.statistics
+        if step is None or step.message.name != message.name:
+            return {}
+        bits = {field.name: field.bits for field in message.fields}
+        found: Raw = {}
+        for role, name in step.fields.items():
+            count = self.counts.get(role, 0)
+            found[name] = count % (1 << bits[name]) if bits[name] > 1 else int(count > 0)
+        return found
+
+    def _acknowledged(self, now: int, message: Message) -> Raw:
+        polled = self.known.polled
+        if polled is None or polled.message.name != message.name:
+            return {}
+        id, _, code, parameter = self.last
+        return {
+            polled.id: id,
+            polled.processed: int(now >= self.free_at),
+            polled.error: code,
+            polled.parameter: parameter,
+        }
+
+    def _fetched(self, message: Message) -> bytes:
+        assert self.transfers
+        packet = self.transfers.fetch()
+        head = self.known.bytes_of(packet.number, self.transfers.form.counter_bytes)
+        return (head + packet.data).ljust(message.length, bytes([self.transfers.form.fill]))[: message.length]
+
+    def _log_role(self) -> dict:
+        return self.icd.protocol_of(self.node).get("unsolicited_log", {}).get("configured_by", {})
+
+    def _log_setting(self) -> tuple[bytes, int] | None:
+        """Mask and period in milliseconds."""
+        role = self._log_role()
+        message = self.values.messages.get(role.get("message", ""))
+        if message is None or not self.known.log_message:
+            return None
+        raw, fields = self.values.raw(message), role["fields"]
+        return bytes(raw[fields["mask"]]), int(raw[fields["period"]]) * role["period_unit_ms"]  # type: ignore[arg-type]
+
+    def _plan_log(self, now: int) -> None:
+        asked = self._log_setting()
+        self.log_at = now + asked[1] if asked and asked[1] else None

@@ -1,0 +1,170 @@
+"""Puts a simulated device together from options, and runs it."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from random import Random
+
+from icdgen.errors import UserError
+from icdgen.icd.model import Icd, Node
+from icdgen.protocol import facts, times
+from icdgen.sim import faults, orders, serve
+from icdgen.sim.computer import Computer, has_protocol
+from icdgen.sim.line import Line
+from icdgen.sim.settings import Settings
+from icdgen.sim.storage import File, Storage
+from icdgen.values import find_node, numbers
+from icdgen.values.errors import BadValue
+
+
+@dataclass
+class Options:
+    """What a user asked for; see `icdgen sim --help`."""
+
+    values: Sequence[tuple[str, str]] = ()
+    script: Path | None = None
+    files: Sequence[str] = ()
+    uploads: Path | None = None
+    faults: Sequence[str] = ()
+    late: int = 1500
+    seed: int = 0
+    boot: int | None = None
+    busy: int = 20
+    processing: int = 0
+    strict: bool = False
+    orders: bool = False
+
+
+def node_of(icd: Icd, name: str | None) -> Node:
+    """The node that is meant; without a name the only one that can be talked to. Raises `icdgen.errors.UserError`."""
+    able = [node for node in icd.nodes if has_protocol(icd, node) and not included(icd, node)]
+    if name is None:
+        if len(able) == 1:
+            return able[0]
+        names = ", ".join(node.name for node in able)
+        raise UserError("it is not said which node is meant", f"--node NAME; nodes: {names}" if able else "")
+    node = find_node(icd, name)
+    if not has_protocol(icd, node):
+        text = f"the ICD does not say how messages of {node.name} are framed on a stream of bytes"
+        raise UserError(text, "`protocol.uart.framing` says so, see docs/icd-format.md")
+    return node
+
+
+def included(icd: Icd, node: Node) -> bool:
+    """Whether the node is only a part of others."""
+    return any(node.name in other.includes for other in icd.nodes)
+
+
+def build(icd: Icd, name: str | None, options: Options) -> tuple[Line, orders.Orders]:
+    """The device on its line, and who gives it orders. Raises `icdgen.errors.UserError`."""
+    node = node_of(icd, name)
+    storage = Storage(on_upload=_saver(options.uploads))
+    storage.files.update(_file(icd, node, text) for text in options.files)
+    settings = Settings(options.boot, options.busy, options.processing, options.strict)
+    spoil = faults.Faults(Random(options.seed), [faults.parse(one) for one in options.faults], options.late)
+    line = Line(Computer(icd, node, settings, storage), spoil)
+    steps = orders.read(options.script, icd, node) if options.script else []
+    told = orders.Orders(icd, node, line, steps)
+    for message, text in options.values:
+        key, equals, value = text.partition("=")
+        if not equals:
+            raise BadValue(f"`{text}` is not of the form field=value", "for instance --set 'Message' speed=100")
+        told.set(message, key, value)
+    return line, told
+
+
+def run(icd: Icd, name: str | None, ways: list[tuple], options: Options, tell: Callable[[str], None]) -> None:
+    """Serves until interrupted."""
+    line, told = build(icd, name, options)
+    asyncio.run(_run(line, told, ways, options.orders, tell))
+
+
+async def _run(line: Line, told: orders.Orders, ways: list[tuple], listens: bool, tell: Callable[[str], None]) -> None:
+    server, kept = serve.Server(line, told), []
+    for way, *where in ways:
+        place, holder = await getattr(serve, way)(server, *where)
+        kept.append(holder)
+        tell(place)
+    running = asyncio.create_task(server.run())
+    waiting = [running]
+    if listens:
+        waiting.append(asyncio.create_task(_listen(server, tell)))
+    done, _ = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+    running.cancel()
+    for task in done:
+        if not task.cancelled() and task.exception():
+            raise task.exception()  # type: ignore[misc]
+
+
+async def _listen(server: serve.Server, tell: Callable[[str], None]) -> None:
+    """Orders from standard input, until it ends."""
+    loop = asyncio.get_running_loop()
+    lines: asyncio.Queue[str | None] = asyncio.Queue()
+
+    def read() -> None:  # a thread of its own: a file or a terminal cannot be waited for everywhere
+        for line in sys.stdin or ():
+            loop.call_soon_threadsafe(lines.put_nowait, line)
+        loop.call_soon_threadsafe(lines.put_nowait, None)
+
+    import threading
+
+    threading.Thread(target=read, daemon=True).start()
+    while (line := await lines.get()) is not None:
+        try:
+            answer = server.say(line)
+        except UserError as error:
+            answer = f"error: {error}" + (f"; {error.help}" if error.help else "")
+        if answer:
+            tell(answer.replace("\n", " "))
+
+
+def _file(icd: Icd, node: Node, text: str) -> tuple[tuple[int, int], File]:
+    """``TYPE:COUNTER=PATH``. Raises `icdgen.errors.UserError`."""
+    known = facts.of(icd, node)
+    key, _, path = text.partition("=")
+    kind, _, counter = key.rpartition(":")
+    type_, number = _type(known, kind.strip()), numbers.integer(counter.strip())
+    if not path or type_ is None or number is None or not (0 <= type_ <= 255 and 0 <= number <= 255):
+        raise UserError(f"`{text}` is no file of the device", "TYPE:COUNTER=PATH, for instance 2:1=log.bin")
+    if known.index and type_ == known.index.file_type:
+        raise UserError(f"`{text}`: the index file is made of the others", "leave it out")
+    try:
+        data = Path(path).read_bytes()
+        changed = datetime.fromtimestamp(Path(path).stat().st_mtime, UTC)
+    except OSError as error:
+        raise UserError(f"cannot read {path}: {error.strerror}", "check the path after the =") from None
+    parts = {part: getattr(changed, part) for part in times.PARTS}
+    try:
+        packed = times.pack(known, parts)
+    except (times.OutOfRange, facts.Unsupported):
+        packed = 0
+    return (type_, number), File(data, packed)
+
+
+def _type(known: facts.Facts, text: str) -> int | None:
+    """The number of a file type by itself or by its name."""
+    from icdgen.values.entry import from_physical
+
+    step = known.files.steps.get("download.load") if known.files else None
+    one = next((f for f in step.message.fields if f.name == step.fields.get("type")), None) if step else None
+    if one is None:
+        raise UserError("the ICD describes no files", "leave --file out")
+    return from_physical(one, text)  # type: ignore[return-value]
+
+
+def _saver(folder: Path | None) -> Callable[[int, bytes], None] | None:
+    if folder is None:
+        return None
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def save(destination: int, data: bytes) -> None:
+        partial = folder / f"{destination}.bin.part"
+        partial.write_bytes(data)
+        partial.replace(folder / f"{destination}.bin")
+
+    return save

@@ -1,0 +1,156 @@
+"""The line over a pseudo-terminal, TCP or UDP, with asyncio."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import time
+from collections.abc import Callable
+from contextlib import suppress
+
+from icdgen.errors import UserError
+from icdgen.sim.line import Line
+from icdgen.sim.orders import Orders
+
+Send = Callable[[bytes], None]
+IDLE = 0.5  # s; the longest sleep, in which an interrupt is noticed everywhere
+
+
+class Server:
+    """Gives the line what comes, and sends what is due to everybody who is connected."""
+
+    def __init__(self, line: Line, orders: Orders) -> None:
+        self.line, self.orders = line, orders
+        self.begin = time.monotonic()
+        self.clients: list[Send] = []
+        self.wake = asyncio.Event()
+
+    @property
+    def now(self) -> int:
+        """Milliseconds since the start."""
+        return int((time.monotonic() - self.begin) * 1000)
+
+    def received(self, data: bytes) -> None:
+        now = self.now
+        self.orders.tick(now)
+        self.line.received(now, data)
+        self._flush(now)
+        self.wake.set()
+
+    def say(self, text: str) -> str:
+        """An order; the answer. Raises `icdgen.errors.UserError`."""
+        answer = self.orders.say(self.now, text)
+        self._flush(self.now)
+        self.wake.set()
+        return answer
+
+    async def run(self) -> None:
+        """Lets time pass, for ever."""
+        while True:
+            now = self.now
+            self.orders.tick(now)
+            self.line.tick(now)
+            self._flush(now)
+            times = [at for at in (self.line.deadline, self.orders.deadline) if at is not None]
+            self.wake.clear()
+            wait = IDLE if not times else min(IDLE, max(0.0, (min(times) - self.now) / 1000 + 0.0005))
+            try:
+                await asyncio.wait_for(self.wake.wait(), wait)
+            except TimeoutError:
+                continue
+
+    def _flush(self, now: int) -> None:
+        data = self.line.take(now)
+        if data:
+            for send in list(self.clients):
+                send(data)
+
+
+async def tcp(server: Server, host: str, port: int) -> tuple[str, object]:
+    """Listens; where."""
+
+    async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        send = writer.write
+        server.clients.append(send)
+        try:
+            while data := await reader.read(65536):
+                server.received(data)
+                await writer.drain()
+        except (ConnectionError, OSError):
+            pass
+        finally:
+            server.clients.remove(send)
+            writer.close()
+
+    try:
+        listening = await asyncio.start_server(serve, host, port)
+    except OSError as error:
+        raise _cannot("tcp", host, port, error) from None
+    return f"tcp://{host}:{listening.sockets[0].getsockname()[1]}", listening
+
+
+async def udp(server: Server, host: str, port: int) -> tuple[str, object]:
+    """Each datagram is a piece of the stream; answers go to whoever sent last."""
+
+    class Protocol(asyncio.DatagramProtocol):
+        def __init__(self) -> None:
+            self.transport: asyncio.DatagramTransport | None = None
+            self.peer: tuple | None = None
+
+        def connection_made(self, transport) -> None:
+            self.transport = transport
+            server.clients.append(self.send)
+
+        def datagram_received(self, data: bytes, addr: tuple) -> None:
+            self.peer = addr
+            server.received(data)
+
+        def error_received(self, exc: Exception) -> None:
+            self.peer = None
+
+        def send(self, data: bytes) -> None:
+            for at in range(0, len(data), 1400):
+                if self.peer is not None and self.transport:
+                    self.transport.sendto(data[at : at + 1400], self.peer)
+
+    try:
+        transport, _ = await asyncio.get_running_loop().create_datagram_endpoint(Protocol, (host, port))
+    except OSError as error:
+        raise _cannot("udp", host, port, error) from None
+    return f"udp://{host}:{transport.get_extra_info('sockname')[1]}", transport
+
+
+async def pty(server: Server) -> tuple[str, object]:
+    """A pseudo-terminal; its path."""
+    import tty
+
+    master, slave = os.openpty()
+    tty.setraw(slave)  # kept open: the device stays when a client closes its end
+    os.set_blocking(master, False)
+    loop, waiting = asyncio.get_running_loop(), bytearray()
+
+    def read() -> None:
+        try:
+            data = os.read(master, 65536)
+        except (BlockingIOError, OSError):
+            return
+        server.received(data)
+
+    def write() -> None:
+        with suppress(BlockingIOError):
+            del waiting[: os.write(master, waiting)]
+        if not waiting:
+            loop.remove_writer(master)
+
+    def send(data: bytes) -> None:
+        if len(waiting) < 1 << 22:  # nobody reads: what is sent is lost, as on a real line
+            waiting.extend(data)
+            loop.add_writer(master, write)
+
+    server.clients.append(send)
+    loop.add_reader(master, read)
+    return os.ttyname(slave), (master, slave)
+
+
+def _cannot(kind: str, host: str, port: int, error: OSError) -> UserError:
+    return UserError(f"cannot listen on {kind} {host}:{port}: {error.strerror or error}", "port 0 takes a free one")

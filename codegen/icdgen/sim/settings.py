@@ -1,0 +1,19 @@
+"""How a simulated device behaves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+Changes = Mapping[str, Mapping[str, "int | bytes"]]  # message -> field -> raw value
+
+
+@dataclass
+class Settings:
+    """Times in milliseconds. ``boot_ms``: how long the boot program waits, None: as the ICD says."""
+
+    boot_ms: int | None = None
+    busy_ms: int = 20  # loading, erasing, committing
+    processing_ms: int = 0  # of a telecommand; another one meanwhile overruns the buffer
+    strict: bool = False  # refuse also what is no member of an enumeration, or beyond a limit
+    values: dict[str, dict[str, int | bytes]] = field(default_factory=dict)  # in force from every start

@@ -1,0 +1,222 @@
+"""File transfer, the device's end: list, download, upload, erase, format. Which message does what says the ICD."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from icdgen.icd.model import Message
+from icdgen.protocol import files
+from icdgen.protocol.facts import Facts, Files
+from icdgen.sim.storage import Storage, checksum_of
+
+Raw = dict[str, "int | bytes"]
+
+
+class Refused(Exception):
+    """A parameter is wrong: the one at ``index``."""
+
+    def __init__(self, index: int = 0) -> None:
+        super().__init__(index)
+        self.index = index
+
+
+class Packet(NamedTuple):
+    """A packet of the download buffer."""
+
+    number: int
+    data: bytes
+
+
+class Transfers:
+    """The state of all transfers of a program. ``busy_ms``: how long slow things take."""
+
+    def __init__(self, known: Facts, form: Files, storage: Storage, busy_ms: int) -> None:
+        self.known, self.form, self.storage, self.busy_ms = known, form, storage, busy_ms
+        self.pointer = 0
+        self.block = b""
+        self.loaded = self.bad = False
+        self.map = bytearray(known.hole_map.bytes if known.hole_map else 0)
+        self.received: dict[int, bytes] = {}
+        self.failed = False
+        self.busy: dict[str, int] = {}  # step -> until when
+        self.fetched = Packet(0, bytes([form.fill]) * form.packet_bytes)  # by the last request
+        self.burst: list[int] = []  # positions still to be fetched, where packets are requested one by one
+        self.pushed: list[Packet] = []  # packets to be sent of the device's own accord
+        self.maps = {m.name: at for at, m in enumerate(known.hole_map.messages)} if known.hole_map else {}
+        self.telecommands: dict[str, tuple[str, Callable[[int, Raw], None]]] = {}
+        self.frames: dict[str, list[tuple[str, Callable[[int], Raw]]]] = {}
+        for step, take in self._takers():
+            if step in form.steps:
+                self.telecommands[form.steps[step].message.name] = step, take
+        for step, give in self._givers():
+            if step in form.steps:
+                self.frames.setdefault(form.steps[step].message.name, []).append((step, give))
+
+    def _takers(self) -> Iterator[tuple[str, Callable[[int, Raw], None]]]:
+        yield "list.reset", self._reset_list
+        yield "list.advance", self._advance
+        yield "download.load", self._load
+        yield "download.burst", self._burst
+        yield "upload.initiate", self._initiate
+        yield "upload.begin", self._begin
+        yield "upload.packet", self._packet
+        yield "upload.finalize", self._finalize
+        yield "erase.request", self._erase
+        yield "format.request", self._format
+
+    def _givers(self) -> Iterator[tuple[str, Callable[[int], Raw]]]:
+        yield "list.information", self._information
+        yield "download.ready", self._ready
+        yield "upload.initiated", lambda now: {"busy": self._is_busy("upload.initiate", now)}
+        yield "upload.checksum", self._checksum
+        yield "upload.finalized", lambda now: {
+            "busy": self._is_busy("upload.finalize", now),
+            "error": int(self.failed),
+        }
+        yield "erase.progress", lambda now: {"busy": self._is_busy("erase.request", now)}
+        yield "format.progress", lambda now: {"busy": self._is_busy("format.request", now)}
+
+    def telecommand(self, now: int, message: Message, raw: Raw, data: bytes) -> None:
+        """Does what a telecommand of the transfers says; nothing for any other. Raises `Refused`."""
+        if message.name in self.maps and self.known.hole_map:
+            size = self.known.hole_map.message_bytes
+            at = self.maps[message.name] * size
+            self.map[at : at + size] = raw[self.known.hole_map.field]  # type: ignore[assignment]
+        if message.name in self.telecommands:
+            step, handler = self.telecommands[message.name]
+            handler(now, {role: raw[name] for role, name in self.form.steps[step].fields.items()})
+
+    def answer(self, now: int, message: Message) -> dict[str, int | bytes]:
+        """Values of the fields that play a part in a transfer."""
+        found: dict[str, int | bytes] = {}
+        if message.name in self.maps and self.known.hole_map:
+            pieces = files.in_messages(self.known, bytes(self.map))
+            found[self.known.hole_map.field] = pieces[self.maps[message.name]]
+        for step, handler in self.frames.get(message.name, ()):
+            values = handler(now)
+            found |= {name: values[role] for role, name in self.form.steps[step].fields.items() if role in values}
+        return found
+
+    def fetch(self) -> Packet:
+        """The next packet of the burst; the last one again when there is none left, nothing but fill before any."""
+        if self.burst:
+            self.fetched = self._packet_at(self.burst.pop(0))
+        return self.fetched
+
+    def _is_busy(self, step: str, now: int) -> int:
+        return int(now < self.busy.get(step, now))
+
+    def _work(self, step: str, now: int) -> None:
+        self.busy[step] = now + self.busy_ms
+
+    def _reset_list(self, now: int, _: Raw) -> None:
+        self.pointer = 0
+        self._work("list.reset", now)
+
+    def _advance(self, now: int, _: Raw) -> None:
+        self.pointer = min(self.pointer + 1, len(self.storage.files))
+        self._work("list.reset", now)
+
+    def _information(self, now: int) -> Raw:
+        keys = list(self.storage.files)
+        if self._is_busy("list.reset", now):
+            return {"busy": 1, "type": 0, "counter": 0, "size": 0, "time": 0, "checksum": 0}
+        if self.pointer >= len(keys):
+            return {"busy": 0, "type": 0, "counter": 0, "size": 0, "time": 0, "checksum": 0}
+        key = keys[self.pointer]
+        file = self.storage.files[key]
+        checksum = checksum_of(self.known.crc16, file.data)
+        return {
+            "busy": 0,
+            "type": key[0],
+            "counter": key[1],
+            "size": len(file.data),
+            "time": file.time,
+            "checksum": checksum,
+        }
+
+    def _load(self, now: int, values: Raw) -> None:
+        self.block, self.loaded, self.bad, self.burst = b"", True, False, []
+        self._work("download.load", now)
+        content = self.storage.read(self.known, values["type"], values["counter"])  # type: ignore[arg-type]
+        offset, length = int(values["offset"]), int(values["length"])  # type: ignore[arg-type]
+        if content is None or offset > len(content) or length > self.form.block_bytes:
+            self.bad = True
+        else:
+            self.block = content[offset : offset + length]
+
+    def _ready(self, now: int) -> Raw:
+        if not self.loaded or self._is_busy("download.load", now):
+            return {"ready": 0, "error": 0, "checksum": 0, "length": 0}
+        covered = self.block
+        if self.form.numbers.get("download.checksum_covers_fill"):
+            covered = b"".join(self._packet_at(at).data for at in range(self.known.packets_of(len(covered))))
+        checksum = checksum_of(self.known.crc16, covered)
+        return {"ready": 1, "error": int(self.bad), "checksum": checksum, "length": len(self.block)}
+
+    def _burst(self, now: int, values: Raw) -> None:
+        if values.get("length", 0) != self.form.numbers.get("download.message_length", values.get("length", 0)):
+            self.bad = True
+            raise Refused(0)
+        count = self.known.packets_of(len(self.block))
+        wanted = list(range(count))
+        if not values.get("ignore_hole_map") and self.known.hole_map:
+            wanted = [n - self.form.first_packet for n in files.missing(self.known, count, bytes(self.map))]
+        self.burst = wanted
+        self.pushed = [self._packet_at(at) for at in wanted]
+
+    def _packet_at(self, position: int) -> Packet:
+        size = self.form.packet_bytes
+        data = self.block[position * size : (position + 1) * size].ljust(size, bytes([self.form.fill]))
+        return Packet(self.form.first_packet + position, data)
+
+    def _initiate(self, now: int, values: Raw) -> None:
+        self.storage.programs[int(values["destination"])] = bytearray()  # type: ignore[arg-type]
+        self.received, self.failed = {}, False
+        self._clear_map()
+        self._work("upload.initiate", now)
+
+    def _begin(self, now: int, _: Raw) -> None:
+        self.received = {}
+        self._clear_map()
+
+    def _clear_map(self) -> None:
+        empty = 0x00 if not self.known.hole_map or self.known.hole_map.received else 0xFF
+        self.map = bytearray([empty]) * len(self.map)
+
+    def _packet(self, now: int, values: Raw) -> None:
+        number = int(values["number"])  # type: ignore[arg-type]
+        position, form = number - self.form.first_packet, self.known.hole_map
+        if not 0 <= position < self.form.block_packets:
+            return
+        self.received[position] = values["bytes"]  # type: ignore[assignment]
+        if form and position // 8 < len(self.map):
+            weight = 1 << (7 - position % 8 if form.msb0 else position % 8)
+            self.map[position // 8] ^= weight if bool(self.map[position // 8] & weight) != form.received else 0
+
+    def _upload_block(self) -> bytes:
+        empty = bytes([self.form.fill]) * self.form.packet_bytes
+        return b"".join(self.received.get(at, empty) for at in range(max(self.received, default=-1) + 1))
+
+    def _checksum(self, now: int) -> Raw:
+        return {"checksum": checksum_of(self.known.crc16, self._upload_block())}
+
+    def _finalize(self, now: int, values: Raw) -> None:
+        self._work("upload.finalize", now)
+        block, length = self._upload_block(), int(values["length"])  # type: ignore[arg-type]
+        destination, offset = int(values["destination"]), int(values["offset"])  # type: ignore[arg-type]
+        self.failed = length > len(block) or not self.storage.write(destination, offset, block[:length])
+
+    def _erase(self, now: int, values: Raw) -> None:
+        if values.get("all"):
+            self.storage.files.clear()
+            self._work("erase.request", now)
+        else:
+            self.storage.files.pop((values["type"], values["counter"]), None)  # type: ignore[arg-type]
+        self.pointer = 0
+
+    def _format(self, now: int, _: Raw) -> None:
+        self.storage.files.clear()
+        self.pointer = 0
+        self._work("format.request", now)

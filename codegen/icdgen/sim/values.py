@@ -1,0 +1,88 @@
+"""What the frames of a simulated program hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from math import ceil, floor
+
+from icdgen import codec
+from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.values.frame import violations
+
+
+class Values:
+    """The frame of every message, by its name. A composite frame and the frames in it always agree."""
+
+    def __init__(self, icd: Icd, node: Node) -> None:
+        self.icd = icd
+        self.messages = {m.name: m for m in icd.messages_of(node)}
+        self.frames = {m.name: self.encode(m, fresh(m)) for m in self.messages.values() if m.telemetry_id is not None}
+
+    def frame(self, message: Message) -> bytes:
+        """The frame as it is now."""
+        data = bytearray(self.frames[message.name])
+        for part, first, last in self._parts(message):
+            data[first:last] = self.frame(part)
+        return bytes(data)
+
+    def put(self, message: Message, data: bytes) -> None:
+        """Takes a whole frame."""
+        self.frames[message.name] = bytes(data)
+        for part, first, last in self._parts(message):
+            self.put(part, data[first:last])
+
+    def raw(self, message: Message) -> dict[str, int | bytes]:
+        return codec.decode(self.icd.node(message.node), message, self.frame(message))
+
+    def update(self, message: Message, raw: Mapping[str, int | bytes]) -> None:
+        """Sets some fields. Raises `icdgen.codec.CodecError`."""
+        self.put(message, self.encode(message, {**self.raw(message), **raw}))
+
+    def encode(self, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
+        return codec.encode(self.icd.node(message.node), message, raw)
+
+    def _parts(self, message: Message) -> Iterable[tuple[Message, int, int]]:
+        for part in message.contains:
+            inner = self.messages.get(part.message)
+            if inner and inner.name in self.frames and part.at % 8 == 0:
+                yield inner, part.at // 8, part.at // 8 + inner.length
+
+
+def fresh(message: Message) -> dict[str, int | bytes]:
+    """Values that the ICD allows, 0 where it does."""
+    return {field.name: _fresh(field) for field in message.fields}
+
+
+def _fresh(field: Field) -> int | bytes:
+    if field.type == "bytes":
+        return bytes(field.bits // 8)
+    for raw in _candidates(field):
+        if field.raw_min <= raw <= field.raw_max and not violations(field, raw):
+            return raw
+    return field.const or 0
+
+
+def _candidates(field: Field) -> Iterable[int]:
+    if field.const is not None:
+        yield field.const
+    yield 0
+    yield from (m.value for m in field.enum.members) if field.enum else ()
+    limits = field.limits
+    for bound in (limits.min, limits.max, limits.above, limits.below) if limits else ():
+        if bound is None:
+            continue
+        if field.type == "float":
+            yield from (codec.float_bits(field, float(bound) + step) for step in (0, 1, -1))
+            continue
+        raw: Fraction = field.scale.raw(bound) if field.scale else bound
+        yield from (floor(raw), ceil(raw), floor(raw) - 1, ceil(raw) + 1)
+
+
+def raw_of(field: Field, value: float) -> int:
+    """The raw value nearest to a physical one, held within what the field can hold."""
+    if field.type == "float":
+        return codec.float_bits(field, value)
+    exact = Fraction(value)
+    raw = round(field.scale.raw(exact) if field.scale else exact)
+    return min(max(raw, field.raw_min), field.raw_max)

@@ -1,0 +1,61 @@
+"""`icdgen log` from the outside."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+
+def icdgen(*words: object) -> subprocess.CompletedProcess:
+    command = [sys.executable, "-m", "icdgen", "log", *map(str, words)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120)
+
+
+def test_a_log_is_listed(write, everything, known):
+    path, _ = write(everything, 3, b"rest")
+    result = icdgen(path)
+    assert result.returncode == 0, result.stderr
+    assert "3 entries of" in result.stdout and "2020-09-13T12:26:40.000Z to 2020-09-13T12:26:42.014Z" in result.stdout
+    assert "note: the last 4 bytes belong to no whole entry" in result.stdout
+    for slot in known.mask.bits.values():
+        assert slot.name in result.stdout
+
+
+@pytest.mark.parametrize("form", ["csv", "jsonl", "parquet"])
+def test_a_log_is_converted(write, everything, form, tmp_path):
+    path, _ = write(everything, 5, b"rest")
+    out = tmp_path / f"out.{form}"
+    result = icdgen(path, "--out", out)
+    assert (result.returncode, result.stdout) == (0, "")
+    assert "the last 4 bytes belong to no whole entry" in result.stderr
+    assert out.stat().st_size > 1000
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["log.bin", out.name]
+
+
+def test_a_conversion_goes_to_standard_output(write, everything):
+    path, _ = write(everything, 5)
+    assert len(icdgen(path, "--format", "csv", "--head", "2").stdout.splitlines()) == 3
+    assert len(icdgen(path, "--format", "jsonl").stdout.splitlines()) == 5
+
+
+def test_what_cannot_be_is_said_and_nothing_is_left_behind(write, everything, tmp_path):
+    path, _ = write(everything, 5)
+    short = tmp_path / "short"
+    short.write_bytes(b"123")
+    for words, text in (
+        ((short,), "is no log: it has 3 bytes"),
+        ((tmp_path / "missing",), "cannot read"),
+        ((tmp_path,), "is a folder"),
+        ((path, "--out", "x.doc"), "tells no format"),
+        ((path, "--format", "parquet"), "does not go to standard output"),
+        ((path, "--node", "cubemag"), "describes no log files"),
+        ((path, "--out", tmp_path / "no" / "x.csv"), "cannot write"),
+        ((path, "--out", tmp_path / "no" / "x.parquet"), "cannot write"),
+        ((path, "--head", "1"), "--head needs"),
+    ):
+        result = icdgen(*words)
+        assert result.returncode == 2 and text in result.stderr, (words, result.stderr)
+        assert "Traceback" not in result.stderr
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["log.bin", "short"]

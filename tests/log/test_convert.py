@@ -1,0 +1,181 @@
+"""A log says the same in every form: what the reference codec says of each frame."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from datetime import datetime
+
+import pytest
+
+from icdgen import codec
+from icdgen.logfile import parquet, source, text
+from icdgen.values.frame import Row
+
+COUNT = 300
+
+
+def expected(icd, known, entries) -> list[list[object]]:
+    """Rows of values by the reference codec."""
+    rows = []
+    for entry in entries:
+        row: list[object] = []
+        for frame in entry.frames:
+            message = known.telemetry.get(frame.id) if frame.id is not None else None
+            if message is None:
+                row.append(frame.data.hex())
+                continue
+            assert len(frame.data) == message.length
+            raw = codec.decode(icd.node(message.node), message, frame.data)
+            row += [value_of(Row(field, raw[field.name])) for field in message.fields]
+        rows.append(row)
+    return rows
+
+
+def value_of(row: Row) -> object:
+    if row.field.type == "enum":
+        return row.text
+    if row.field.type == "bool":
+        return bool(row.raw)
+    if row.field.type == "bytes":
+        return row.raw.hex()
+    return row.raw if row.number is None else row.number
+
+
+def times(entries) -> list[int]:
+    return [entry.seconds * 1000 + entry.milliseconds for entry in entries]
+
+
+def milliseconds(text: str) -> int:
+    return round(datetime.fromisoformat(text).timestamp() * 1000)
+
+
+@pytest.fixture
+def log(icd, known, everything, write):
+    path, entries = write(everything, COUNT, b"cut off")
+    return source.open_log(icd, known.node, path), entries
+
+
+def test_csv(icd, known, log):
+    found, entries = log
+    file = io.StringIO()
+    text.to_csv(found, file, None, lambda size: None)
+    head, *rows = csv.reader(io.StringIO(file.getvalue()))
+    assert head == ["time", *(column.name for column in found.plan.columns)]
+    assert [milliseconds(row[0]) for row in rows] == times(entries)
+    shown = [[str(v).lower() if isinstance(v, bool) else str(v) for v in row] for row in expected(icd, known, entries)]
+    assert [row[1:] for row in rows] == shown
+
+
+def test_json_lines(icd, known, log):
+    found, entries = log
+    file = io.StringIO()
+    text.to_json_lines(found, file, None, lambda size: None)
+    rows = [json.loads(line) for line in file.getvalue().splitlines()]
+    assert [milliseconds(row.pop("time")) for row in rows] == times(entries)
+    assert [list(row.values()) for row in rows] == expected(icd, known, entries)
+
+
+@pytest.mark.parametrize("piece", [1, 5000, parquet.PIECE])
+def test_parquet(icd, known, log, tmp_path, monkeypatch, piece):
+    import pyarrow.parquet as pq
+
+    monkeypatch.setattr(parquet, "PIECE", piece)
+    monkeypatch.setattr(parquet, "GROUP", 40_000)
+    found, entries = log
+    seen = []
+    parquet.to_parquet(found, tmp_path / "log.parquet", None, seen.append)
+    assert sum(seen) == COUNT * found.plan.entry_bytes
+    table = pq.read_table(tmp_path / "log.parquet")
+    assert [round(t.timestamp() * 1000) for t in table["time"].to_pylist()] == times(entries)
+    rows = zip(*(table[column.name].to_pylist() for column in found.plan.columns), strict=True)
+    hexed = [[v.hex() if isinstance(v, bytes) else v for v in row] for row in rows]
+    assert hexed == expected(icd, known, entries)
+    with_unit = next(column for column in found.plan.columns if column.unit)
+    metadata = table.schema.field(with_unit.name).metadata
+    assert metadata[b"unit"].decode() == with_unit.unit and metadata[b"frame"].decode() == with_unit.frame
+
+
+def test_only_the_first_entries(icd, known, log, tmp_path):
+    import pyarrow.parquet as pq
+
+    found, _ = log
+    parquet.to_parquet(found, tmp_path / "log.parquet", 7, lambda size: None)
+    assert pq.read_table(tmp_path / "log.parquet").num_rows == 7
+    file = io.StringIO()
+    text.to_csv(found, file, 7, lambda size: None)
+    assert file.getvalue().count("\n") == 8
+
+
+def test_a_log_without_entries_or_frames_is_a_table_too(icd, known, everything, write, tmp_path):
+    import pyarrow.parquet as pq
+
+    for mask, count in ((everything, 0), (bytes(known.mask.size), 3)):
+        path, _ = write(mask, count)
+        found = source.open_log(icd, known.node, path)
+        parquet.to_parquet(found, tmp_path / "log.parquet", None, lambda size: None)
+        assert pq.read_table(tmp_path / "log.parquet").num_rows == count
+
+
+ODD = """\
+icdgen: 1
+node: {name: odd, title: Odd, byte_order: big, bit_order: msb0}
+protocol:
+  log_mask: {bytes: 1, bit_order: msb0, frame_bytes: 32}
+  telemetry_log:
+    header: [{byte: 2, bytes: 1, name: Mask, role: mask, type: bytes}]
+    entry:
+      - {byte: 2, bytes: 3, name: S, role: seconds, type: uint}
+      - {byte: 0, bytes: 2, name: M, role: milliseconds, type: uint}
+    frames_byte: 5
+loggable: [{bit: 1, id: 200}]
+enums:
+  - {name: E, members: [{value: 0, name: A}, {value: 700, name: B}]}
+messages:
+  - name: F
+    id: 200
+    kind: telemetry
+    length: 32
+    fields:
+      - {at: 0, bits: 3, name: a, type: uint}
+      - {at: 3, bits: 11, name: b, type: int, formula: raw*0.1+7}
+      - {at: 14, bits: 2, name: c, type: int}
+      - {at: 16, bits: 32, name: d, type: float}
+      - {at: 48, bits: 64, name: e, type: uint, formula: raw*0.001}
+      - {at: 112, bits: 64, name: f, type: float}
+      - {at: 176, bits: 16, name: g, type: enum, enum: E}
+      - {at: 192, bits: 24, name: h, type: bytes}
+      - {at: 216, bits: 17, name: i, type: uint}
+      - {at: 233, bits: 23, name: j, type: int, unit: deg, formula: raw/7.0}
+"""
+
+
+def test_every_type_in_both_byte_orders(tmp_path):
+    from random import Random
+
+    import pyarrow.parquet as pq
+
+    from icdgen.icd.load import load
+    from icdgen.protocol import facts, logs
+
+    (tmp_path / "odd.yaml").write_text(ODD)
+    loaded = load([tmp_path / "odd.yaml"])
+    icd = loaded.icd
+    assert icd is not None and loaded.ok, loaded.findings
+    known, random = facts.of(icd, icd.nodes[0]), Random(1)
+    entries = [(n, 0, [random.randbytes(32)]) for n in range(200)]
+    data = logs.encode(known, b"\x40", entries)
+    (tmp_path / "log").write_bytes(data)
+    found = source.open_log(icd, known.node, tmp_path / "log")
+    parquet.to_parquet(found, tmp_path / "log.parquet", None, lambda size: None)
+    table = pq.read_table(tmp_path / "log.parquet")
+    wanted = expected(icd, known, logs.decode(known, data).entries)
+    rows = zip(*(table[column.name].to_pylist() for column in found.plan.columns), strict=True)
+    got = [[v.hex() if isinstance(v, bytes) else v for v in row] for row in rows]
+    assert [list(map(_same, row)) for row in got] == [list(map(_same, row)) for row in wanted]
+
+
+def _same(value: object) -> object:
+    return "nan" if isinstance(value, float) and math.isnan(value) else value

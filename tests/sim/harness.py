@@ -1,0 +1,75 @@
+"""Runs a client, of any language, against the simulator, with losses and spoiled acknowledges.
+
+    python -m tests.sim.harness [--size 1048576] [--loss 0,1,10,30] [--fault ...] -- CLIENT [ARGUMENT]...
+
+CLIENT is started for each loss with three more arguments: host, TCP port, size of the file. On that connection, which is the UART,
+it is expected to
+
+1. identify the node, and end with 3 if it is not the one of its ICD,
+2. request every telemetry frame,
+3. set every configuration message and read it back,
+4. download file 1 of type 2, which has that size,
+5. upload what it downloaded to destination 3,
+
+and to end with 0. What it uploaded is held against the file, so both directions are proved at once. A client that takes longer than
+``--limit`` seconds hangs, which is a failure. The reference is ``python -m tests.sim.client``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from random import Random
+from urllib.parse import urlsplit
+
+from tests.sim.device import simulator
+
+LOSSES = "0,1,10,30"
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--size", type=int, default=1 << 20)
+    parser.add_argument("--loss", default=LOSSES, help="per cent")
+    parser.add_argument("--fault", action="append", default=[], help="as of `icdgen sim`")
+    parser.add_argument("--node", default="cubeacp")
+    parser.add_argument("--limit", type=float, default=900.0)
+    parser.add_argument("client", nargs="+")
+    options = parser.parse_args(arguments)
+    good = True
+    for loss in options.loss.split(","):
+        begin = time.monotonic()
+        wrong = run(options.client, options.size, loss, options.fault, options.node, options.limit)
+        print(f"{loss} % lost: {wrong or 'identical'}, {time.monotonic() - begin:.1f} s", flush=True)
+        good &= wrong is None
+    return 0 if good else 1
+
+
+def run(
+    client: list[str], size: int, loss: str, faults: list[str], node: str = "cubeacp", limit: float = 900.0
+) -> str | None:
+    """What went wrong; None if nothing did."""
+    data = Random(f"{loss} {size}").randbytes(size)
+    with tempfile.TemporaryDirectory() as folder:
+        stored, uploaded = Path(folder, "stored"), Path(folder, "3.bin")
+        stored.write_bytes(data)
+        spoil = [word for fault in faults for word in ("--fault", fault)]
+        options = ("--file", f"2:1={stored}", "--uploads", folder, "--loss", f"{loss}%", "--late", "400", *spoil)
+        with simulator("--node", node, "--tcp", "0", *options) as (place, _):
+            where = urlsplit(place)
+            words = [*client, str(where.hostname), str(where.port), str(size)]
+            try:
+                ended = subprocess.run(words, capture_output=True, text=True, timeout=limit)
+            except subprocess.TimeoutExpired:
+                return "hangs"
+        if ended.returncode:
+            return f"ended with {ended.returncode}: {ended.stderr.strip() or ended.stdout.strip()}"
+        return None if uploaded.is_file() and uploaded.read_bytes() == data else "the uploaded file is another one"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,305 @@
+"""The simulated device is what the ICD says: over a real port, with the reference client."""
+
+from __future__ import annotations
+
+import json
+import time
+
+import pytest
+
+from icdgen import codec
+from icdgen.icd.model import CONFIGURATION
+from icdgen.protocol.client import Request
+from icdgen.sim.values import fresh
+from tests.sim.device import FAST, ICD, session, simulator
+
+WAYS = [("--tcp", "0"), ("--udp", "0"), ("--pty",)]
+
+
+def value_of(client, name: str, field: str) -> int:
+    message = next(m for m in client.known.telemetry.values() if m.name == name)
+    return codec.decode(client.node, message, client.telemetry(message))[field]
+
+
+@pytest.mark.parametrize("way", WAYS, ids=lambda way: way[0])
+@pytest.mark.parametrize("node", ["cubeacp", "bootloader"])
+def test_it_identifies_itself_and_answers_every_request(node, way):
+    with session(*way, node=node) as client:
+        values, same = client.identify()
+        assert same and values["node_type"] == ICD.node(node).node_type
+        for message in client.known.telemetry.values():
+            frame = client.telemetry(message)
+            assert frame is not None and len(frame) == message.length, message.name
+
+
+@pytest.mark.parametrize("node", ["cubeacp", "bootloader"])
+def test_every_telecommand_is_taken_and_every_configuration_reads_back_what_was_set(node):
+    with session(node=node) as client:
+        client.identify()  # so that a boot program stays
+        for message in client.known.telecommands.values():
+            if message.expects_reset:
+                continue
+            raw = fresh(message)
+            if message.kind == CONFIGURATION:
+                data = bytearray(byte % 251 + 1 for byte in range(message.length))
+                raw = codec.decode(ICD.node(message.node), message, bytes(data))
+                raw |= {f.name: f.const for f in message.fields if f.const is not None}
+            data = codec.encode(ICD.node(message.node), message, raw)
+            outcome = client.telecommand(message, data)
+            allowed = ("done",) if message.name not in refusable(client) else ("done", "refused")
+            assert outcome["event"] in allowed, (message.name, outcome)
+            if message.kind == CONFIGURATION:
+                assert client.telemetry(message) == data, message.name
+
+
+def refusable(client) -> set[str]:
+    """Telecommands that may be refused for what the device holds just now."""
+    return {client.known.files.steps["download.burst"].message.name}
+
+
+def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
+    with session(checked=True) as client:
+        assert client.telecommand(client.known.telecommands[17], bytes(6))["event"] == "done"
+        wrong = bytes([17]) + bytes(6) + b"\x01"
+        assert raw_exchange(client, wrong)["code"] == client.known.errors["checksum"]
+
+
+@pytest.mark.parametrize(
+    ("message", "reason"),
+    [(b"\x63", "unknown_id"), (b"\x11" + bytes(3), "length"), (b"\x21\x59", "parameter")],
+)
+def test_what_is_wrong_is_refused_and_the_acknowledge_frame_says_why(message, reason):
+    with session() as client:
+        assert raw_exchange(client, message)["code"] == client.known.errors[reason]
+        frame = codec.decode(client.node, client.known.polled.message, client.telemetry(client.known.polled.message))
+        assert frame[client.known.polled.id] == message[0]
+        assert frame[client.known.polled.error] == client.known.errors[reason]
+        assert frame[client.known.polled.processed] == 1
+
+
+def raw_exchange(client, message: bytes) -> dict:
+    """Sends bytes that the client would not send; the acknowledge."""
+    from icdgen.protocol import uart
+
+    client.port.write(uart.encode(client.known.framing, message))
+    decoder = uart.Decoder(client.known.framing, client.known.longest)
+    end = time.monotonic() + 5
+    while time.monotonic() < end:
+        for event in decoder.feed(client.port.read(0.5)):
+            id, code = uart.acknowledged(client.known, event.message)
+            return {"id": id, "code": code}
+    raise AssertionError("no acknowledge")
+
+
+def test_counters_and_flags_of_the_communication_status():
+    with session() as client:
+        step = client.known.statistics
+        names = step.fields
+        assert value_of(client, step.message.name, names["requests"]) == 1
+        client.telecommand(client.known.telecommands[17], bytes(6))
+        assert value_of(client, step.message.name, names["telecommands"]) == 1
+        form = client.known.framing
+        assert value_of(client, step.message.name, names["uart_protocol"]) == 0
+        client.port.write(bytes([form.escape, form.start, 1, form.escape, 0x33]))
+        assert value_of(client, step.message.name, names["uart_protocol"]) == 1
+        client.port.write(bytes([form.escape, form.start, 1]))
+        assert value_of(client, step.message.name, names["uart_incomplete"]) == 1
+        assert value_of(client, step.message.name, names["overrun"]) == 0
+        client.port.write(bytes([form.escape, form.start]) + bytes(1000))
+        assert value_of(client, step.message.name, names["overrun"]) == 1
+
+
+def test_a_telecommand_before_the_one_before_is_processed_overruns_the_buffer():
+    from icdgen.protocol import uart
+
+    with session("--processing", "100") as client:
+        one = uart.encode(client.known.framing, bytes([17]) + bytes(6))
+        client.port.write(one * 3)
+        time.sleep(0.3)
+        step = client.known.statistics
+        assert value_of(client, step.message.name, step.fields["overrun"]) == 1
+        assert value_of(client, step.message.name, step.fields["telecommands"]) == 1
+
+
+def test_the_boot_program_starts_the_application_unless_it_is_asked_who_it_is():
+    with session("--boot", "2000", node="bootloader") as client:
+        assert client.identify()[1]
+        time.sleep(2.3)
+        assert client.identify()[1]
+    with session("--boot", "300", node="bootloader") as client:
+        time.sleep(1.0)
+        assert client.identify()[0]["node_type"] == ICD.node("cubeacp").node_type
+
+
+def test_a_reset_starts_the_boot_program_and_its_telecommand_the_application():
+    with session("--boot", "60000") as client:
+        reset = next(m for m in client.known.telecommands.values() if m.expects_reset)
+        client.telecommand(client.known.telecommands[17], bytes(6))
+        data = codec.encode(ICD.node(reset.node), reset, fresh(reset))
+        assert client.telecommand(reset, data)["event"] == "done"
+        assert client.identify()[0]["node_type"] == ICD.node("bootloader").node_type
+        start = ICD.protocol_of(ICD.node("bootloader"))["program_start"]["message"]
+        id = next(m.id for m in ICD.messages_of(ICD.node("bootloader")) if m.name == start)
+        from icdgen.protocol import uart
+
+        client.port.write(uart.encode(client.known.framing, bytes([id])))
+        assert client.identify()[0]["node_type"] == ICD.node("cubeacp").node_type
+
+
+def test_values_are_set_by_options_orders_and_scripts(tmp_path):
+    script = tmp_path / "script.yaml"
+    script.write_text(
+        "- set: {Estimated Attitude Angles: {pitch: 2.5, yaw: {wave: steps, min: -1, max: 1, period: 1000000}}}\n"
+        "- {at: 0.2, set: {Estimated Attitude Angles: {pitch: 3.5}}}\n"
+    )
+    options = ("--set", "Estimated Attitude Angles", "roll=12.34", "--script", str(script), "--orders")
+    with simulator("--node", "cubeacp", "--tcp", "0", *options) as (place, process):
+        from icdgen.link.ports import open_port
+        from icdgen.link.session import Session
+
+        with Session(ICD, ICD.node("cubeacp"), open_port(place, {}), settings=FAST) as client:
+            name = "Estimated Attitude Angles"
+            assert value_of(client, name, "Estimated Roll Angle") == 1234
+            assert value_of(client, name, "Estimated Yaw Angle") == -100
+            time.sleep(0.3)
+            assert value_of(client, name, "Estimated Pitch Angle") == 350
+            process.stdin.write("set 'Estimated Attitude Angles' roll=-1.5\nset nonsense x=1\n")
+            process.stdin.flush()
+            assert process.stdout.readline() == "ok\n"
+            assert process.stdout.readline().startswith("error: cubeacp has no telemetry `nonsense`")
+            assert value_of(client, name, "Estimated Roll Angle") == -150
+
+
+def test_unsolicited_logs_come_as_they_are_configured():
+    events = []
+    with session(on_event=events.append) as client:
+        role = ICD.protocol_of(client.node)["unsolicited_log"]["configured_by"]
+        message = next(m for m in client.known.telecommands.values() if m.name == role["message"])
+        bit = min(client.known.mask.bits)
+        raw = fresh(message) | {role["fields"]["mask"]: bytes([1 << bit]) + bytes(9), role["fields"]["period"]: 1}
+        client.telecommand(message, codec.encode(client.node, message, raw))
+        events += client.listen(client.now + 3500)
+        assert {e["event"] for e in events} == {"log"} and len(events) >= 2
+        assert bytes.fromhex(events[0]["bytes"])[0] == client.known.log_message.id
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_same_seed_brings_the_same_faults(seed):
+    def outcomes() -> list[bytes]:
+        from random import Random
+
+        from icdgen.sim.faults import Faults, parse
+
+        kinds = ["drop=20%", "corrupt=20%", "cut=20%", "repeat=20%", "noise=20%", "duplicate=20%", "late=20%"]
+        faults = Faults(Random(seed), [parse(one) for one in kinds])
+        return [faults.spoil("reply", bytes(range(20))) for _ in range(200)]
+
+    first = outcomes()
+    assert first == outcomes()
+    assert any(not pieces for pieces in first) and any(len(pieces) == 2 for pieces in first)
+
+
+FAULTS = [
+    "drop=30%",
+    "corrupt=30%@acknowledge",
+    "late=40%@acknowledge",
+    "duplicate=50%",
+    "cut=20%",
+    "noise=50%",
+    "repeat=20%",
+]
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_whatever_happens_on_the_line_every_request_ends(fault):
+    with session("--fault", fault, "--late", "300", "--seed", "3") as client:
+        begin = time.monotonic()
+        for number in range(12):
+            outcome = client.telecommand(client.known.telecommands[17], bytes([number] * 6), repeat=True)
+            assert outcome["event"] in ("done", "refused", "timeout")
+            client.identify()
+        assert time.monotonic() - begin < 24 * 5 * 0.3 + 5
+
+
+def test_a_refused_telecommand_is_not_executed():
+    with session("--fault", "nack=1") as client:
+        message = next(m for m in client.known.telecommands.values() if m.kind == CONFIGURATION)
+        before = client.telemetry(message)
+        outcome = client.telecommand(message, bytes([1] * message.length))
+        assert (outcome["event"], outcome["reason"]) == ("refused", "parameter")
+        assert client.telemetry(message) == before
+
+
+def test_strict_refuses_what_no_enumeration_has():
+    def outcome(*options):
+        with session(*options) as client:
+            message = client.known.telecommands[10]
+            return client.ask(Request("telecommand", message.id, b"\xee"))["event"]
+
+    assert (outcome(), outcome("--strict")) == ("done", "refused")
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ((), "it is not said where to listen"),
+        (("--tcp", "0", "--node", "cubemag"), "does not say how messages of cubemag are framed"),
+        (("--tcp", "0"), "it is not said which node is meant"),
+        (("--tcp", "0", "--node", "cubeacp", "--fault", "rain=1"), "is no fault"),
+        (("--tcp", "0", "--node", "cubeacp", "--fault", "drop=2"), "not between 0 and 1"),
+        (("--tcp", "0", "--node", "cubeacp", "--fault", "drop=1@tea"), "cannot be on `tea`"),
+        (("--tcp", "0", "--node", "cubeacp", "--file", "2:1"), "is no file of the device"),
+        (("--tcp", "0", "--node", "cubeacp", "--file", "2:1=missing.bin"), "cannot read missing.bin"),
+        (("--tcp", "0", "--node", "cubeacp", "--script", "missing.yaml"), "cannot read missing.yaml"),
+        (("--tcp", "0", "--node", "cubeacp", "--set", "Nothing", "x=1"), "no telemetry `Nothing`"),
+    ],
+)
+def test_what_cannot_be_is_said(options, text, tmp_path):
+    import subprocess
+    import sys
+
+    command = [sys.executable, "-m", "icdgen", "sim", *options]
+    result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert result.returncode == 2 and text in result.stderr and "Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize(
+    "script",
+    ["{", "a: 1", "- {at: x}", "- {set: {Identification: 1}}", "- {what: 1}",
+     "- {set: {Identification: {major: {wave: tsunami}}}}", "- {set: {Identification: {major: {min: x}}}}",
+     "- {faults: drop}", "- {faults: [drop=9]}", "- {set: {Identification: {major: x}}}",
+     "- {set: {Identification: {major: 300}}}"],
+)  # fmt: skip
+def test_a_wrong_script_is_refused_before_anything_runs(script, tmp_path):
+    from icdgen.errors import UserError
+    from icdgen.sim import orders
+
+    path = tmp_path / "script.yaml"
+    path.write_text(script)
+    with pytest.raises(UserError):
+        orders.read(path, ICD, ICD.node("cubeacp"))
+
+
+def test_monitor_and_send_from_the_outside():
+    import subprocess
+    import sys
+
+    def icdgen(*words: str) -> subprocess.CompletedProcess:
+        return subprocess.run([sys.executable, "-m", "icdgen", *words], capture_output=True, text=True, timeout=60)
+
+    with simulator("--node", "cubeacp", "--tcp", "0", "--set", "146", "roll=1.25") as (place, _):
+        shown = icdgen(
+            "monitor", "cubeacp", "146", "--port", place, "--count", "2", "--every", "0.05", "--format", "json"
+        )
+        rounds = [json.loads(line) for line in shown.stdout.splitlines()]
+        assert [one["fields"][0]["value"] for one in rounds] == [1.25, 1.25]
+        table = icdgen("monitor", "cubeacp", "146", "--port", place, "--once").stdout
+        assert "Estimated Roll Angle" in table and "1.25  deg" in table
+        sent = icdgen("send", "cubeacp", "Set Wheel Speed", "x=1", "y=2", "z=3", "--port", place)
+        assert (sent.returncode, sent.stdout) == (0, "Set Wheel Speed: acknowledged\n")
+        refused = icdgen("send", "cubeacp", "Format SD card", "magic=1", "--raw", "--port", place)
+        assert refused.returncode == 1 and "refused: Incorrect Parameter (code 3)" in refused.stderr
+        other = icdgen("monitor", "bootloader", "--port", place, "--once")
+        assert "the device says node type 10" in other.stderr
+    silent = icdgen("send", "cubeacp", "Set Wheel Speed", "x=1", "y=2", "z=3", "--port", place)
+    assert silent.returncode == 2 and "cannot connect" in silent.stderr

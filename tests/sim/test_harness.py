@@ -1,0 +1,22 @@
+"""The harness for clients of any language: it tells a good one from a bad one."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from tests.sim import harness
+
+REFERENCE = [sys.executable, "-m", "tests.sim.client"]
+
+
+@pytest.mark.parametrize(("loss", "faults"), [("0", []), ("30", []), ("10", ["late=10%@acknowledge"])])
+def test_the_reference_client_passes(loss, faults):
+    assert harness.run(REFERENCE, 5_001, loss, faults, limit=120) is None
+
+
+def test_a_client_that_hangs_fails_or_lies_is_found():
+    assert harness.run([sys.executable, "-c", "import time; time.sleep(60)"], 10, "0", [], limit=2) == "hangs"
+    assert "ended with 3" in harness.run([sys.executable, "-c", "raise SystemExit(3)"], 10, "0", [])
+    assert "another one" in harness.run([sys.executable, "-c", ""], 10, "0", [])
