@@ -2594,8 +2594,8 @@ static inline bool icd_procedure_deadline(const icd_procedure_t *procedure, uint
 }
 
 /**
- * Gives the client the next request as soon as there is one and the client is free. `on_event` is that of the client, and
- * hands each event to icd_procedure_event().
+ * Gives the client the next request as soon as there is one and the client is free. `on_event` is that of the client,
+ * and hands each event to icd_procedure_event().
  */
 static inline icd_status_t icd_procedure_step(
     icd_procedure_t *procedure, icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
