@@ -2593,6 +2593,21 @@ static inline bool icd_procedure_deadline(const icd_procedure_t *procedure, uint
     return procedure->want == ICDGEN_WANT_TIME;
 }
 
+/**
+ * Gives the client the next request as soon as there is one and the client is free. `on_event` is that of the client,
+ * and hands each event to icd_procedure_event().
+ */
+static inline icd_status_t icd_procedure_step(
+    icd_procedure_t *procedure, icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
+{
+    icd_request_t request;
+    if (client->state != ICD_CLIENT_IDLE || icdgen_client_has_output(client) ||
+        !icd_procedure_next(procedure, now, &request)) {
+        return ICD_OK;
+    }
+    return icd_client_start(client, now, &request, on_event, context);
+}
+
 static inline icd_status_t icdgen_procedure_init(
     icd_procedure_t *procedure,
     const icd_link_t *link,

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from icdgen.protocol import crc, facts, ops
-from tests.c import harness
+from tests.c import harness, odd_protocol
 from tests.c.wire_requests import requests
 from tests.conformance import wire
 from tests.conformance.build import build
@@ -59,7 +59,19 @@ def test_every_golden_vector_is_answered_as_demanded(icd, vectors, name):
     assert result.vectors > 1000
 
 
+def test_a_protocol_that_is_odd_in_every_point_is_spoken_as_well():
+    icd = odd_protocol.of(harness.shipped())
+    vectors, language = wire.vectors_of(icd), all_languages()["c-sanitizers"]
+    (result,) = wire.run([language], icd, vectors)
+    assert result.differences == 0, "\n".join(result.shown)
+    agree(icd, vectors, Testee(build(language, icd)))
+
+
 def test_random_requests_are_answered_like_the_reference(icd, vectors, testee):
+    agree(icd, vectors, testee)
+
+
+def agree(icd, vectors, testee):
     asked = list(requests(icd, vectors, random.Random(7), 3000))
     answers = testee.ask([json.dumps(request).encode() for request, _ in asked])
     wrong = [

@@ -1,0 +1,36 @@
+"""The shipped ICDs with another protocol: every choice that the format allows is made the other way round."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+
+from icdgen.icd.model import Icd, Node
+
+
+def of(icd: Icd) -> Icd:
+    """The same messages, big-endian, bits counted from the top, under the odd protocol."""
+    return Icd(tuple(_changed(node) for node in icd.nodes))
+
+
+def _changed(node: Node) -> Node:
+    protocol = copy.deepcopy(node.protocol)
+    if "uart" in protocol:
+        protocol["uart"]["framing"] |= {
+            "escape": 0x10, "start_of_message": 2, "end_of_message": 3, "escaped_data": 0x11, "other": "ignore",
+            "escaped_in": ["data"],
+        }  # fmt: skip
+        protocol["can"]["extended"] |= {"fill": 0xA5, "packets_left_in_last": 1, "max_packets": 255, "max_bytes": 1785}
+        protocol["can"]["node_address"] = 9
+        protocol["crc16"] |= {"init": 0xFFFF, "reflect_in": True, "reflect_out": True, "xor_out": 0xFFFF}
+        files = protocol["file_transfer"]
+        files |= {"first_packet": 1, "fill": 0x5A}
+        files["hole_map"] |= {"bit_order": "msb0", "received": 0, "beyond_end": 0}
+        files["download"]["checksum_covers_fill"] = True
+        files["upload"]["checksum_covers_fill"] = False
+    if "crc8" in protocol:
+        protocol["crc8"] |= {"reflect_in": True, "reflect_out": True, "covers_id": True}
+        protocol["crc8"].pop("empty", None)
+    if "log_mask" in protocol:
+        protocol["log_mask"] |= {"bit_order": "msb0", "fill": 0x77}
+    return dataclasses.replace(node, byte_order="big", bit_order="msb0", protocol=protocol)

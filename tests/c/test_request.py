@@ -1,0 +1,64 @@
+"""The example that talks to a node over TCP."""
+
+from __future__ import annotations
+
+import socket
+import subprocess
+import threading
+
+import pytest
+
+from icdgen.protocol import facts, uart
+from tests.c import harness
+from tests.conformance import ROOT
+
+FRAME = bytes.fromhex("1f1f0a00ff7f")  # full of escape bytes
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("request")
+    headers = harness.generate(harness.shipped(), folder)
+    flags = ("-std=c99", "-D_POSIX_C_SOURCE=200809L", "-Wall", "-Wextra", "-Werror", *harness.SANITIZERS)
+    return harness.compile(ROOT / "examples" / "request.c", *flags, f"-I{headers}", output=folder / "request")
+
+
+class Node(threading.Thread):
+    """Serves one connection: answers every request for telemetry but the first ``silent`` ones."""
+
+    def __init__(self, silent: int) -> None:
+        super().__init__(daemon=True)
+        self.silent, self.asked = silent, []
+        self.server = socket.create_server(("127.0.0.1", 0))
+        self.port = self.server.getsockname()[1]
+        self.start()
+
+    def run(self) -> None:
+        known = facts.of(harness.shipped(), harness.shipped().node("cubeacp"))
+        decoder = uart.Decoder(known.framing, known.longest)
+        connection, _ = self.server.accept()
+        with connection:
+            while data := connection.recv(4096):
+                for event in decoder.feed(data):
+                    self.asked.append(event.message)
+                    if len(self.asked) > self.silent:
+                        line = b"noise\x1f" + uart.encode(known.framing, event.message + FRAME)
+                        for byte in line:  # a byte at a time
+                            connection.sendall(bytes((byte,)))
+
+
+def run(program, node: Node) -> subprocess.CompletedProcess:
+    return subprocess.run([program, str(node.port)], capture_output=True, text=True, timeout=60)
+
+
+@pytest.mark.parametrize("silent", [0, 1])
+def test_the_example_asks_until_it_is_answered(program, silent):
+    node = Node(silent)
+    done = run(program, node)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "roll 79.67 deg\n", "")
+    assert node.asked == [bytes((146,))] * (silent + 1)
+
+
+def test_the_example_gives_up_when_nobody_answers(program):
+    done = run(program, Node(99))
+    assert (done.returncode, done.stdout, done.stderr) == (1, "", "no reply, asked 4 times\n")
