@@ -13,13 +13,13 @@ from icdgen.icd.model import CONFIGURATION, Icd, Message
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Crc, Facts
 
-FOLDERS = {"can": ("joiner", "mod", "splitter", "transaction")}
-FOLDERS["files"] = (
-    "download", "erase", "hole_map", "index", "list", "mod", "poll", "procedure", "upload",
-)  # fmt: skip
-FILES = (
-    "bits", "client", "crc", "error", "event", "i2c", "identity", "link", "log", "message", "mod", "request", "time", "uart",
-)  # fmt: skip
+FILES = ("bits", "crc", "error", "event", "i2c", "identity", "log", "message", "mod", "request", "time", "uart")
+FOLDERS = {
+    "can": ("joiner", "mod", "splitter", "transaction"),
+    "client": ("machine", "mod"),
+    "files": ("download", "erase", "hole_map", "index", "list", "mod", "poll", "procedure", "upload"),
+    "link": ("can", "logs", "mod", "steps", "transfer"),
+}
 REASONS = {
     "none": "NoError",
     "unknown_id": "UnknownId",
