@@ -9,6 +9,16 @@ from icdgen.protocol import facts, uart
 from icdgen.vectors import protocol
 from tests.rust import harness, wire_requests
 
+SMALL = """\
+icdgen: 1
+node: {name: small, title: Small node, byte_order: big, bit_order: msb0}
+protocol:
+  uart:
+    framing: {escape: 0x10, start_of_message: 0x02, end_of_message: 0x03, escaped_data: 0x10, other: ignore, escaped_in: [data]}
+messages:
+  - {name: Ping, kind: telecommand, id: 16, length: 2, fields: [{at: 0, bits: 12, name: Key, type: uint}]}
+"""
+
 
 def test_the_golden_vectors(shipped):
     program = harness.build_testee(shipped.icd)
@@ -42,3 +52,25 @@ def test_noise_before_a_message_costs_nothing_but_the_noise(shipped):
     found = [event for event in answer["events"] if event["event"] == "message"]
     lengths = sum(len(uart.encode(known.framing, bytes.fromhex(one["bytes"]))) for one in found)
     assert answer["discarded"] + answer["pending"] + lengths == len(stream)
+
+
+def test_a_node_of_which_the_icd_says_little(tmp_path):
+    """Another framing, numbers most significant byte first; what is not described is refused."""
+    (tmp_path / "small.yaml").write_text(SMALL)
+    icd = harness.read(tmp_path / "small.yaml")
+    known, source = facts.of(icd, icd.nodes[0]), random.Random(3)
+    asked = [wire_requests.stream(known, source) for _ in range(500)]
+    asked += [{"op": "uart_encode", "bytes": "10" + source.randbytes(9).hex()} for _ in range(50)]
+    script = [{"at": 0, "telecommand": 16, "bytes": "1010"}, {"at": 4, "receive": "10021001"}, {"at": 1 << 31}]
+    asked += [{"op": "client", "bus": bus, "script": script} for bus in ("uart", "can", "i2c")]
+    asked += [{"op": "crc8", "bytes": ""}, {"op": "file", "do": "list", "script": []}, {"op": "dos_time", "value": 3}]
+    assert harness.differences(icd, harness.build_testee(icd), asked) == []
+
+
+def test_a_node_without_a_protocol_has_no_link(shipped):
+    texts = harness.texts(shipped.icd)
+    assert "LINK" in texts["src/cubeacp/mod.rs"] and "LINK" not in texts["src/cubemag/mod.rs"]
+
+
+def test_without_any_protocol_there_is_no_wire_layer(strange):
+    assert not [name for name, text in harness.texts(strange.icd).items() if "wire" in name or "crate::wire" in text]

@@ -20,7 +20,7 @@ def requests(icd: Icd, count: int, seed: int = 1) -> Iterator[dict]:
             continue
         known = facts.of(icd, node)
         for _ in range(count):
-            for make in (_stream, _packets, _client, _transfer):
+            for make in (stream, _packets, _client, _transfer):
                 yield {"node": node.name, **make(known, source)}
 
 
@@ -39,7 +39,8 @@ def _noise(known: Facts, source: random.Random, most: int) -> bytes:
     )
 
 
-def _stream(known: Facts, source: random.Random) -> dict:
+def stream(known: Facts, source: random.Random) -> dict:
+    """A stream of messages and noise, cut anywhere."""
     assert known.framing
     stream = b""
     for _ in range(source.randrange(4)):
@@ -47,7 +48,7 @@ def _stream(known: Facts, source: random.Random) -> dict:
         stream += _noise(known, source, 12) + uart.encode(known.framing, message)
         stream = stream[: -source.randrange(1, 5)] if source.random() < 0.2 else stream
     chunks = [piece.hex() for piece in _cut(stream, source)]
-    return {"op": "uart_events", "chunks": chunks, "limit": source.choice([1, 2, 8, known.longest])}
+    return {"op": "uart_events", "chunks": chunks, "limit": min(source.choice([1, 2, 8, known.longest]), known.longest)}
 
 
 def _packets(known: Facts, source: random.Random) -> dict:

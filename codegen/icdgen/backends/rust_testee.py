@@ -19,7 +19,7 @@ from icdgen.backends.rust.text import string
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts
 
-WIRE = ("ask", "client", "file", "wire")  # what answers requests about the protocol
+WIRE = ("ask", "client", "file", "logs", "wire")  # what answers requests about the protocol
 
 
 class Route(NamedTuple):

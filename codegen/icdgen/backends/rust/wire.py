@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import NamedTuple
 
 from icdgen.backends.rust.literals import Optional, Part, Raw, Rows, Struct, flat, literal
-from icdgen.backends.rust.text import doc, prose, sentence
+from icdgen.backends.rust.text import WIDTH, doc, mask, prose, sentence
 from icdgen.backends.rust.transfer import files
 from icdgen.backends.rust.wire_steps import place, step
 from icdgen.icd.model import CONFIGURATION, Icd, Message
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Crc, Facts
 
-FOLDERS = {"can": ("joiner", "mod", "splitter", "transaction")}
-FOLDERS["files"] = (
-    "download", "erase", "hole_map", "index", "list", "mod", "poll", "procedure", "upload",
-)  # fmt: skip
-FILES = (
-    "bits", "client", "crc", "error", "event", "i2c", "identity", "link", "log", "message", "mod", "request", "time", "uart",
-)  # fmt: skip
+FILES = ("bits", "crc", "error", "event", "i2c", "identity", "log", "message", "mod", "request", "time", "uart")
+FOLDERS = {
+    "can": ("joiner", "mod", "splitter", "transaction"),
+    "client": ("machine", "mod"),
+    "files": ("download", "erase", "hole_map", "index", "list", "mod", "poll", "procedure", "upload"),
+    "link": ("can", "logs", "mod", "steps", "transfer"),
+}
 REASONS = {
     "none": "NoError",
     "unknown_id": "UnknownId",
@@ -90,7 +91,17 @@ def link(known: Facts) -> LinkRow:
     ]
     about = [f"The protocol of node `{known.node.name}`. What the manual leaves open is marked as assumed.", *rest]
     names = sorted({name for name in TYPES if f"{name} {{" in text or f"{name}::" in text} | {"Link"})
-    return LinkRow(known.node.name, doc(about), "{" + ", ".join(names) + "}", text, f"{longest(known):_}")
+    return LinkRow(known.node.name, doc(about), imports(names), text, f"{longest(known):_}")
+
+
+def imports(names: list[str]) -> str:
+    """The ``use`` of some types, in lines of a readable width."""
+    start = "use crate::wire::link::"
+    line = f"{start}{{{', '.join(names)}}};"
+    if len(line) <= WIDTH:
+        return line
+    rows = textwrap.wrap(", ".join(names) + ",", WIDTH - 4)
+    return f"{start}{{\n" + "".join(f"    {row}\n" for row in rows) + "};"
 
 
 TYPES = (
@@ -272,17 +283,19 @@ def _buses(buses: tuple[str, ...]) -> Struct:
 
 
 def _crc(form: Crc | None) -> Struct | None:
-    digits = form.width // 4 if form else 0
-    return form and Struct(
+    if form is None:
+        return None
+    bits = -(-form.width // 4) * 4
+    return Struct(
         "CrcForm",
         (
             Part("width", form.width),
-            Part("polynomial", Raw(f"0x{form.polynomial:0{digits}x}")),
-            Part("init", Raw(f"0x{form.init:0{digits}x}")),
+            Part("polynomial", Raw(mask(form.polynomial, bits))),
+            Part("init", Raw(mask(form.init, bits))),
             Part("reflect_in", form.reflect_in),
             Part("reflect_out", form.reflect_out),
-            Part("xor_out", Raw(f"0x{form.xor_out:0{digits}x}")),
-            Part("empty", Optional(None if form.empty is None else Raw(f"0x{form.empty:0{digits}x}"))),
+            Part("xor_out", Raw(mask(form.xor_out, bits))),
+            Part("empty", Optional(None if form.empty is None else Raw(mask(form.empty, bits)))),
         ),
     )
 

@@ -3,7 +3,12 @@
 //! The link of node `cubeacp`.
 
 #[rustfmt::skip]
-use crate::wire::link::{Acknowledge, Can, CanPart, CanTypes, Checksum, CrcForm, DownloadForm, ErasureForm, Extended, Files, Form, Framing, HoleMapForm, Ids, IndexForm, Link, ListForm, LogBit, LogFile, LogMask, LogMessage, MapMessage, PerBus, Piece, Polled, Reason, Role, Settings, Span, Step, TimeForm, TimePart, UploadForm};
+use crate::wire::link::{
+    Acknowledge, Can, CanPart, CanTypes, Checksum, CrcForm, DownloadForm, ErasureForm, Extended,
+    Files, Form, Framing, HoleMapForm, Ids, IndexForm, Link, ListForm, LogBit, LogFile, LogMask,
+    LogMessage, MapMessage, PerBus, Piece, Polled, Reason, Role, Settings, Span, Step, TimeForm,
+    TimePart, UploadForm,
+};
 
 /// Bytes that buffers need for the longest message of either direction, with its id and checksum.
 pub const LONGEST: usize = 506;
