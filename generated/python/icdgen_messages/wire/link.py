@@ -207,7 +207,7 @@ class Step(NamedTuple):
 
     telecommand: int | None = None
     telemetry: int | None = None
-    fields: dict[str, str] = {}  # noqa: RUF012
+    fields: dict[str, str] = {}
 
 
 class Files(NamedTuple):
