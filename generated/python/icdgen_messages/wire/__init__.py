@@ -2,7 +2,8 @@
 """How messages travel: framing, checksums, CAN packets, a client, files and logs.
 
 Nothing here opens a port, sleeps or looks at a clock: bytes go in, bytes and events
-come out, and the time is passed in. What a node needs is in its ``LINK``.
+come out, and the time is passed in. Only `Session` waits, by the functions that it is
+given. What there is to know of a node is in its ``LINK``.
 """
 
 from __future__ import annotations
