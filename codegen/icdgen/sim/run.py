@@ -116,7 +116,7 @@ async def _listen(server: serve.Server, tell: Callable[[str], None]) -> None:
     threading.Thread(target=read, daemon=True).start()
     while (line := await lines.get()) is not None:
         try:
-            answer = server.say(line)
+            answer = server.say(line.strip())
         except UserError as error:
             answer = f"error: {error}" + (f"; {error.help}" if error.help else "")
         if answer:
