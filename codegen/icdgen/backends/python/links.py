@@ -119,8 +119,7 @@ class Maker:
         message, known = step.message, self.attributes(step.message)
         ids = {"telecommand": message.telecommand_id, "telemetry": message.telemetry_id}
         parts: dict[str, object] = {key: id for key, id in ids.items() if id is not None}
-        if step.fields:
-            parts["fields"] = {role: known[name] for role, name in step.fields.items()}
+        parts["fields"] = {role: known[name] for role, name in step.fields.items()}
         return Call(f"{TYPES}.Step", (), parts)
 
     def attributes(self, message: Message) -> dict[str, str]:

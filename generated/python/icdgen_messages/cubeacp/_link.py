@@ -407,8 +407,8 @@ LINK = link.Link(
         block_packets=1024,
         block_bytes=20480,
         steps={
-            "list.reset": link.Step(telecommand=118),
-            "list.advance": link.Step(telecommand=113),
+            "list.reset": link.Step(telecommand=118, fields={}),
+            "list.advance": link.Step(telecommand=113, fields={}),
             "list.information": link.Step(
                 telemetry=243,
                 fields={
@@ -450,7 +450,7 @@ LINK = link.Link(
                 fields={"destination": "destination", "block_size": "block_size"},
             ),
             "upload.initiated": link.Step(telemetry=244, fields={"busy": "busy"}),
-            "upload.begin": link.Step(telecommand=117),
+            "upload.begin": link.Step(telecommand=117, fields={}),
             "upload.packet": link.Step(
                 telecommand=115,
                 fields={"number": "packet_number", "bytes": "file_bytes"},
@@ -483,7 +483,7 @@ LINK = link.Link(
                 telemetry=234,
                 fields={"busy": "erase_all_busy"},
             ),
-            "format.request": link.Step(telecommand=33),
+            "format.request": link.Step(telecommand=33, fields={}),
             "format.progress": link.Step(telemetry=234, fields={"busy": "format_busy"}),
         },
         numbers={

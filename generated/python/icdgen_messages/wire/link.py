@@ -205,9 +205,9 @@ class HoleMapForm(NamedTuple):
 class Step(NamedTuple):
     """A message that plays a part in a procedure, and its attributes by role."""
 
+    fields: dict[str, str]
     telecommand: int | None = None
     telemetry: int | None = None
-    fields: dict[str, str] = {}
 
 
 class Files(NamedTuple):
