@@ -9,11 +9,9 @@ from random import Random
 
 import pytest
 
+from icdgen.sim import run
 from tests.conftest import ROOT
 from tests.python import packages
-
-pytest.importorskip("icdgen.sim", reason="the simulator is another part")
-from icdgen.sim import run
 
 RESETS = ("Reset", "Run Selected Program")
 

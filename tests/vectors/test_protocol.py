@@ -19,7 +19,7 @@ from tests.conformance.languages import all_languages
 from tests.conformance.reference import Reference
 
 SCHEMA = json.loads((Path(icdgen.__file__).parent / "protocol.schema.json").read_text(encoding="utf-8"))
-SPEAKING = ("reference", "c")  # languages whose testees know the protocol
+SPEAKING = ("reference", "c", "python", "rust-debug")  # languages whose testees know the protocol
 
 
 @pytest.fixture(scope="module")
