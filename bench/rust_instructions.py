@@ -4,7 +4,7 @@
 
 Counts come from valgrind --tool=callgrind, so they do not depend on the machine's load. Both sides check the length and
 return a ``Result``; the generated side also makes enumerations of its raw values, which the hand-written one leaves as
-bytes. Needs Rust 1.66 or later (``black_box``). ``--check`` ends with status 1 where a limit of issue 3 is missed.
+bytes. Needs Rust 1.66 or later (``black_box``). ``--check`` ends with status 1 where a limit is missed.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from icdgen.render import Renderer
 
 BENCH = Path(__file__).parent
 CALLS = 100
-# Telemetry id -> type, and the instructions of hand-written code on the machine of issue 3.
+# Telemetry id -> type, and the instructions of hand-written code on one x86-64 machine.
 FRAMES = {
     132: ("CurrentAdcsState", 100),
     190: ("AdcsState", 130),

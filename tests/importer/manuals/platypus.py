@@ -64,7 +64,7 @@ def draw(manual: Manual, path: Path, look: Look) -> None:
 
     def furniture(canvas, doc) -> None:
         canvas.setFont(look.font, 8)
-        canvas.drawString(look.margin, look.page[1] - 36, f"{manual.title}, issue 4")
+        canvas.drawString(look.margin, look.page[1] - 36, f"{manual.title}, edition 4")
         canvas.line(look.margin, look.page[1] - 40, look.page[0] - look.margin, look.page[1] - 40)
         canvas.drawRightString(look.page[0] - look.margin, 34, f"Page {doc.page}")
 
