@@ -65,7 +65,7 @@ def package(icd, tmp_path, monkeypatch):
         monkeypatch.delitem(sys.modules, name)
     yield importlib.import_module(package.name)
     for name in [name for name in sys.modules if name.split(".")[0] == package.name]:
-        monkeypatch.delitem(sys.modules, name)
+        del sys.modules[name]  # for good: monkeypatch then puts back those that were there before
 
 
 def test_the_python_harness_finds_nothing(inputs, package):

@@ -49,7 +49,12 @@ def test_update_keeps_what_people_wrote_and_says_what_changed(folder):
     path = folder / "icd" / "pump.yaml"
     ours = path.read_text(encoding="utf-8")
     ours = ours.replace("name: Pressure,", "name: Pressure, identifier: Tank Pressure, summary: Of the tank.,")
-    ours = ours.replace("    length: 4\n", "    length: 4\n    summary: Ours.\n    # A comment of ours.\n")
+    ours = ours.replace("    length: 4\n", "    length: 4\n    summary: Ours.\n    # A comment of ours.\n", 1)
+    ours = ours.replace(
+        "    summary: Ours.\n",
+        "    summary: Ours.\n    assumptions: {length: Not printed. It follows from the fields.}\n",
+        1,
+    )
     path.write_text(ours, encoding="utf-8")
     icdgen("fmt", "icd", cwd=folder)
     ours = path.read_text(encoding="utf-8")

@@ -18,6 +18,11 @@ def sides(arguments: list[str], usual: list[Path], unchecked: bool = False) -> t
     return _load(old, unchecked), _load(new, unchecked)
 
 
+def one_side(word: str, usual: list[Path]) -> Side:
+    """A single side, loaded: a file, a folder, a git revision, or the output of ``icdgen show``. Raises `UserError`."""
+    return _load(_one(Git(), word, usual), unchecked=False)
+
+
 def _resolve(arguments: list[str], usual: list[Path]) -> tuple[object, object]:
     """Two of: paths, a git spec, ``-``."""
     git = Git()
