@@ -71,7 +71,7 @@ def served() -> Iterator[str]:
     server = ThreadingHTTPServer((HOST, 0), handler(Source([ROOT / "icd"])))
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()
-    yield f"http://localhost:{server.server_port}/"
+    yield f"http://127.0.0.1:{server.server_port}/"
     server.shutdown()
     server.server_close()
 
