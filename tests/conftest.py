@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -38,6 +40,22 @@ messages:
     fields:
       - {at: 0, bits: 16, name: Roll Angle, type: int, unit: deg, formula: raw*0.01}
 """
+
+
+@cache
+def _terminals() -> bool:
+    """Whether this machine can make a pseudo-terminal: a chroot without /dev/pts cannot."""
+    try:
+        for end in os.openpty():
+            os.close(end)
+    except OSError:
+        return False
+    return True
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    if (item.get_closest_marker("pty") or "--pty]" in item.nodeid) and not _terminals():
+        pytest.skip("this machine has no pseudo-terminals: /dev/pts is not mounted")
 
 
 @pytest.fixture(autouse=True)

@@ -141,6 +141,7 @@ class TestOutput:
             if form in ("markdown", "html"):  # in Markdown a code span is nothing but text
                 assert "<script>alert" not in (re.sub("`[^`]*`", "", out) if form == "markdown" else out)
 
+    @pytest.mark.pty
     def test_colour_is_for_terminals(self, releases, tmp_path):
         command = [sys.executable, "-m", "icdgen", "diff", "old", "new"]
         plain = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)

@@ -12,6 +12,7 @@ from icdgen.protocol.can import Packet
 from tests.sim.device import FAST, ICD, simulator
 
 
+@pytest.mark.pty
 def test_a_serial_port_by_pyserial():
     node = ICD.node("cubeacp")
     with simulator("--node", "cubeacp", "--pty") as (place, _):
