@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-import binascii
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cache
 
 from icdgen.protocol import crc
 from icdgen.protocol.facts import Crc, Facts
 from icdgen.protocol.files import IndexEntry, index_encode
 
 LARGEST = 1 << 24  # bytes of a program: no offset makes us run out of memory
+
+_MIRRORED = bytes(int(f"{byte:08b}"[::-1], 2) for byte in range(256))
 
 
 @dataclass
@@ -58,9 +60,20 @@ class Storage:
 
 
 def checksum_of(form: Crc | None, data: bytes) -> int:
-    """The CRC of a file; by the standard library where that has it, for files are large."""
+    """The CRC of a file; byte by byte from a table, for files are large."""
     if form is None:
         return 0
-    if (form.width, form.polynomial, form.reflect_in, form.reflect_out) == (16, 0x1021, False, False):
-        return form.empty if not data and form.empty is not None else binascii.crc_hqx(data, form.init) ^ form.xor_out
-    return crc.compute(form, data)
+    if not data or form.width < 8:
+        return crc.compute(form, data)
+    table, low, value = _table(form), form.width - 8, form.init
+    mask = (1 << low) - 1
+    for byte in data.translate(_MIRRORED) if form.reflect_in else data:
+        value = (value & mask) << 8 ^ table[value >> low ^ byte]
+    return crc.compute(replace(form, init=value, empty=None), b"")
+
+
+@cache
+def _table(form: Crc) -> tuple[int, ...]:
+    """What each byte, first bit on top, makes of a register of zeros."""
+    plain = replace(form, init=0, reflect_in=False, reflect_out=False, xor_out=0)
+    return tuple(crc.compute(plain, bytes([byte])) for byte in range(256))

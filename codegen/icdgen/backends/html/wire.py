@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from icdgen.backends.html.crc import crc
 from icdgen.backends.html.texts import count
 from icdgen.icd.model import Message
+from icdgen.protocol import crc, reading
 
 _SHOWN = 24  # data bytes that are written out
 
@@ -79,7 +79,11 @@ def _check(checks: list[dict], direction: str, bus: str, data: bytes) -> Chunk |
     for facts in checks:
         rule = facts.get(direction)
         if facts["width"] == 8 and rule and bus in rule.get("buses", [bus]):
-            return Chunk("crc", f"{crc(facts, data):02X}", "CRC-8" + (", optional" if rule.get("optional") else ""))
+            return Chunk(
+                "crc",
+                f"{crc.compute(reading.crc(facts), data):02X}",
+                "CRC-8" + (", optional" if rule.get("optional") else ""),
+            )
     return None
 
 
@@ -223,5 +227,8 @@ def _packets(
                 yield Line("", [Chunk("note", f"… {count(len(packets) - 3, 'more packet')}", "")])
             continue
         left = len(packets) - 1 - index + last
-        chunks = [_identifier(name, types[name], parts, rest), *_data(packet.ljust(size, b"\0"))]
+        chunks = [
+            _identifier(name, types[name], parts, rest),
+            *_data(packet.ljust(size, bytes([extended.get("fill", 0)]))),
+        ]
         yield Line(f"{label} {index + 1}/{len(packets)}", [*chunks, Chunk("crc", f"{left:02X}", "packets left")])
