@@ -43,6 +43,9 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--sample", type=int, help="so many mutants, chosen by --seed (default: all)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kind", help="only this kind of change")
+    parser.add_argument(
+        "--table", type=Path, help="a file that holds the table so far, for it takes the better part of an hour"
+    )
     parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
     options = parser.parse_args(arguments)
     names = options.lang.split(",")
@@ -57,20 +60,25 @@ def main(arguments: list[str] | None = None) -> int:
     if options.sample is not None:
         chosen = random.Random(options.seed).sample(chosen, min(options.sample, len(chosen)))
     start = time.perf_counter()
-    say = lambda text: print(text, file=sys.stderr, flush=True)  # noqa: E731
-    scores, refused = measure(icd, files, chosen, [LANGUAGES[name] for name in names], say)
-    bad = 0
+    scores: dict[str, Score] = {}
+    refused: dict[str, int] = {}
+    for done, scores, refused in measure(icd, files, chosen, [LANGUAGES[name] for name in names]):
+        print(f"{done:,} of {len(chosen):,} mutants", file=sys.stderr, flush=True)
+        if options.table:
+            options.table.write_text(report(scores, refused))
+    print(report(scores, refused), end="")
+    print(f"{len(chosen):,} mutants in {time.perf_counter() - start:.0f} s")
+    return 1 if any(score.crashed or any(score.survived.values()) for score in scores.values()) else 0
+
+
+def report(scores: dict[str, Score], refused: dict[str, int]) -> str:
+    """Each survivor and each testee that died, in a line, and the table."""
+    lines = []
     for name, score in scores.items():
         for kind, found in score.survived.items():
-            bad += len(found)
-            for text in found:
-                print(f"{name}: survivor: {kind}: {text}")
-        for text in score.crashed:
-            bad += 1
-            print(f"{name}: the testee died of {text}")
-    print(table(scores, refused))
-    print(f"{len(chosen):,} mutants in {time.perf_counter() - start:.0f} s")
-    return 1 if bad else 0
+            lines += [f"{name}: survivor: {kind}: {text}" for text in found]
+        lines += [f"{name}: the testee died of {text}" for text in score.crashed]
+    return "\n".join([*lines, table(scores, refused)]) + "\n"
 
 
 if __name__ == "__main__":

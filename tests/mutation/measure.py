@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -92,9 +92,9 @@ def _prepared(case: Case) -> Prepared:
 
 
 def measure(
-    icd: Icd, files: dict[str, dict], chosen: list[Mutant], languages: list[Language], say: Callable[[str], None]
-) -> tuple[dict[str, Score], dict[str, int]]:
-    """The score of each language, and how many mutants the rules refuse. Raises `BuildError`."""
+    icd: Icd, files: dict[str, dict], chosen: list[Mutant], languages: list[Language]
+) -> Iterator[tuple[int, dict[str, Score], dict[str, int]]]:
+    """After each batch: how many mutants are done, the score of each language, how many the rules refuse. Raises `BuildError`."""
     scores = {language.name: Score() for language in languages}
     refused: Counter = Counter()
     vectors = Vectors(files)
@@ -110,8 +110,7 @@ def measure(
             for language in languages:
                 run(icd, batch, language, vectors, scores[language.name], folder / "build")
         done += len(part)
-        say(f"{done:,} of {len(chosen):,} mutants")
-    return scores, dict(refused)
+        yield done, scores, dict(refused)
 
 
 def run(icd: Icd, batch: Batch, language: Language, vectors: Vectors, score: Score, folder: Path) -> None:
