@@ -83,23 +83,37 @@ class Session:
         return found, all(expected.get(role) in (None, value) for role, value in found.items())
 
     def run(self, procedure: Procedure, progress: Callable[[], None] | None = None) -> str:
-        """Runs a procedure to its end; its result. Raises `PortError`."""
+        """Runs a procedure to its end; its result. Raises `PortError`.
+
+        A request that is refused with a code that the ICD does not have is sent again, if it may be, as the acknowledge may
+        be damaged; ``on_event`` is told of every such refusal.
+        """
         waiting: list[dict] = []
+        asked: Request | None = None
+        left = 0
         while procedure.result is None:
             request = procedure.next(self.now)
             if progress:
                 progress()
             if request is not None:
+                asked, left = request, self.machine.settings.retries
                 waiting = self.machine.start(self.now, request)
                 self._write()
             elif procedure.result is None:
                 times = [at for at in (procedure.deadline, self.machine.deadline) if at is not None]
                 waiting = self._wait(min(times, default=None))
                 self._write()
-            for event in waiting:
-                procedure.event(self.now, event)
-                if event["event"] not in (*OUTCOMES, "packet"):
+            while waiting:
+                event, *waiting = waiting
+                is_unknown = _is_unknown(event)
+                if is_unknown or event["event"] not in (*OUTCOMES, "packet"):
                     self.on_event(event)
+                if is_unknown and asked is not None and asked.repeat and left > 0:
+                    left -= 1
+                    waiting += self.machine.start(self.now, asked)
+                    self._write()
+                else:
+                    procedure.event(self.now, event)
         return procedure.result
 
     def listen(self, until: int) -> Iterator[dict]:
@@ -123,3 +137,8 @@ class Session:
                 self.port.send(one)
             else:
                 self.port.write(one)
+
+
+def _is_unknown(event: dict) -> bool:
+    """Whether it is a refusal with a code that the ICD does not have."""
+    return event["event"] == "refused" and event["code"] is not None and event["reason"] is None
