@@ -16,6 +16,8 @@ from icdgen.icd.tree import Map, Seq
 BYTE = 255
 MAX_PACKETS = 256  # of an extended message, where the ICD gives no other number
 CRC_WIDTHS = (8, 32)  # that generated code computes
+TIME_BITS = 32  # of a packed time, at most
+TIME_PARTS = ("year", "month", "day", "hour", "minute", "second")
 ROLES = ("type", "channel", "source", "destination")  # parts of a CAN identifier
 
 
@@ -202,3 +204,25 @@ def identifier_is_whole(ctx: Context) -> Iterator[Fault]:
         if missing:
             message = f"the identifier has no part for {listing(missing)}"
             yield Fault(can, can.at("identifier"), message, "give the parts their `role`")
+
+
+@rule("ICD102")
+def times_are_whole(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        time = section_of(node, "msdos_time")
+        if time is None or not isinstance(time.get("parts"), Seq):
+            continue
+        bits = time.get("bits")
+        if isinstance(bits, int) and bits > TIME_BITS:
+            message = f"a packed time of {bits} bits: up to {TIME_BITS} can be generated"
+            yield Fault(time, time.at("bits"), message, "correct `bits`, or leave the section out")
+        named: set[str] = set()
+        for row in mappings(time["parts"]):
+            name = row.get("name")
+            if name in named:
+                yield Fault(row, row.at("name"), f"a second {name}", "each part stands once")
+            named.add(name)
+        missing = [f"`{name}`" for name in TIME_PARTS if name not in named]
+        if missing:
+            message = f"the packed time has no {listing(missing)}"
+            yield Fault(time, time.at("parts"), message, "it has all parts from `year` to `second`")
