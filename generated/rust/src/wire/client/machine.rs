@@ -74,6 +74,11 @@ impl<const N: usize> Machine<N> {
         }
     }
 
+    /// Whether a request is going on, or its output has not been taken.
+    pub(super) fn is_busy(&self) -> bool {
+        self.state != State::Idle || self.first().is_some()
+    }
+
     fn form(&self, direction: Direction, id: u8) -> Option<&'static Form> {
         match direction {
             Direction::Telecommand => self.link.telecommand(id),
@@ -85,7 +90,7 @@ impl<const N: usize> Machine<N> {
         let id = request.id;
         let form = self.form(request.direction, id);
         let form = form.ok_or(Error::UnknownId { id })?;
-        if self.state != State::Idle || self.first().is_some() {
+        if self.is_busy() {
             return Err(Error::Busy);
         }
         let telecommand = request.direction == Direction::Telecommand;
