@@ -19,7 +19,7 @@ from icdgen.icd.model import CONFIGURATION, Field, Icd, Message
 from icdgen.protocol import facts
 from icdgen.sim.values import fresh
 from tests.rust import harness
-from tests.rust.tools import Toolchain
+from tests.rust.tools import STD, Toolchain
 
 HERE = Path(__file__).parent
 NODE = "cubeacp"
@@ -71,7 +71,7 @@ def source(icd: Icd, node_name: str = NODE) -> str:
 def build(folder: Path) -> list[str]:
     """The command that starts the client, built in that folder."""
     icd, tools = harness.shipped(), Toolchain("default")
-    library = tools.library(harness.generate(icd, folder), folder, level="1")
+    library = tools.library(harness.generate(icd, folder), folder, "1", *STD)
     main = folder / "sim_client.rs"
     main.write_text(source(icd), encoding="utf-8")
     shutil.copy(HERE / "sim_device.rs", folder)
