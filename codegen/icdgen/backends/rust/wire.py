@@ -30,7 +30,8 @@ FILES = (
 )
 FOLDERS = {
     "can": ("joiner", "mod", "splitter", "transaction"),
-    "client": ("machine", "mod"),
+    "client": ("mod",),
+    "client/machine": ("input", "mod", "output"),
     "files": ("download", "erase", "hole_map", "index", "list", "mod", "poll", "procedure", "upload"),
     "link": ("can", "logs", "mod", "steps", "transfer"),
 }
