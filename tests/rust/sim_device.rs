@@ -13,8 +13,8 @@ const SETTINGS: Settings = Settings {
     poll_interval_ms: 5,
     poll_timeout_ms: 2000,
 };
-/// How often a telecommand is sent whose acknowledge may have been lost or spoilt.
-const TRIES: u32 = 5;
+/// How often something is tried that fails, for the acknowledge may have been lost or spoilt.
+pub const TRIES: u32 = 10;
 
 pub type Problem = Box<dyn std::error::Error>;
 
@@ -33,15 +33,17 @@ impl<const N: usize> Device<N> {
         Ok(Self { link, session })
     }
 
-    /// Sends a telecommand until it is acknowledged, or has failed each time: an acknowledge may be lost or spoilt.
+    /// Sends a telecommand until it is acknowledged, or refused twice: an acknowledge may be lost or spoilt.
     pub fn insist<M: Telecommand>(&mut self, message: &M) -> Result<(), Failure> {
-        let mut outcome = self.send(message);
+        let mut refused = false;
         for _ in 1..TRIES {
-            if outcome.is_err() {
-                outcome = self.send(message);
+            match self.send(message) {
+                Err(Failure::Refused { reason: Some(_), .. }) if !refused => refused = true,
+                Err(Failure::Refused { reason: None, .. } | Failure::Timeout { .. }) => {}
+                outcome => return outcome,
             }
         }
-        outcome
+        self.send(message)
     }
 }
 
