@@ -6,10 +6,10 @@ use std::net::TcpStream;
 use std::ops::{Deref, DerefMut};
 use std::time::Duration;
 
-/// For a device that is never slow.
+/// For a device that is never slow, on a machine that may be.
 const SETTINGS: Settings = Settings {
     reply_timeout_ms: 150,
-    retries: 4,
+    retries: 9,
     poll_interval_ms: 5,
     poll_timeout_ms: 2000,
 };

@@ -36,7 +36,7 @@ def test_acknowledges_that_are_spoilt_or_late_cost_nothing_but_time(client, faul
     ("options", "code", "why"),
     [
         (["--node", "bootloader"], 3, ""),
-        (["--node", "cubeacp", "--fault", "drop=100%@reply"], 1, "no answer to request 128, asked 5 times"),
+        (["--node", "cubeacp", "--fault", "drop=100%@reply"], 1, "no answer to request 128, asked 10 times"),
         (["--node", "cubeacp", "--fault", "nack=100%"], 1, "request 3 is refused, code 3: Parameter"),
         (["--node", "cubeacp"], 1, "download: the procedure failed: Parameter"),  # it has no such file
     ],
