@@ -11,7 +11,9 @@ from tests.sim import harness
 REFERENCE = [sys.executable, "-m", "tests.sim.client"]
 
 
-@pytest.mark.parametrize(("loss", "faults"), [("0", []), ("30", []), ("10", ["late=10%@acknowledge"])])
+@pytest.mark.parametrize(
+    ("loss", "faults"), [("0", []), ("30", []), ("10", ["late=10%@acknowledge"]), ("10", ["corrupt=10%@acknowledge"])]
+)
 def test_the_reference_client_passes(loss, faults):
     assert harness.run(REFERENCE, 5_001, loss, faults, limit=120) is None
 
