@@ -83,10 +83,19 @@ class Session:
         return found, all(expected.get(role) in (None, value) for role, value in found.items())
 
     def run(self, procedure: Procedure, progress: Callable[[], None] | None = None) -> str:
-        """Runs a procedure to its end; its result. Raises `PortError`."""
+        """Runs a procedure to its end; its result. Raises `PortError`.
+
+        A refusal with a code that the ICD does not have is a damaged acknowledge, which tells nothing: what may be repeated is
+        asked again, and else it is as if none had come.
+        """
         waiting: list[dict] = []
+        asked: Request | None = None
+        left, again = 0, False
         while procedure.result is None:
-            request = procedure.next(self.now)
+            request = asked if again else procedure.next(self.now)
+            if request is not None and not again:
+                asked, left = request, self.machine.settings.retries
+            again = False
             if progress:
                 progress()
             if request is not None:
@@ -97,7 +106,11 @@ class Session:
                 waiting = self._wait(min(times, default=None))
                 self._write()
             for event in waiting:
-                procedure.event(self.now, event)
+                damaged = _is_damaged(event)
+                if damaged and asked is not None and asked.repeat and left > 0:
+                    again, left = True, left - 1
+                    continue
+                procedure.event(self.now, {**event, "event": "timeout"} if damaged else event)
                 if event["event"] not in (*OUTCOMES, "packet"):
                     self.on_event(event)
         return procedure.result
@@ -123,3 +136,8 @@ class Session:
                 self.port.send(one)
             else:
                 self.port.write(one)
+
+
+def _is_damaged(event: dict) -> bool:
+    """Whether it is a refusal with a code that the ICD does not have."""
+    return event["event"] == "refused" and event["code"] is not None and event["reason"] is None
