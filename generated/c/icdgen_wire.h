@@ -2436,6 +2436,7 @@ struct icd_procedure {
     bool started;
     bool asked;               /* the request was given out */
     bool tolerant;            /* it may end in any way */
+    uint32_t damaged;         /* acknowledges of it that were */
     const icd_step_t *polled; /* the frame that is polled until a flag is as wanted */
     icd_role_t flag;
     bool wanted;
@@ -2563,6 +2564,22 @@ static inline bool icd_procedure_next(icd_procedure_t *procedure, uint32_t now, 
     return true;
 }
 
+/*
+ * A refusal with a code that the ICD does not have is a damaged acknowledge, which tells nothing: what may be repeated
+ * is asked again, and else it is as if none had come.
+ */
+static inline void icdgen_damaged(icd_procedure_t *procedure, const icd_event_t *event)
+{
+    icd_event_t timeout = *event;
+    timeout.kind = ICD_EVENT_TIMEOUT;
+    if (procedure->request.repeat && procedure->damaged < procedure->link->client.retries) {
+        procedure->damaged++;
+    } else {
+        procedure->damaged = 0;
+        icdgen_resume(procedure, &timeout);
+    }
+}
+
 /** Takes an event of the client; those that are of no concern are ignored. */
 static inline void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, const icd_event_t *event)
 {
@@ -2578,7 +2595,12 @@ static inline void icd_procedure_event(icd_procedure_t *procedure, uint32_t now,
     case ICD_EVENT_TIMEOUT:
         if (procedure->asked) {
             procedure->asked = false;
-            icdgen_resume(procedure, event);
+            if (event->kind == ICD_EVENT_REFUSED && event->code >= 0 && event->reason == ICD_REASON_UNKNOWN) {
+                icdgen_damaged(procedure, event);
+            } else {
+                procedure->damaged = 0;
+                icdgen_resume(procedure, event);
+            }
         }
         break;
     default:

@@ -5,13 +5,16 @@ from __future__ import annotations
 import socket
 import subprocess
 import threading
+from urllib.parse import urlsplit
 
 import pytest
 
 from icdgen.protocol import facts, uart
 from tests.c import harness
 from tests.conformance import ROOT
+from tests.sim.device import simulator
 
+EXAMPLE = ROOT / "examples" / "request.c"
 FRAME = bytes.fromhex("1f1f0a00ff7f")  # full of escape bytes
 
 
@@ -19,8 +22,8 @@ FRAME = bytes.fromhex("1f1f0a00ff7f")  # full of escape bytes
 def program(tmp_path_factory):
     folder = tmp_path_factory.mktemp("request")
     headers = harness.generate(harness.shipped(), folder)
-    flags = ("-std=c99", "-D_POSIX_C_SOURCE=200809L", "-Wall", "-Wextra", "-Werror", *harness.SANITIZERS)
-    return harness.compile(ROOT / "examples" / "request.c", *flags, f"-I{headers}", output=folder / "request")
+    flags = ("-std=c99", "-D_POSIX_C_SOURCE=200809L", *harness.WARNINGS, *harness.SANITIZERS)
+    return harness.compile(EXAMPLE, *flags, f"-I{headers}", output=folder / "request")
 
 
 class Node(threading.Thread):
@@ -48,7 +51,11 @@ class Node(threading.Thread):
 
 
 def run(program, node: Node) -> subprocess.CompletedProcess:
-    return subprocess.run([program, str(node.port)], capture_output=True, text=True, timeout=60)
+    return ask(program, node.port)
+
+
+def ask(program, port: int | str) -> subprocess.CompletedProcess:
+    return subprocess.run([program, str(port)], capture_output=True, text=True, timeout=60)
 
 
 @pytest.mark.parametrize("silent", [0, 1])
@@ -62,3 +69,21 @@ def test_the_example_asks_until_it_is_answered(program, silent):
 def test_the_example_gives_up_when_nobody_answers(program):
     done = run(program, Node(99))
     assert (done.returncode, done.stdout, done.stderr) == (1, "", "no reply, asked 4 times\n")
+
+
+def test_the_readme_shows_the_example_as_it_is():
+    code = EXAMPLE.read_text(encoding="utf-8").partition("*/\n")[2]
+    assert code in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_example_talks_to_the_simulator(program):
+    with simulator("--node", "cubeacp", "--tcp", "0", "--set", "Estimated Attitude Angles", "roll=12.5") as (place, _):
+        done = ask(program, urlsplit(place).port)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "roll 12.50 deg\n", "")
+
+
+def test_the_example_says_that_nobody_listens(program):
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        unused = server.getsockname()[1]
+    done = ask(program, unused)
+    assert (done.returncode, done.stdout, done.stderr) == (1, "", "cannot connect: Connection refused\n")

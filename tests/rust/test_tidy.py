@@ -6,7 +6,7 @@ import pytest
 
 from tests.rust import harness, odd
 from tests.rust.harness import main_of_testee
-from tests.rust.tools import Toolchain, toolchains
+from tests.rust.tools import STD, Toolchain, toolchains
 
 
 @pytest.fixture(params=list(toolchains()))
@@ -23,6 +23,11 @@ def test_clippy_has_nothing_to_say(subject, toolchain, tmp_path):
     toolchain.linted(subject.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd")
     library = f"icd={tmp_path / 'libicd.rmeta'}"
     toolchain.linted(main_of_testee(subject.crate), tmp_path, "--crate-name", "testee", "--extern", library)
+
+
+def test_nor_with_the_standard_library(shipped, toolchain, tmp_path):
+    toolchain.linted(shipped.crate, tmp_path, "--crate-type", "lib", "--crate-name", "icd", *STD)
+    toolchain.documented(shipped.crate, tmp_path, *STD)
 
 
 def test_rustdoc_has_nothing_to_say(subject, toolchain, tmp_path):

@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 
 OLDEST = "1.63"
+STD = ("--cfg", 'feature="std"')  # the crate with the feature
 
 
 def run(*command: str | Path, cwd: Path | None = None, **environment: str | Path) -> str:
@@ -59,14 +60,15 @@ class Toolchain:
         )
         run(*command, file, CARGO_PKG_RUST_VERSION=OLDEST)
 
-    def documented(self, file: Path, out: Path) -> None:
+    def documented(self, file: Path, out: Path, *options: str) -> None:
         """Fails if rustdoc has anything to say."""
-        run(*self.start, "rustdoc", "--edition", "2021", "--crate-name", "icd", "-D", "warnings", "-o", out, file)
+        command = (*self.start, "rustdoc", "--edition", "2021", "--crate-name", "icd", "-D", "warnings")
+        run(*command, *options, "-o", out, file)
 
-    def library(self, file: Path, out: Path, level: str) -> Path:
+    def library(self, file: Path, out: Path, level: str, *more: str) -> Path:
         """Compiles the crate, optimised to that level; its file."""
         options = ("--crate-type", "lib", "-C", "panic=abort", "-C", f"opt-level={level}")
-        run(*self._rustc("icd"), *options, "--out-dir", out, file)
+        run(*self._rustc("icd"), *options, *more, "--out-dir", out, file)
         return out / "libicd.rlib"
 
     def program(self, file: Path, library: Path, out: Path) -> Path:

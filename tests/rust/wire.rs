@@ -42,6 +42,7 @@ type Hear = fn(Event<'_>);
 #[no_mangle] pub fn wire_client_start(client: &mut ClientOf, now: u32, request: &Request<'_>) -> Result<Started, Error> { client.start(now, request) }
 #[no_mangle] pub fn wire_client_request(client: &mut ClientOf, now: u32) -> Result<(), Error> { client.request::<icd::cubeacp::EstimatedAttitudeAngles>(now) }
 #[no_mangle] pub fn wire_client_send(client: &mut ClientOf, now: u32, message: &icd::cubeacp::AdcsConfiguration) -> Result<Started, Error> { client.send(now, message) }
+#[no_mangle] pub fn wire_client_advance(client: &mut ClientOf, now: u32, procedure: &mut dyn Procedure) -> Result<bool, Error> { client.advance(now, procedure) }
 #[no_mangle] pub fn wire_client_output(client: &mut ClientOf) -> Option<&[u8]> { client.output() }
 #[no_mangle] pub fn wire_client_packet(client: &mut ClientOf) -> Option<can::Packet> { client.output_packet() }
 #[no_mangle] pub fn wire_client_transaction(client: &mut ClientOf) -> Option<icd::wire::Transaction<'_>> { client.output_transaction() }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 from icdgen import codec
-from icdgen.icd.model import CONFIGURATION
+from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.link.ports import open_port
 from icdgen.link.session import Session
 from icdgen.protocol import transfer
@@ -13,6 +13,11 @@ from icdgen.sim.values import fresh
 from tests.sim.device import FAST, ICD, download, hasty
 
 NODE = "cubeacp"
+TRIES = 20
+
+
+class Failed(Exception):
+    """Not what the harness expects."""
 
 
 def main(host: str, port: str, size: str) -> int:
@@ -21,32 +26,95 @@ def main(host: str, port: str, size: str) -> int:
         found = client.identify()
         if found is None or not found[1]:
             return 3
-        for message in client.known.telemetry.values():
-            if client.telemetry(message) is None:
-                return fail(f"{message.name} is not answered")
-        for message in client.known.telecommands.values():
-            if message.kind == CONFIGURATION:
-                raw = fresh(message) | {f.name: 1 for f in message.fields if f.type == "uint" and f.const is None}
-                data = codec.encode(ICD.node(message.node), message, raw)
-                outcome = client.telecommand(message, data)
-                if outcome["event"] != "done" or client.telemetry(message) != data:
-                    return fail(f"{message.name} is not what was set: {outcome}")
-        log = next(m for m in client.known.telecommands.values() if m.name == log_message())
-        client.telecommand(log, bytes(log.length))  # no logs during the transfers
-        result, data = download(client, 2, 1, int(size))
-        if result != "done":
-            return fail(f"download: {result}")
-        result = client.run(transfer.Upload(client.known, 3, data))
-        return 0 if result == "done" else fail(f"upload: {result}")
+        try:
+            every_frame(client)
+            every_setting(client)
+            log = next(m for m in client.known.telecommands.values() if m.name == log_message())
+            client.telecommand(log, bytes(log.length))  # no logs during the transfers
+            files(client, int(size))
+            every_telecommand(client)
+        except Failed as failure:
+            print(failure, file=sys.stderr)
+            return 1
+    return 0
+
+
+def every_frame(client: Session) -> None:
+    for message in client.known.telemetry.values():
+        get(client, message)
+
+
+def every_setting(client: Session) -> None:
+    for message in client.known.telecommands.values():
+        if message.kind == CONFIGURATION:
+            raw = fresh(message) | {f.name: 1 for f in message.fields if f.type == "uint" and f.const is None}
+            data = codec.encode(ICD.node(message.node), message, raw)
+            outcome = send(client, message, data)
+            if outcome["event"] != "done" or get(client, message) != data:
+                raise Failed(f"{message.name} is not what was set: {outcome}")
+
+
+def files(client: Session, size: int) -> None:
+    result, data = download(client, 2, 1, size)
+    if result != "done":
+        raise Failed(f"download: {result}")
+    result = client.run(transfer.Upload(client.known, 3, data))
+    if result != "done":
+        raise Failed(f"upload: {result}")
+
+
+def every_telecommand(client: Session) -> None:
+    others = [m for m in client.known.telecommands.values() if m.kind != CONFIGURATION]
+    for message in sorted(others, key=lambda m: m.expects_reset):
+        data = codec.encode(ICD.node(message.node), message, fresh(message))
+        if message.expects_reset:
+            reset(client, message, data)
+        elif message.acknowledge:
+            outcome = send(client, message, data)
+            if outcome["event"] == "timeout" or (outcome["event"] == "refused" and outcome["reason"] is None):
+                raise Failed(f"{message.name}: {outcome}")
+        else:
+            silent(client, message, data)
+
+
+def silent(client: Session, message: Message, data: bytes) -> None:
+    """The node does not acknowledge it, but remembers that it was the last one. If it is lost nobody notices."""
+    form = client.known.polled
+    for _ in range(TRIES):
+        client.telecommand(message, data)
+        frame = get(client, form.message)
+        if codec.decode(ICD.node(form.message.node), form.message, frame)[form.id] == message.telecommand_id:
+            return
+    raise Failed(f"{message.name} does not arrive")
+
+
+def reset(client: Session, message: Message, data: bytes) -> None:
+    """The node restarts, and the program that starts the other one answers."""
+    starter = next(n for n in ICD.nodes if n.protocol.get("program_start", {}).get("application") == NODE)
+    client.telecommand(message, data)
+    found = client.identify()
+    if found is None or found[0]["node_type"] != starter.node_type:
+        raise Failed(f"{message.name} does not restart the node: {found}")
+
+
+def get(client: Session, message: Message) -> bytes:
+    frame = client.telemetry(message)
+    if frame is None:
+        raise Failed(f"{message.name} is not answered")
+    return frame
+
+
+def send(client: Session, message: Message, data: bytes) -> dict:
+    """A refusal with a code that the ICD does not have is a damaged acknowledge: it is asked again."""
+    for _ in range(TRIES):
+        outcome = client.telecommand(message, data, repeat=True)
+        if outcome["event"] != "refused" or outcome["reason"] is not None:
+            break
+    return outcome
 
 
 def log_message() -> str:
     return ICD.protocol_of(ICD.node(NODE))["unsolicited_log"]["configured_by"]["message"]
-
-
-def fail(text: str) -> int:
-    print(text, file=sys.stderr)
-    return 1
 
 
 if __name__ == "__main__":

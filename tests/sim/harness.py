@@ -10,9 +10,13 @@ it is expected to
 3. set every configuration message and read it back,
 4. download file 1 of type 2, which has that size,
 5. upload what it downloaded to destination 3,
+6. send every telecommand, those that restart the node last,
 
-and to end with 0. What it uploaded is held against the file, so both directions are proved at once. A client that takes longer than
-``--limit`` seconds hangs, which is a failure. The reference is ``python -m tests.sim.client``.
+and to end with 0. What it uploaded is held against the file, so both directions are proved at once; every frame must have been
+requested, and every telecommand sent. A telecommand that is refused for a reason that the ICD has is answered (such as one of the
+file transfer for which nothing is prepared), one without an answer is a failure; after one that restarts the node another program
+answers. Acknowledges carry no checksum: a refusal with a code that the ICD does not have is a damaged one, and worth asking again.
+A client that takes longer than ``--limit`` seconds hangs, which is a failure. The reference is ``python -m tests.sim.client``.
 """
 
 from __future__ import annotations
@@ -26,7 +30,8 @@ from pathlib import Path
 from random import Random
 from urllib.parse import urlsplit
 
-from tests.sim.device import simulator
+from tests.sim.device import ICD, simulator
+from tests.sim.tap import Tap, missing
 
 LOSSES = "0,1,10,30"
 
@@ -61,14 +66,18 @@ def run(
         options = ("--file", f"2:1={stored}", "--uploads", folder, "--loss", f"{loss}%", "--late", "400", *spoil)
         with simulator("--node", node, "--tcp", "0", *options) as (place, _):
             where = urlsplit(place)
-            words = [*client, str(where.hostname), str(where.port), str(size)]
-            try:
-                ended = subprocess.run(words, capture_output=True, text=True, timeout=limit)
-            except subprocess.TimeoutExpired:
-                return "hangs"
+            with Tap(str(where.hostname), int(where.port or 0)) as tap:
+                words = [*client, "127.0.0.1", str(tap.port), str(size)]
+                try:
+                    ended = subprocess.run(words, capture_output=True, text=True, timeout=limit)
+                except subprocess.TimeoutExpired:
+                    return "hangs"
         if ended.returncode:
             return f"ended with {ended.returncode}: {ended.stderr.strip() or ended.stdout.strip()}"
-        return None if uploaded.is_file() and uploaded.read_bytes() == data else "the uploaded file is another one"
+        if not uploaded.is_file() or uploaded.read_bytes() != data:
+            return "the uploaded file is another one"
+        never = missing(ICD, node, tap.messages(ICD, node))
+        return f"never sent: {', '.join(never)}" if never else None
 
 
 if __name__ == "__main__":

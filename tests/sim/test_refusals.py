@@ -39,9 +39,9 @@ def test_a_refusal_that_the_icd_does_not_know_is_told_and_asked_again(times):
     assert acknowledged == times + 1
 
 
-def test_a_refusal_that_the_icd_does_not_know_ends_a_procedure_at_last():
+def test_a_refusal_that_the_icd_does_not_know_is_a_time_out_at_last():
     result, heard, acknowledged = uploading(ODD, 100)
-    assert result == "refused"
+    assert result == "timeout"
     assert [event["code"] for event in heard] == [ODD] * 4 and acknowledged == 4
 
 

@@ -85,35 +85,36 @@ class Session:
     def run(self, procedure: Procedure, progress: Callable[[], None] | None = None) -> str:
         """Runs a procedure to its end; its result. Raises `PortError`.
 
-        A request that is refused with a code that the ICD does not have is sent again, if it may be, as the acknowledge may
-        be damaged; ``on_event`` is told of every such refusal.
+        A refusal with a code that the ICD does not have is a damaged acknowledge, which tells nothing: what may be repeated is
+        asked again, and else it is as if none had come. ``on_event`` is told of each, with its code.
         """
         waiting: list[dict] = []
         asked: Request | None = None
-        left = 0
+        left, again = 0, False
         while procedure.result is None:
-            request = procedure.next(self.now)
+            request = asked if again else procedure.next(self.now)
+            if request is not None and not again:
+                asked, left = request, self.machine.settings.retries
+            again = False
             if progress:
                 progress()
             if request is not None:
-                asked, left = request, self.machine.settings.retries
                 waiting = self.machine.start(self.now, request)
                 self._write()
             elif procedure.result is None:
                 times = [at for at in (procedure.deadline, self.machine.deadline) if at is not None]
                 waiting = self._wait(min(times, default=None))
                 self._write()
-            while waiting:
-                event, *waiting = waiting
-                is_unknown = _is_unknown(event)
-                if is_unknown or event["event"] not in (*OUTCOMES, "packet"):
+            for event in waiting:
+                damaged = _is_damaged(event)
+                if damaged:
                     self.on_event(event)
-                if is_unknown and asked is not None and asked.repeat and left > 0:
-                    left -= 1
-                    waiting += self.machine.start(self.now, asked)
-                    self._write()
-                else:
-                    procedure.event(self.now, event)
+                if damaged and asked is not None and asked.repeat and left > 0:
+                    again, left = True, left - 1
+                    continue
+                procedure.event(self.now, {**event, "event": "timeout"} if damaged else event)
+                if event["event"] not in (*OUTCOMES, "packet"):
+                    self.on_event(event)
         return procedure.result
 
     def listen(self, until: int) -> Iterator[dict]:
@@ -139,6 +140,6 @@ class Session:
                 self.port.write(one)
 
 
-def _is_unknown(event: dict) -> bool:
+def _is_damaged(event: dict) -> bool:
     """Whether it is a refusal with a code that the ICD does not have."""
     return event["event"] == "refused" and event["code"] is not None and event["reason"] is None

@@ -31,8 +31,8 @@
 //!
 //! Nothing here panics or allocates, whatever the bytes.
 //!
-//! Features, none of them on by default: `std` (`std::error::Error` for [`Error`]), `serde`
-//! (`Serialize` and `Deserialize`; enumerations as their number), `defmt` (`defmt::Format`).
+//! Features, none of them on by default: `std` (`std::error::Error` for errors, and `wire::Session`),
+//! `serde` (`Serialize` and `Deserialize`; enumerations as their number), `defmt` (`defmt::Format`).
 
 #![no_std]
 #![forbid(unsafe_code)]

@@ -13,6 +13,7 @@ from icdgen.backends.rust.messages import MessageRow
 from icdgen.icd.model import Icd, Node
 
 CRATE = "icd"
+SUPPORT = ("array", "bytes", "mod", "scale")
 
 
 class RustBackend:
@@ -33,7 +34,8 @@ class RustBackend:
         yield PurePosixPath("src/lib.rs"), render(
             "lib.rs.j2", nodes=[nodes.Summary(node) for node in icd.nodes], wired=bool(wired), **common
         )
-        yield PurePosixPath("src/support.rs"), render("support.rs.j2", **common)
+        for name in SUPPORT:
+            yield PurePosixPath(f"src/support/{name}.rs"), render(f"support/{name}.rs.j2", **common)
         rows = {node.name: message_rows(icd, node, enums) for node in icd.nodes}
         for node in icd.nodes:
             folder = PurePosixPath("src") / node.name

@@ -13,10 +13,25 @@ from icdgen.icd.model import CONFIGURATION, Icd, Message
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Crc, Facts
 
-FILES = ("bits", "crc", "error", "event", "i2c", "identity", "log", "message", "mod", "request", "time", "uart")
+FILES = (
+    "bits",
+    "crc",
+    "error",
+    "event",
+    "i2c",
+    "identity",
+    "log",
+    "message",
+    "mod",
+    "request",
+    "session",
+    "time",
+    "uart",
+)
 FOLDERS = {
     "can": ("joiner", "mod", "splitter", "transaction"),
-    "client": ("machine", "mod"),
+    "client": ("mod",),
+    "client/machine": ("input", "mod", "output"),
     "files": ("download", "erase", "hole_map", "index", "list", "mod", "poll", "procedure", "upload"),
     "link": ("can", "logs", "mod", "steps", "transfer"),
 }

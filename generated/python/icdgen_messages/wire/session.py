@@ -70,7 +70,8 @@ class Session:
         """Runs a procedure to its end; ``progress`` is told of bytes, and of how many.
 
         A request that is refused with a code that the ICD does not have is sent again, if
-        it may be, as the acknowledge may be damaged. Raises `FailedError`.
+        it may be, as the acknowledge may be damaged, and else taken for a time-out. Raises
+        `FailedError`.
         """
         events: list[Event] = []
         shown: tuple[int, int | None] | None = None
@@ -87,6 +88,7 @@ class Session:
                         is_again = bool(asked and asked.repeat) and left > 0
                         if is_again:
                             continue
+                        event = Timeout(event.id, event.attempts)
                 procedure.event(self._now(), event)
             events = []
             if is_again:

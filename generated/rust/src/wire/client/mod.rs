@@ -8,6 +8,7 @@ use self::machine::Machine;
 use super::bits::head;
 use super::can::{self, Joiner, Packet};
 use super::event::Event;
+use super::files::Procedure;
 use super::link::{Bus, Link, Settings};
 use super::request::{Request, Started};
 use super::uart::{self, Decoder, Encoder};
@@ -162,6 +163,31 @@ impl<const N: usize> Client<N> {
     /// on or its output has not been taken, [`Error::Length`] if the data have another length.
     pub fn start(&mut self, now: u32, request: &Request<'_>) -> Result<Started, Error> {
         self.machine.start(now, request)
+    }
+
+    /// Begins the next request of a procedure, if it has one and no other is going on; says whether it
+    /// did. What nothing will answer, the procedure is told at once.
+    ///
+    /// # Errors
+    ///
+    /// As [`Client::start`].
+    pub fn advance(
+        &mut self,
+        now: u32,
+        procedure: &mut (impl Procedure + ?Sized),
+    ) -> Result<bool, Error> {
+        if self.machine.is_busy() {
+            return Ok(false);
+        }
+        let request = match procedure.next(now) {
+            Some(request) => request,
+            None => return Ok(false),
+        };
+        let (id, attempts, data) = (request.id, 1, &[]);
+        if self.start(now, &request)? == Started::Done {
+            procedure.event(now, &Event::Done { id, attempts, data });
+        }
+        Ok(true)
     }
 
     /// UART: the next bytes to send, until there are none. No piece holds bytes of two messages.

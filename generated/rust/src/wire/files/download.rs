@@ -80,7 +80,7 @@ impl<'a, F: FnMut(u32, &[u8])> Download<'a, F> {
             return Err(Error::Length { expected, actual });
         }
         Ok(Self {
-            core: Core::new(),
+            core: Core::new(link),
             link,
             files,
             form: files.download.as_ref().ok_or(Error::Unsupported)?,

@@ -24,9 +24,14 @@ struct Erasure {
 }
 
 impl Erasure {
-    const fn new(form: &'static ErasureForm, values: [(Role, u32); 3], polls: bool) -> Self {
+    const fn new(
+        link: &Link,
+        form: &'static ErasureForm,
+        values: [(Role, u32); 3],
+        polls: bool,
+    ) -> Self {
         Self {
-            core: Core::new(),
+            core: Core::new(link),
             form,
             state: State::Begin,
             values,
@@ -96,7 +101,7 @@ impl Erase {
             (Role::Counter, counter.into()),
             (Role::All, all.into()),
         ];
-        Ok(Self(Erasure::new(form, values, all)))
+        Ok(Self(Erasure::new(link, form, values, all)))
     }
 }
 
@@ -114,7 +119,7 @@ impl Format {
         let files = link.files.as_ref().ok_or(Error::Unsupported)?;
         let form = files.format.as_ref().ok_or(Error::Unsupported)?;
         let nothing = (Role::All, 0);
-        Ok(Self(Erasure::new(form, [nothing; 3], true)))
+        Ok(Self(Erasure::new(link, form, [nothing; 3], true)))
     }
 }
 

@@ -54,7 +54,7 @@ impl<F: FnMut(Entry)> List<F> {
     pub fn new(link: &'static Link, on_entry: F) -> Result<Self, Error> {
         let files = link.files.as_ref().ok_or(Error::Unsupported)?;
         Ok(Self {
-            core: Core::new(),
+            core: Core::new(link),
             form: files.list.as_ref().ok_or(Error::Unsupported)?,
             retries: link.client.retries.into(),
             state: State::Begin,

@@ -5,13 +5,17 @@
 //! A procedure says which request comes next and is told what became of it:
 //!
 //! ```text
-//! loop {
-//!     if let Some(request) = procedure.next(now) { client.start(now, &request)?; }
-//!     ... send client.output(), wait for input until client.deadline() or procedure.deadline() ...
+//! let end = loop {
+//!     while client.advance(now, &mut procedure)? { ... send client.output() ... }
+//!     if let Some(end) = procedure.result() { break end; }
+//!     ... wait for input until client.deadline() or procedure.deadline(), whichever is earlier ...
 //!     client.received(now, input, |event| procedure.event(now, &event));
-//!     if let Some(end) = procedure.result() { break; }
-//! }
+//!     ... send client.output() ...
+//! };
 //! ```
+//!
+//! A refusal with a code that the ICD does not have is taken for a damaged acknowledge, which tells
+//! nothing: what may be repeated is asked again, as often as the client would.
 
 mod download;
 mod erase;

@@ -4,7 +4,7 @@
 
 use super::super::bits::{head, part_mut, reached};
 use super::super::event::Event;
-use super::super::link::{Role, Step};
+use super::super::link::{Link, Role, Step};
 use super::super::links::STEP_BYTES;
 use super::super::request::{Direction, Request};
 
@@ -66,16 +66,20 @@ pub struct Core {
     pub now: u32,
     want: Want,
     asked: bool,
+    retries: u8,
+    damaged: u8, // acknowledges of the request that were
     result: Option<End>,
     data: [u8; STEP_BYTES],
 }
 
 impl Core {
-    pub(super) const fn new() -> Self {
+    pub(super) const fn new(link: &Link) -> Self {
         Self {
             now: 0,
             want: Want::Begin,
             asked: false,
+            retries: link.client.retries,
+            damaged: 0,
             result: None,
             data: [0; STEP_BYTES],
         }
@@ -117,6 +121,13 @@ impl Core {
         }
     }
 
+    /// Whether the same request is made once more, after a damaged acknowledge.
+    fn asks_again(&mut self) -> bool {
+        let again = matches!(self.want, Want::Ask(.., true)) && self.damaged < self.retries;
+        self.damaged += u8::from(again);
+        again
+    }
+
     pub(super) fn end(&mut self, end: End) {
         self.want = Want::Nothing;
         self.result = Some(end);
@@ -132,6 +143,18 @@ impl Core {
         }
         None
     }
+}
+
+/// Whether it is a refusal with a code that the ICD does not have: a damaged acknowledge.
+const fn is_damaged(event: &Event<'_>) -> bool {
+    matches!(
+        event,
+        Event::Refused {
+            code: Some(_),
+            reason: None,
+            ..
+        }
+    )
 }
 
 /// A procedure as a step machine.
@@ -177,8 +200,10 @@ impl<T: Run> Procedure for T {
 
     fn event(&mut self, now: u32, event: &Event<'_>) {
         self.core_mut().now = now;
+        let damaged = is_damaged(event);
         let answer = match event {
             Event::Done { data, .. } => Answer::Done(data),
+            Event::Refused { .. } if damaged => Answer::Timeout,
             Event::Refused { .. } => Answer::Refused,
             Event::Timeout { .. } => Answer::Timeout,
             Event::Packet { number, data } => return self.packet(*number, data),
@@ -187,6 +212,10 @@ impl<T: Run> Procedure for T {
         let core = self.core_mut();
         if core.asked {
             core.asked = false;
+            if damaged && core.asks_again() {
+                return;
+            }
+            core.damaged = 0;
             self.resume(Some(answer));
         }
     }

@@ -52,7 +52,7 @@ impl<'a> Upload<'a> {
     pub fn new(link: &'static Link, destination: u8, data: &'a [u8]) -> Result<Self, Error> {
         let files = link.files.as_ref().ok_or(Error::Unsupported)?;
         Ok(Self {
-            core: Core::new(),
+            core: Core::new(link),
             link,
             files,
             form: files.upload.as_ref().ok_or(Error::Unsupported)?,

@@ -1,0 +1,69 @@
+"""Makes and builds the C client of `tests.sim.harness` from what is generated.
+
+python -m tests.c.sim_client FOLDER     builds it there and prints its path
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import jinja2
+
+from icdgen.backends.c.plan import Plan, Planner
+from icdgen.icd.model import CONFIGURATION, Icd
+from icdgen.protocol import facts
+from tests.c import harness
+from tests.conformance import ROOT
+
+NODE = "cubeacp"
+
+
+def source(icd: Icd, node_name: str = NODE) -> str:
+    """The client's source."""
+    node, planner = icd.node(node_name), Planner(icd)
+    known = facts.of(icd, node)
+    plans = {m.name: planner.plan(m) for m in icd.messages_of(node)}
+    telecommands = [plans[m.name] for m in known.telecommands.values()]
+    starters = [one.name for one in icd.nodes if one.protocol.get("program_start", {}).get("application") == node.name]
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(harness.HERE),
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    return environment.get_template("sim_client.c.j2").render(
+        node=node.name,
+        telemetry=[plans[m.name] for m in known.telemetry.values()],
+        settings=[(plan, _ones(plan)) for plan in telecommands if plan.message.kind == CONFIGURATION],
+        others=sorted(
+            (plan for plan in telecommands if plan.message.kind != CONFIGURATION),
+            key=lambda plan: plan.message.expects_reset,
+        ),
+        log=plans[icd.protocol_of(node)["unsolicited_log"]["configured_by"]["message"]],
+        last=plans[known.polled.message.name],
+        last_id=next(m.name for m in plans[known.polled.message.name].members if m.field.name == known.polled.id),
+        identification=plans[known.identification.message.name],
+        restarted=(starters or [node.name])[0],
+    )
+
+
+def _ones(plan: Plan) -> list[str]:
+    """Members that are set to 1, which any of them can hold."""
+    return [m.name for m in plan.members if m.field.type in ("uint", "int", "bool") and m.field.const is None]
+
+
+def build(folder: Path) -> Path:
+    """The program, under all warnings and with sanitizers."""
+    headers = harness.generate(harness.shipped(), folder)
+    main = folder / "sim_client.c"
+    main.write_text(source(harness.shipped()), encoding="utf-8")
+    flags = ("-std=c99", "-D_POSIX_C_SOURCE=200809L", "-O1", *harness.WARNINGS, *harness.SANITIZERS)
+    places = (f"-I{headers}", f"-I{harness.HERE}", f"-I{ROOT / 'examples'}")
+    return harness.compile(main, *flags, *places, output=folder / "sim_client")
+
+
+if __name__ == "__main__":
+    target = Path(sys.argv[1])
+    target.mkdir(parents=True, exist_ok=True)
+    print(build(target))

@@ -1,0 +1,130 @@
+/* A connection with a simulated node: asks and waits, and runs procedures. Included by sim_client.c alone. */
+#ifndef SIM_SESSION_H
+#define SIM_SESSION_H
+
+#include "port.h"
+
+typedef struct {
+    int port;
+    icd_link_t link; /* that of the node, with short waits: the simulator is never slow */
+    icd_download_form_t download;
+    icd_upload_form_t upload;
+    icd_client_t client;
+    icd_procedure_t *procedure; /* that is running, or NULL */
+    icd_event_t outcome;        /* of the last request */
+    bool ended;
+    uint8_t *buffer;
+    uint8_t *frame; /* of the outcome */
+} session_t;
+
+static inline void session_on_event(void *context, const icd_event_t *event)
+{
+    session_t *const session = (session_t *)context;
+    if (session->procedure != NULL) {
+        icd_procedure_event(session->procedure, port_now(), event);
+    } else if (event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_REFUSED || event->kind == ICD_EVENT_TIMEOUT) {
+        session->outcome = *event;
+        session->outcome.data = session->frame;
+        session->ended = true;
+        if (event->length != 0) {
+            memcpy(session->frame, event->data, event->length);
+        }
+    }
+}
+
+static inline void session_open(session_t *session, const icd_link_t *link, const char *host, const char *number)
+{
+    const icd_client_settings_t settings = {150, 4, 5, 2000};
+    memset(session, 0, sizeof *session);
+    session->link = *link;
+    session->download = *link->download;
+    session->upload = *link->upload;
+    session->download.silence = 60;
+    session->download.poll_interval = 5;
+    session->upload.poll_interval = 5;
+    session->link.download = &session->download;
+    session->link.upload = &session->upload;
+    session->link.client = settings;
+    session->buffer = (uint8_t *)malloc(icd_client_bytes(link));
+    session->frame = (uint8_t *)malloc(link->longest);
+    if (session->buffer == NULL || session->frame == NULL) {
+        port_failed("no memory");
+    }
+    icd_client_init(&session->client, &session->link, ICD_BUS_UART, session->buffer, icd_client_bytes(link));
+    session->port = port_open(host, number);
+}
+
+static inline void session_close(session_t *session)
+{
+    close(session->port);
+    free(session->buffer);
+    free(session->frame);
+}
+
+/* Waits until the client or the procedure wants to go on. */
+static inline void session_wait(session_t *session)
+{
+    uint32_t until = 0, other;
+    const bool asked = icd_client_deadline(&session->client, &until);
+    if (session->procedure != NULL && icd_procedure_deadline(session->procedure, &other) &&
+        (!asked || (int32_t)(other - until) < 0)) {
+        until = other;
+    }
+    port_receive(session->port, &session->client, until, session_on_event, session);
+    port_send(session->port, &session->client);
+}
+
+/* What became of a request; the frame is in `frame`. */
+static inline const icd_event_t *session_ask(session_t *session, const icd_request_t *request)
+{
+    session->ended = false;
+    session->outcome.kind = ICD_EVENT_TIMEOUT;
+    if (icd_client_start(&session->client, port_now(), request, session_on_event, session) == ICD_OK) {
+        port_send(session->port, &session->client);
+        while (!session->ended) {
+            session_wait(session);
+        }
+    }
+    return &session->outcome;
+}
+
+static inline const icd_event_t *session_get(session_t *session, uint8_t id)
+{
+    icd_request_t request;
+    memset(&request, 0, sizeof request);
+    request.direction = ICD_TELEMETRY;
+    request.id = id;
+    return session_ask(session, &request);
+}
+
+/* A refusal with a code that the ICD does not have is a damaged acknowledge: it is asked again. */
+static inline const icd_event_t *session_send(session_t *session, uint8_t id, const uint8_t *data, size_t length)
+{
+    const icd_event_t *outcome;
+    icd_request_t request = {ICD_TELECOMMAND, id, true, data, length};
+    uint32_t left = session->link.client.retries;
+    do {
+        outcome = session_ask(session, &request);
+    } while (outcome->kind == ICD_EVENT_REFUSED && outcome->reason == ICD_REASON_UNKNOWN && left-- != 0);
+    return outcome;
+}
+
+static inline icd_result_t session_run(session_t *session, icd_procedure_t *procedure)
+{
+    session->procedure = procedure;
+    while (procedure->result == ICD_RUNNING) {
+        uint32_t later;
+        if (icd_procedure_step(procedure, &session->client, port_now(), session_on_event, session) != ICD_OK) {
+            break;
+        }
+        port_send(session->port, &session->client);
+        /* A request that nothing acknowledges is done already: the next one may follow at once. */
+        if (session->client.state != ICD_CLIENT_IDLE || icd_procedure_deadline(procedure, &later)) {
+            session_wait(session);
+        }
+    }
+    session->procedure = NULL;
+    return procedure->result;
+}
+
+#endif /* SIM_SESSION_H */

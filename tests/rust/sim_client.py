@@ -1,0 +1,114 @@
+"""Makes and builds the client of `tests.sim.harness` from what is generated.
+
+python -m tests.rust.sim_client FOLDER     builds it there and prints its path
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import jinja2
+
+from icdgen import codec
+from icdgen.backends.rust import message_rows, names
+from icdgen.backends.rust.messages import MessageRow
+from icdgen.icd.model import CONFIGURATION, Field, Icd, Message
+from icdgen.protocol import facts
+from icdgen.sim.values import fresh
+from tests.rust import harness
+from tests.rust.tools import STD, Toolchain
+
+HERE = Path(__file__).parent
+NODE = "cubeacp"
+
+
+class Row(NamedTuple):
+    """A message: its type, and the data that are sent, as a literal."""
+
+    type: str
+    data: str
+
+
+class Place(NamedTuple):
+    """A field of a frame."""
+
+    type: str
+    field: str
+
+
+def source(icd: Icd, node_name: str = NODE) -> str:
+    """The client's main file."""
+    node, known = icd.node(node_name), facts.of(icd, icd.node(node_name))
+    enums = names.Enums(icd)
+    rows = {row.message.name: row for one in (*icd.included(node), node) for row in message_rows(icd, one, enums)}
+
+    def of(messages, values) -> list[Row]:
+        return [_row(icd, rows[message.name], values(message)) for message in messages]
+
+    commands = [m for m in known.telecommands.values() if m.kind != CONFIGURATION]
+    starters = [one.name for one in icd.nodes if one.protocol.get("program_start", {}).get("application") == node.name]
+    last, log = known.polled, icd.protocol_of(node).get("unsolicited_log", {}).get("configured_by", {}).get("message")
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE), trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
+    )
+    return environment.get_template("sim_client.rs.j2").render(
+        node=node.name,
+        telemetry=of(known.telemetry.values(), fresh),
+        settings=of((m for m in known.telecommands.values() if m.kind == CONFIGURATION), numbered),
+        acknowledged=of((m for m in commands if m.acknowledge and not m.expects_reset), fresh),
+        silent=of((m for m in commands if not m.acknowledge and not m.expects_reset), fresh),
+        resets=of((m for m in commands if m.expects_reset), fresh),
+        last=Place(_type(rows[last.message.name]), _field(rows[last.message.name], last.id)),
+        identification=_type(rows[known.identification.message.name]),
+        log=log and _type(rows[log]),
+        restarted=starters[0] if starters else None,
+    )
+
+
+def build(folder: Path) -> list[str]:
+    """The command that starts the client, built in that folder."""
+    icd, tools = harness.shipped(), Toolchain("default")
+    shutil.rmtree(folder / "rust", ignore_errors=True)  # of an earlier build
+    library = tools.library(harness.generate(icd, folder), folder, "0", *STD)  # with checks of arithmetic
+    main = folder / "sim_client.rs"
+    main.write_text(source(icd), encoding="utf-8")
+    shutil.copy(HERE / "sim_device.rs", folder)
+    return [str(tools.program(main, library, folder / "sim_client"))]
+
+
+def numbered(message: Message) -> dict[str, int | bytes]:
+    """A message in which hardly two fields have the same value, so that none can be taken for another."""
+    raw = fresh(message)
+    for number, field in enumerate(message.fields, 1):
+        if field.const is None:
+            raw[field.name] = _numbered(field, number, raw[field.name])
+    return raw
+
+
+def _numbered(field: Field, number: int, otherwise: int | bytes) -> int | bytes:
+    if field.type == "bytes":
+        return bytes((number + at) % 256 for at in range(field.bits // 8))
+    if field.type == "float":
+        return codec.float_bits(field, float(number))
+    if field.type in ("uint", "int", "bool"):
+        return number % (field.raw_max + 1)
+    return otherwise
+
+
+def _row(icd: Icd, row: MessageRow, raw: dict[str, int | bytes]) -> Row:
+    return Row(_type(row), f"&{list(codec.encode(row.node, row.message, raw))}")
+
+
+def _type(row: MessageRow) -> str:
+    return f"icd::{row.node.name}::{row.type}"
+
+
+def _field(row: MessageRow, name: str) -> str:
+    return next(one.name for one in row.fields if one.model.name == name)
+
+
+if __name__ == "__main__":
+    print(*build(Path(sys.argv[1])))

@@ -1,0 +1,84 @@
+//! A session with a simulated node: in a hurry, and patient with what happens to acknowledges.
+
+use icd::wire::session::Failure;
+use icd::wire::{Error, Link, Session, Settings, Telecommand};
+use std::net::TcpStream;
+use std::ops::{Deref, DerefMut};
+use std::time::Duration;
+
+/// For a device that is never slow, on a machine that may be.
+const SETTINGS: Settings = Settings {
+    reply_timeout_ms: 150,
+    retries: 9,
+    poll_interval_ms: 5,
+    poll_timeout_ms: 2000,
+};
+/// How often something is tried that fails, for the acknowledge may have been lost or spoilt.
+pub const TRIES: u32 = 10;
+
+pub type Problem = Box<dyn std::error::Error>;
+
+pub struct Device<const N: usize> {
+    pub link: &'static Link,
+    session: Session<TcpStream, N>,
+}
+
+impl<const N: usize> Device<N> {
+    pub fn connect(place: &str, link: &Link) -> Result<Self, Problem> {
+        let port = TcpStream::connect(place)?;
+        port.set_nodelay(true)?;
+        port.set_read_timeout(Some(Duration::from_millis(5)))?;
+        let link: &'static Link = Box::leak(Box::new(hasty(*link)));
+        let session = Session::new(link, port)?.with_settings(SETTINGS);
+        Ok(Self { link, session })
+    }
+
+    /// Sends a telecommand until it is acknowledged, or refused twice: an acknowledge may be lost or spoilt.
+    pub fn insist<M: Telecommand>(&mut self, message: &M) -> Result<(), Failure> {
+        let mut refused = false;
+        for _ in 1..TRIES {
+            match self.send(message) {
+                Err(Failure::Refused { reason: Some(_), .. }) if !refused => refused = true,
+                Err(Failure::Refused { reason: None, .. } | Failure::Timeout { .. }) => {}
+                outcome => return outcome,
+            }
+        }
+        self.send(message)
+    }
+}
+
+impl<const N: usize> Deref for Device<N> {
+    type Target = Session<TcpStream, N>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.session
+    }
+}
+
+impl<const N: usize> DerefMut for Device<N> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.session
+    }
+}
+
+/// The data of a message.
+pub fn data_of<M: Telecommand>(message: &M) -> Result<Vec<u8>, Error> {
+    let mut buffer = vec![0; 1 << 16];
+    let size = message.write_frame(&mut buffer)?;
+    buffer.truncate(size);
+    Ok(buffer)
+}
+
+/// The facts with short waits, for a device that is never slow.
+fn hasty(mut link: Link) -> Link {
+    if let Some(files) = &mut link.files {
+        if let Some(download) = &mut files.download {
+            download.silence_ms = 60;
+            download.poll_interval_ms = 5;
+        }
+        if let Some(upload) = &mut files.upload {
+            upload.poll_interval_ms = 5;
+        }
+    }
+    link
+}

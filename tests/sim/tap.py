@@ -1,0 +1,67 @@
+"""Stands between a client and the simulator, and keeps what the client sends."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from types import TracebackType
+
+from icdgen.icd.model import Icd
+from icdgen.protocol import facts, uart
+
+
+class Tap:
+    """Takes one connection on `port`, and passes everything on in both directions."""
+
+    def __init__(self, host: str, port: int) -> None:
+        self.target = (host, port)
+        self.sent = bytearray()
+        self.ends: list[socket.socket] = []
+        self.server = socket.create_server(("127.0.0.1", 0))
+        self.port = self.server.getsockname()[1]
+        threading.Thread(target=self._serve, daemon=True).start()
+
+    def __enter__(self) -> Tap:
+        return self
+
+    def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
+        for end in (self.server, *self.ends):
+            end.close()
+
+    def messages(self, icd: Icd, node: str) -> list[bytes]:
+        """What the client sent, id first."""
+        known = facts.of(icd, icd.node(node))
+        decoder = uart.Decoder(known.framing, known.longest_telecommand)
+        return [event.message for event in decoder.feed(bytes(self.sent)) if event.event == uart.MESSAGE]
+
+    def _serve(self) -> None:
+        try:
+            client, _ = self.server.accept()
+        except OSError:  # nobody came
+            return
+        device = socket.create_connection(self.target)
+        self.ends = [client, device]
+        for end in self.ends:
+            end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        threading.Thread(target=_pass, args=(device, client, bytearray()), daemon=True).start()
+        _pass(client, device, self.sent)
+
+
+def _pass(source: socket.socket, target: socket.socket, kept: bytearray) -> None:
+    try:
+        while data := source.recv(65536):
+            kept += data
+            target.sendall(data)
+        target.shutdown(socket.SHUT_WR)
+    except OSError:  # one of them is gone
+        return
+
+
+def missing(icd: Icd, node: str, messages: list[bytes]) -> list[str]:
+    """Names of what was never requested or never sent; also of what came too late, after a reset."""
+    known = facts.of(icd, icd.node(node))
+    ids = [message[0] for message in messages]
+    resets = {id for id, message in known.telecommands.items() if message.expects_reset}
+    first = next((at for at, id in enumerate(ids) if id in resets), len(ids))
+    before = {*ids[:first], *resets.intersection(ids)}
+    return [m.name for id, m in (known.telemetry | known.telecommands).items() if id not in before]
