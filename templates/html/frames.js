@@ -51,11 +51,15 @@ const icdgenFrames = (() => {
     return (facts.reflect_out ? mirrored(value, 8) : value) ^ facts.xor_out;
   }
 
+  /** The checksum of a message, over the id too where the device says so. */
+  const checksum = (facts, id, data) => crc(facts, facts.covers_id ? [id, ...data] : data);
+
   /** The message as it goes over the wire, with framing; `check` appends the checksum. */
   function framed(wire, data, check) {
     const [escape, start, end, doubled] = wire.framing;
-    const body = [wire.id, ...data, ...(check ? [crc(wire.crc[0], data)] : [])];
-    return Uint8Array.from([escape, start, ...body.flatMap((byte) => (byte === escape ? [escape, doubled] : [byte])), escape, end]);
+    const body = [wire.id, ...data, ...(check ? [checksum(wire.crc[0], wire.id, data)] : [])];
+    const escaped = (byte, at) => (byte === escape && (at > 0 || !wire.plain_id) ? [escape, doubled] : [byte]);
+    return Uint8Array.from([escape, start, ...body.flatMap(escaped), escape, end]);
   }
 
   /** Id and data between the framing; null where there is none. Throws an Error where it is broken. */
@@ -65,7 +69,7 @@ const icdgenFrames = (() => {
     if (bytes[0] !== escape || bytes[1] !== start) return null;
     const body = [];
     for (let at = 2; at < bytes.length; at += 1) {
-      if (bytes[at] !== escape) {
+      if (bytes[at] !== escape || (at === 2 && wire.plain_id)) {
         body.push(bytes[at]);
         continue;
       }
@@ -88,18 +92,19 @@ const icdgenFrames = (() => {
       remarks.push(`framing with id ${body[0]} removed`);
       data = Uint8Array.from(body.slice(1));
     }
-    const checked = (some) => some.length > 0 && wire.crc.some((facts) => crc(facts, some.slice(0, -1)) === some[some.length - 1]);
-    if (data.length === length + 1 && checked(data)) {
+    const id = body ? body[0] : wire.id;
+    const checked = (some, of) => some.length > 0 && wire.crc.some((facts) => checksum(facts, of, some.slice(0, -1)) === some[some.length - 1]);
+    if (data.length === length + 1 && checked(data, id)) {
       remarks.push("CRC is right");
       data = data.slice(0, length);
     } else if (!body && data.length === length + 1 && wire.ids.includes(data[0])) {
       remarks.push(`id ${data[0]} removed`);
       data = data.slice(1);
-    } else if (!body && data.length === length + 2 && wire.ids.includes(data[0]) && checked(data.slice(1))) {
+    } else if (!body && data.length === length + 2 && wire.ids.includes(data[0]) && checked(data.slice(1), data[0])) {
       remarks.push(`id ${data[0]} removed`, "CRC is right");
       data = data.slice(1, -1);
     } else if (data.length === length + 1 && wire.crc.length) {
-      const right = crc(wire.crc[0], data.slice(0, length));
+      const right = checksum(wire.crc[0], id, data.slice(0, length));
       throw new Error(`one byte too many: as CRC it would have to be ${hex([right])}, not ${hex([data[length]])}`);
     }
     return { data, remarks };

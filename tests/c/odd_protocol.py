@@ -28,6 +28,9 @@ def _changed(node: Node) -> Node:
         files["hole_map"] |= {"bit_order": "msb0", "received": 0, "beyond_end": 0}
         files["download"]["checksum_covers_fill"] = True
         files["upload"]["checksum_covers_fill"] = False
+    for part in protocol.get("msdos_time", {}).get("parts", ()):
+        if part["name"] == "hour":
+            part["bits"] = 4
     if "crc8" in protocol:
         protocol["crc8"] |= {"reflect_in": True, "reflect_out": True, "covers_id": True}
         protocol["crc8"].pop("empty", None)

@@ -213,6 +213,27 @@ def table(results: list[Result]) -> str:
     return "\n".join(lines)
 
 
+def chosen(parser: argparse.ArgumentParser, given: str, languages: dict[str, Language]) -> list[Language]:
+    """The languages of ``--lang``. Ends the program for one that does not exist or whose tools are not installed."""
+    names = given.split(",")
+    unknown = [name for name in names if name not in languages]
+    if unknown:
+        parser.error(f"unknown language {unknown[0]}; there are {', '.join(languages)}")
+    missing = {tool for name in names for tool in languages[name].missing()}
+    if missing:
+        parser.error(f"not installed: {', '.join(sorted(missing))}")
+    return [languages[name] for name in names]
+
+
+def told(results: list[Result]) -> int:
+    """Prints the results; the status that they end with."""
+    for result in results:
+        for text in result.shown:
+            print(f"{result.name}: {text}")
+    print(table(results))
+    return 1 if any(result.differences for result in results) else 0
+
+
 def main(arguments: list[str] | None = None) -> int:
     languages = all_languages()
     parser = argparse.ArgumentParser(prog="python -m tests.conformance.run", description=__doc__)
@@ -226,13 +247,7 @@ def main(arguments: list[str] | None = None) -> int:
     )
     parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
     options = parser.parse_args(arguments)
-    names = options.lang.split(",")
-    unknown = [name for name in names if name not in languages]
-    if unknown:
-        parser.error(f"unknown language {unknown[0]}; there are {', '.join(languages)}")
-    missing = {tool for name in names for tool in languages[name].missing()}
-    if missing:
-        parser.error(f"not installed: {', '.join(sorted(missing))}")
+    asked = chosen(parser, options.lang, languages)
     try:
         icd = icd_of(options.icds)
         committed = options.vectors or (COMMITTED if COMMITTED.is_dir() and not options.icds else None)
@@ -240,15 +255,11 @@ def main(arguments: list[str] | None = None) -> int:
         absent = [node.name for node in icd.nodes if node.name not in files]
         if absent:
             raise ValueError(f"{committed} has no vectors of {absent[0]}")
-        results = run([languages[name] for name in names], icd, files, options.frames, options.seed)
+        results = run(asked, icd, files, options.frames, options.seed)
     except (BuildError, ValueError) as error:
         print(error, file=sys.stderr)
         return 2
-    for result in results:
-        for text in result.shown:
-            print(f"{result.name}: {text}")
-    print(table(results))
-    return 1 if any(result.differences for result in results) else 0
+    return told(results)
 
 
 if __name__ == "__main__":

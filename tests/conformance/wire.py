@@ -19,7 +19,7 @@ from tests.conformance.driver import Answering, InProcess, Testee
 from tests.conformance.icds import COMMITTED, icd_of
 from tests.conformance.languages import REFERENCE, SELFTEST, Language, all_languages
 from tests.conformance.reference import Reference
-from tests.conformance.run import Batch, Result, drive, table
+from tests.conformance.run import Batch, Result, chosen, drive, told
 
 VECTORS = COMMITTED / "protocol.json"
 
@@ -88,26 +88,16 @@ def main(arguments: list[str] | None = None) -> int:
     )
     parser.add_argument("icds", nargs="*", type=Path, help="ICDs: files or folders (default: icd/)")
     options = parser.parse_args(arguments)
-    names = options.lang.split(",")
-    unknown = [name for name in names if name not in languages]
-    if unknown:
-        parser.error(f"unknown language {unknown[0]}; there are {', '.join(languages)}")
-    missing = {tool for name in names for tool in languages[name].missing()}
-    if missing:
-        parser.error(f"not installed: {', '.join(sorted(missing))}")
+    asked = chosen(parser, options.lang, languages)
     try:
         icd = icd_of(options.icds)
         committed = VECTORS.is_file() and not options.icds
         files = json.loads(VECTORS.read_text(encoding="utf-8")) if committed else vectors_of(icd)
-        results = run([languages[name] for name in names], icd, files)
+        results = run(asked, icd, files)
     except (BuildError, ValueError) as error:
         print(error, file=sys.stderr)
         return 2
-    for result in results:
-        for text in result.shown:
-            print(f"{result.name}: {text}")
-    print(table(results))
-    return 1 if any(result.differences for result in results) else 0
+    return told(results)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import datetime
 
 import pytest
@@ -124,3 +125,19 @@ def test_a_reply_with_a_wrong_bit_is_refused(known, frame, bit):
     wrong = bytes(b ^ (1 << bit % 8 if n == bit // 8 else 0) for n, b in enumerate(read))
     with pytest.raises(i2c.ChecksumError):
         i2c.reply(known, 146, wrong, True)
+
+
+@pytest.mark.parametrize(
+    ("date", "named"),
+    [
+        ((2108, 13, 1, 16, 0, 0), "month"),
+        ((2108, 1, 1, 16, 0, 0), "year"),
+        ((2021, 1, 1, 16, 0, 0), "hour"),
+        ((2108, 1, 32, 16, 60, 0), "day"),
+    ],
+)
+def test_the_first_bad_part_of_a_time_is_named_from_the_year_on(known, date, named):
+    narrow = replace(known, time=known.time | {"hour": replace(known.time["hour"], bits=4)})
+    with pytest.raises(times.OutOfRange) as caught:
+        times.pack(narrow, dict(zip(times.PARTS, date, strict=True)))
+    assert caught.value.part == named

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import pickle
+import tokenize
 from dataclasses import replace
 from datetime import datetime
 
@@ -225,3 +227,26 @@ def test_errors_survive_being_pickled(wire, shipped):
         again = pickle.loads(pickle.dumps(error))
         assert (type(again), str(again)) == (type(error), str(error))
         assert isinstance(again, shipped.module().IcdError)
+
+
+def comments(source: str) -> str:
+    """The comments of a module as one text."""
+    tokens = tokenize.generate_tokens(io.StringIO(source).readline)
+    return " ".join(token.string.lstrip("# ") for token in tokens if token.type == tokenize.COMMENT)
+
+
+@pytest.mark.parametrize("node", ["cubeacp", "bootloader", "common"])
+def test_what_is_assumed_has_its_reason_in_a_comment(shipped, node):
+    told = comments((shipped.folder / "icdgen_messages" / node / "_link.py").read_text("utf-8"))
+    known = shipped.module(node).LINK.assumptions
+    assert len(known) > 20
+    switched = "unsolicited_log.configured_by"  # no part of the link: it concerns the message alone
+    assert [one for one in known if " ".join(one.why.split()) not in told and one.section != switched] == []
+
+
+def test_the_reason_stands_above_the_value_that_is_assumed(shipped):
+    lines = (shipped.folder / "icdgen_messages" / "cubeacp" / "_link.py").read_text("utf-8").splitlines()
+    above = {line.strip(): lines[number - 1].strip() for number, line in enumerate(lines)}
+    assert above["retries=3,"] == "# Assumed: Nothing is said about trying again."
+    assert above["packet_timeout=1000,"] == "# Assumed: No time-out between packets is given."
+    assert not above["packets=256,"].startswith("#")

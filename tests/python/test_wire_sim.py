@@ -9,35 +9,11 @@ from random import Random
 
 import pytest
 
-from icdgen.sim import run
 from tests.conftest import ROOT
 from tests.python import packages
+from tests.sim.port import Port, Refusing
 
 RESETS = ("Reset", "Run Selected Program")
-
-
-class Port:
-    """A byte port with the device behind it. Nothing sleeps: reading moves the clock."""
-
-    def __init__(self, node: str, **options) -> None:
-        self.line, _ = run.build(packages.shipped(), node, run.Options(**options))
-        self.now = 0.0
-
-    def clock(self) -> float:
-        return self.now / 1000
-
-    def write(self, data: bytes) -> None:
-        self.line.received(int(self.now), data)
-
-    def read(self, seconds: float) -> bytes:
-        end = self.now + seconds * 1000
-        while True:
-            data = self.line.take(int(self.now))
-            due = self.line.deadline
-            if data or self.now >= end:
-                return data
-            self.now = end if due is None else min(end, max(self.now + 1, due))
-            self.line.tick(int(self.now))
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +22,7 @@ def wire(shipped):
 
 
 def session(shipped, node: str = "cubeacp", **options):
-    port = Port(node, **options)
+    port = Port(packages.shipped(), node, **options)
     wire = shipped.module("wire")
     return wire.Session(shipped.module(node).LINK, port.write, port.read, clock=port.clock), port
 
@@ -152,6 +128,37 @@ def test_a_node_that_loses_every_packet_is_given_up(shipped, wire, file):
     talking, _ = session(shipped, files=[f"2:5={file}"], faults=["drop=100%@packet"])
     with pytest.raises(wire.FailedError, match="rounds"):
         talking.run(wire.Download(shipped.module("cubeacp").LINK, "uart", 2, 5, 100))
+
+
+def refusing(shipped, name: str, times: int, code: int = 0x55):
+    """A session with a bootloader that refuses a telecommand; what it tells; and the port."""
+    heard, boot = [], shipped.module("bootloader")
+    port = Refusing(packages.shipped(), "bootloader", getattr(boot, name).ID, code, times, boot=10**9)
+    talking = shipped.module("wire").Session(boot.LINK, port.write, port.read, clock=port.clock, on_event=heard.append)
+    return talking, heard, port
+
+
+@pytest.mark.parametrize("times", [1, 3])
+def test_a_refusal_that_the_icd_does_not_know_is_told_and_asked_again(shipped, wire, times):
+    talking, heard, port = refusing(shipped, "InitiateFileUpload", times)
+    talking.run(wire.Upload(shipped.module("bootloader").LINK, 3, bytes(100)))
+    assert [(event.code, event.reason) for event in heard] == [(0x55, None)] * times
+    assert port.acknowledged == times + 1
+
+
+def test_a_refusal_that_the_icd_does_not_know_is_a_time_out_at_last_and_told_with_its_code(shipped, wire):
+    talking, heard, port = refusing(shipped, "InitiateFileUpload", 100)
+    with pytest.raises(wire.FailedError, match="timeout") as caught:
+        talking.run(wire.Upload(shipped.module("bootloader").LINK, 3, bytes(100)))
+    assert caught.value.result == "timeout" and {event.code for event in heard} == {0x55}
+    assert len(heard) == port.acknowledged == 1 + shipped.module("bootloader").LINK.settings.retries
+
+
+def test_a_refusal_that_the_icd_knows_is_not_asked_again(shipped, wire):
+    talking, heard, port = refusing(shipped, "InitiateFileUpload", 1, code=2)
+    with pytest.raises(wire.FailedError) as caught:
+        talking.run(wire.Upload(shipped.module("bootloader").LINK, 3, bytes(100)))
+    assert (caught.value.event.code, caught.value.event.reason, heard, port.acknowledged) == (2, "length", [], 1)
 
 
 def test_logs_that_come_unasked_are_told(shipped, wire):

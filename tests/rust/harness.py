@@ -12,28 +12,14 @@ from functools import cache
 from pathlib import Path
 
 from icdgen import backends
-from icdgen.icd.load import load
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.render import Renderer
 from tests.conformance.build import build
+from tests.conformance.icds import SHIPPED, read, shipped  # noqa: F401  (tests take them from here)
 from tests.conformance.languages import all_languages
 from tests.conformance.reference import Reference
 
-SHIPPED = Path(__file__).parent.parent.parent / "icd"
 BACKENDS = ("rust", "rust-testee")
-
-
-@cache
-def shipped() -> Icd:
-    """The ICDs of the project, errata applied."""
-    return read(SHIPPED)
-
-
-def read(*paths: Path) -> Icd:
-    """ICDs without the rules: tests give odd ones."""
-    loaded = load(list(paths), check=False)
-    assert not loaded.findings, loaded.findings
-    return loaded.icd
 
 
 @cache

@@ -7,7 +7,8 @@ import random
 
 from icdgen.protocol import facts, uart
 from icdgen.vectors import protocol
-from tests.rust import harness, wire_requests
+from tests.conformance import wire, wire_changed, wire_random
+from tests.rust import harness
 
 SMALL = """\
 icdgen: 1
@@ -35,8 +36,14 @@ def test_the_golden_vectors(shipped):
 def test_streams_packets_and_scripts_that_nobody_thought_of(shipped):
     """Streams cut anywhere, packets in any order, long scripts of the client and of file transfer."""
     program = harness.build_testee(shipped.icd)
-    asked = list(wire_requests.requests(shipped.icd, 60))
+    asked = list(wire_random.requests(shipped.icd, 60))
     assert harness.differences(shipped.icd, program, asked) == []
+
+
+def test_changed_requests_are_answered_like_the_reference(shipped):
+    vectors = wire.vectors_of(shipped.icd)
+    asked = [request for request, _ in wire_changed.requests(shipped.icd, vectors, random.Random(7), 3000)]
+    assert harness.differences(shipped.icd, harness.build_testee(shipped.icd), asked) == []
 
 
 def test_noise_before_a_message_costs_nothing_but_the_noise(shipped):
@@ -59,7 +66,7 @@ def test_a_node_of_which_the_icd_says_little(tmp_path):
     (tmp_path / "small.yaml").write_text(SMALL)
     icd = harness.read(tmp_path / "small.yaml")
     known, source = facts.of(icd, icd.nodes[0]), random.Random(3)
-    asked = [wire_requests.stream(known, source) for _ in range(500)]
+    asked = [wire_random.stream(known, source) for _ in range(500)]
     asked += [{"op": "uart_encode", "bytes": "10" + source.randbytes(9).hex()} for _ in range(50)]
     script = [{"at": 0, "telecommand": 16, "bytes": "1010"}, {"at": 4, "receive": "10021001"}, {"at": 1 << 31}]
     asked += [{"op": "client", "bus": bus, "script": script} for bus in ("uart", "can", "i2c")]

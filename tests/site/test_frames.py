@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import random
 import subprocess
+from dataclasses import asdict, replace
 
 import pytest
 
-from icdgen.protocol import crc, reading
+from icdgen.protocol import crc, i2c, reading, uart
+from icdgen.protocol.facts import of as facts_of
 from icdgen.values import parse_hex
 from icdgen.values.errors import BadHex
 from tests.conftest import ROOT
@@ -82,6 +84,35 @@ WIRE = {
     "ids": [0x1F, 200], "id": 0x1F, "command": True, "framing": [0x1F, 0x7F, 0xFF, 0x1F],
     "crc": [{"width": 8, "polynomial": 0x12, "init": 0, "reflect_in": True, "reflect_out": True, "xor_out": 0, "empty": 255}],
 }  # fmt: skip
+
+
+@pytest.mark.parametrize("plain_id", [False, True])
+@pytest.mark.parametrize("covers_id", [False, True])
+def test_framing_is_that_of_the_generator(shipped, plain_id, covers_id):
+    known = facts_of(shipped, shipped.node("cubeacp"))
+    known = replace(
+        known,
+        framing=replace(known.framing, escapes_id=not plain_id),
+        checksum=replace(known.checksum, covers_id=covers_id),
+    )
+    wire = {**WIRE, "plain_id": plain_id, "crc": [{**asdict(known.checksum.crc), "covers_id": covers_id}]}
+    cases = [list(random.Random(seed).choices([0x1F, 0x7F, 0xFF, 0, 7], k=seed % 9)) for seed in range(100)]
+    found = node(
+        "([wire, cases]) => cases.map((data) => [false, true].map((check) => [...frames.framed(wire, data, check)]))",
+        [wire, cases],
+    )
+    assert found == [
+        [list(uart.encode(known.framing, i2c.telecommand(known, 0x1F, bytes(data), check))) for check in (False, True)]
+        for data in cases
+    ]
+    back = node(
+        """([wire, cases]) => cases.map((data) => {
+            const { data: back, remarks } = frames.unwrap(wire, data.length, frames.framed(wire, data, true));
+            return [[...back], remarks.includes("CRC is right")];
+        })""",
+        [wire, cases],
+    )
+    assert back == [[data, True] for data in cases]
 
 
 def test_framing_and_checksum_come_off_again_whatever_the_data():

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from icdgen.backends.html import wire
+from icdgen.backends.html.atlas import Atlas
+from icdgen.protocol import i2c
 
 
 def lines(icd, node: str, name: str, data: bytes) -> dict[str, list[tuple[str, str]]]:
-    from icdgen.backends.html.atlas import Atlas
-
     message = next(m for m in icd.node(node).messages if m.name == name)
-    found = wire.buses(message, icd.protocol_of(icd.node(node)), Atlas(icd).checks(message), data)
+    found = wire.buses(message, Atlas(icd).wire(message), data)
     return {bus.name: [(line.label, " ".join(c.text for c in line.chunks)) for line in bus.lines] for bus in found}
 
 
@@ -25,6 +26,19 @@ def test_a_telecommand_on_each_bus(shipped):
 def test_an_optional_checksum_covers_the_parameters(shipped):
     found = lines(shipped, "cubeacp", "Trigger ADCS Loop", b"")
     assert found["UART"] == [("Telecommand", "1F 7F 12 1F FF"), ("with CRC", "1F 7F 12 FF 1F FF")]
+
+
+def test_what_the_icd_says_about_the_id_holds_for_the_bytes(shipped):
+    message = next(m for m in shipped.node("cubeacp").messages if m.name == "ASGP4 Run Mode")
+    known, section, checked = Atlas(shipped).wire(message)
+    covering = [replace(one.facts, checksum=replace(one.facts.checksum, covers_id=True)) for one in checked]
+    plain = replace(known, framing=replace(known.framing, escapes_id=False))
+    other = wire.Wire(plain, section, [wire.Speaker(one, section) for one in covering])
+    uart = wire.buses(message, other, b"\x1f")[0]
+    texts = [" ".join(chunk.text for chunk in line.chunks) for line in uart.lines]
+    check = i2c.checksum(covering[0], 0x1F, b"\x1f")
+    assert texts == ["1F 7F 1F 1F 1F 1F FF", f"1F 7F 1F 1F 1F {check:02X} 1F FF"]
+    assert check != i2c.checksum(checked[0].facts, 0x1F, b"\x1f")
 
 
 def test_a_telemetry_frame_on_each_bus(shipped):

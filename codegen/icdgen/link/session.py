@@ -86,7 +86,7 @@ class Session:
         """Runs a procedure to its end; its result. Raises `PortError`.
 
         A refusal with a code that the ICD does not have is a damaged acknowledge, which tells nothing: what may be repeated is
-        asked again, and else it is as if none had come.
+        asked again, and else it is as if none had come. ``on_event`` is told of each, with its code.
         """
         waiting: list[dict] = []
         asked: Request | None = None
@@ -107,6 +107,8 @@ class Session:
                 self._write()
             for event in waiting:
                 damaged = _is_damaged(event)
+                if damaged:
+                    self.on_event(event)
                 if damaged and asked is not None and asked.repeat and left > 0:
                     again, left = True, left - 1
                     continue

@@ -57,7 +57,7 @@ class Reader:
             framing=self.framing(),
             acknowledge=self.acknowledge(),
             polled=self.polled(),
-            i2c_address=self.section("i2c", "write").get("address_7bit"),
+            i2c_address=self.i2c_address(),
             can=self.can(),
             errors={key: code for key, code in self.section("errors").items() if isinstance(code, int)},
             checksum=self.checksum(),
@@ -123,6 +123,12 @@ class Reader:
         message = self.messages.get(given.get("message", ""))
         names = [given.get(key) for key in ("id", "until", "error", "parameter")]
         return Polled(message, *names) if message and all(names) else None  # type: ignore[arg-type]
+
+    def i2c_address(self) -> int | None:
+        """Of 7 bits; the 8-bit form has the direction behind it."""
+        given = self.section("i2c", "write")
+        eight = given.get("address_8bit")
+        return given.get("address_7bit", None if eight is None else eight >> 1)
 
     def can(self) -> Can | None:
         given = self.section("can")

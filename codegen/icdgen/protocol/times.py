@@ -25,12 +25,16 @@ def unpack(facts: Facts, value: int) -> dict[str, int]:
 
 
 def pack(facts: Facts, parts: Mapping[str, int]) -> int:
-    """The packed time; what is finer than its resolution is cut off. Raises `OutOfRange`."""
+    """The packed time; what is finer than its resolution is cut off.
+
+    Raises `OutOfRange` for the first part, in the order of `PARTS`, that does not exist, or else that does not fit.
+    """
     form, value = need(facts.time, "msdos_time"), 0
     bad = wrong(parts)
     if bad:
         raise OutOfRange(bad)
-    for name, part in form.items():
+    for name in PARTS:
+        part = form[name]
         raw = (parts[name] - part.offset) // part.factor
         if not 0 <= raw < 1 << part.bits:
             raise OutOfRange(name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 
 from icdgen import layout
@@ -56,16 +57,26 @@ def bounds(field: Field) -> tuple[Fraction | None, Fraction | None]:
     return low, high
 
 
-def _notes(field: Field) -> list[str]:
-    notes = []
+def remarks(field: Field, number: Callable[[Fraction], str] = exact_text) -> Iterator[str]:
+    """What is constant, exclusive limits, and what special values mean; ``number`` writes numbers."""
     if field.const is not None:
-        notes.append(f"always {field.const}" + (f" (0x{field.const:X})" if field.const > 9 else ""))
+        yield f"always {field.const}" + (f" (0x{field.const:X})" if field.const > 9 else "")
     limits = field.limits
     if limits and limits.above is not None:
-        notes.append(f"above {exact_text(limits.above)}")
+        yield f"above {number(limits.above)}"
     if limits and limits.below is not None:
-        notes.append(f"below {exact_text(limits.below)}")
-    notes += [f"{special.value}: {special.meaning}" for special in field.special]
-    notes += [f"bits {part.at} to {part.at + part.bits - 1}: {part.name}" for part in field.bitfields]
+        yield f"below {number(limits.below)}"
+    for special in field.special:
+        yield f"{number(Fraction(special.value))}: {special.meaning}"
+
+
+def bit_range(at: int, count: int) -> str:
+    """``bit 3``, ``bits 4 to 7``"""
+    return f"bit {at}" if count == 1 else f"bits {at} to {at + count - 1}"
+
+
+def _notes(field: Field) -> list[str]:
+    notes = list(remarks(field))
+    notes += [f"{bit_range(part.at, part.bits)}: {part.name}" for part in field.bitfields]
     notes += [erratum.id for erratum in field.errata]
     return notes + ([field.summary] if field.summary else [])

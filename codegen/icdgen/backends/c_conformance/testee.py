@@ -16,8 +16,8 @@ from icdgen.icd.model import CONFIGURATION, Enum, Icd, Node
 from icdgen.render import Renderer
 
 PARTS = ("testee", "testee_json", "testee_answer", "testee_request")
-WIRE_PARTS = ("testee_ask", "testee_wire", "testee_logs", "testee_blocks", "testee_client", "testee_file")
-SHARED = tuple(f"{part}{end}" for part in PARTS for end in (".h", ".c"))
+WIRE_PARTS = ("testee_ask", "testee_wire", "testee_can", "testee_logs", "testee_blocks", "testee_client", "testee_file")
+SHARED = (*(f"{part}{end}" for part in PARTS for end in (".h", ".c")), "testee_json_out.c")
 TYPES = {"bool": "TESTEE_BOOL", "float": "TESTEE_FLOAT", "bytes": "TESTEE_BYTES", "int": "TESTEE_SIGNED"}
 
 

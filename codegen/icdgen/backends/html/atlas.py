@@ -7,8 +7,10 @@ from typing import NamedTuple
 
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
+from icdgen.backends.html.wire import Speaker, Wire
 from icdgen.icd.model import Enum, Erratum, Field, Icd, Loggable, Message, Node
 from icdgen.icd.units import Unit
+from icdgen.protocol import facts
 
 
 class Place(NamedTuple):
@@ -39,6 +41,7 @@ class Atlas:
         self.contained_in: dict[tuple[str, str], list[Contained]] = defaultdict(list)
         self.contains: dict[tuple[str, str], list[Contained]] = defaultdict(list)
         self.logged: dict[tuple[str, str], list[tuple[Node, Loggable]]] = defaultdict(list)
+        self._spoken: dict[str, Speaker] = {}
         for node in icd.nodes:
             self._node(node)
 
@@ -96,10 +99,16 @@ class Atlas:
         """Bits of the log mask that select the message."""
         return [row.bit for _, row in self.logged.get((message.node, message.name), [])]
 
-    def checks(self, message: Message) -> list[dict]:
-        """CRC-8 facts of the nodes that speak the message."""
-        found = (self.icd.protocol_of(node).get("crc8") for node in self.speakers[message.node])
-        return [facts for facts in found if facts]
+    def wire(self, message: Message) -> Wire:
+        """How the message travels."""
+        spoken = [self._speaker(node) for node in self.speakers[message.node]]
+        declared = self._speaker(self.icd.node(message.node))
+        return Wire(*declared, [one for one in spoken if one.facts.checksum])
+
+    def _speaker(self, node: Node) -> Speaker:
+        if node.name not in self._spoken:
+            self._spoken[node.name] = Speaker(facts.of(self.icd, node), self.icd.protocol_of(node))
+        return self._spoken[node.name]
 
     def users(self, enum: Enum) -> list[Place]:
         """Fields that hold the enumeration."""

@@ -11,8 +11,9 @@ from itertools import groupby
 
 from icdgen import layout
 from icdgen.backends.html.labels import Label, fit
-from icdgen.backends.html.texts import bits, clip
+from icdgen.backends.html.texts import clip
 from icdgen.icd.model import Message, Node
+from icdgen.show.fields import bit_range
 
 WIDTH, LEFT, TOP = 1000, 64, 24
 _FEW = 3  # rows of one field that are drawn; of more only the first and the last
@@ -75,7 +76,7 @@ class _Canvas:
         self.across = bytes_a_row(message)
         self.cell = (WIDTH - LEFT) / (8 * self.across)
         self.shapes = [
-            Shape(key, one.type, f"{clip(one.name, 200)}: {bits(one.at, one.bits)}", anchors[key - 1])
+            Shape(key, one.type, f"{clip(one.name, 200)}: {bit_range(one.at, one.bits)}", anchors[key - 1])
             for key, one in enumerate(message.fields, 1)
         ]
         self.owner = self._owners()
@@ -116,7 +117,7 @@ class _Canvas:
             for column in range(8 * min(self.across, self.message.length))
         ]
         gaps = layout.gaps(self.message)
-        reserved = Shape(0, "reserved", "Reserved: " + ", ".join(bits(g.at, g.bits) for g in gaps[:20]))
+        reserved = Shape(0, "reserved", "Reserved: " + ", ".join(bit_range(g.at, g.bits) for g in gaps[:20]))
         reserved.rects = self._rects(0)
         rows = [(self._y(i), str(first), str(8 * first)) for i, first in enumerate(self.rows) if first >= 0]
         plan = {

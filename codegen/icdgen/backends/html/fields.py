@@ -8,6 +8,7 @@ from icdgen import layout
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
 from icdgen.icd.model import Enum, Erratum, Field, Member, Message, Node
+from icdgen.show.fields import bit_range, remarks
 
 
 @dataclass
@@ -84,18 +85,8 @@ def _row(key: int, field: Field, links: Links, anchor: str) -> FieldRow:
 
 
 def _notes(field: Field) -> list[str]:
-    notes = []
-    if field.const is not None:
-        notes.append(f"Always {field.const}" + (f" (0x{field.const:X})" if field.const > 9 else ""))
-    limits = field.limits
-    if limits and limits.above is not None:
-        notes.append(f"Above {texts.number(limits.above)}")
-    if limits and limits.below is not None:
-        notes.append(f"Below {texts.number(limits.below)}")
-    notes += [f"{texts.number(special.value)}: {special.meaning}" for special in field.special]
+    notes = [note[:1].upper() + note[1:] for note in remarks(field, texts.number)]
     for part in field.bitfields:
-        notes.append(
-            f"{texts.bits(part.at, part.bits).capitalize()}: {part.name}"
-            + (f". {part.summary}" if part.summary else "")
-        )
+        about = f". {part.summary}" if part.summary else ""
+        notes.append(f"{bit_range(part.at, part.bits).capitalize()}: {part.name}{about}")
     return notes

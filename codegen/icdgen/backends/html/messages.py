@@ -21,8 +21,7 @@ def values(atlas: Atlas, node: Node, message: Message, snippets: Usage) -> dict[
     """Values of the page of a message that ``node`` declares."""
     anchors = atlas.anchors(message)
     picture = drawing.draw(message, node, anchors)
-    protocol = atlas.icd.protocol_of(node)
-    checks = atlas.checks(message)
+    travels = atlas.wire(message)
     shown = examples(message, node)
     data = shown[0].frame if shown and message.telemetry_id is not None else _fresh(message, node)
     return {
@@ -33,7 +32,7 @@ def values(atlas: Atlas, node: Node, message: Message, snippets: Usage) -> dict[
         "facts": _facts(atlas, node, message),
         "drawing": picture,
         "rows": fields.rows(message, node, atlas.links, anchors),
-        "buses": wire.buses(message, protocol, checks, data),
+        "buses": wire.buses(message, travels, data),
         "example_data": message.telemetry_id is not None and bool(data),
         "examples": shown,
         "frames": frames(message, node),
@@ -41,7 +40,7 @@ def values(atlas: Atlas, node: Node, message: Message, snippets: Usage) -> dict[
         "contains": atlas.contains.get((message.node, message.name), []),
         "contained_in": atlas.contained_in.get((message.node, message.name), []),
         "errata": atlas.about(message),
-        "plan": _script_json(_plan(atlas, node, message, picture, protocol, checks)),
+        "plan": _script_json(_plan(atlas, node, message, picture, travels)),
     }
 
 
@@ -72,13 +71,13 @@ def _fresh(message: Message, node: Node) -> bytes:
     return codec.encode(node, message, raw)
 
 
-def _plan(atlas: Atlas, node: Node, message: Message, picture, protocol: dict, checks: list[dict]) -> dict[str, object]:
+def _plan(atlas: Atlas, node: Node, message: Message, picture, travels: wire.Wire) -> dict[str, object]:
     enums = {field.enum.name: plan.enum_plan(field.enum) for field in message.fields if field.enum is not None}
     return {
         **plan.message_plan(message, node),
         "enums": enums,
         "drawing": picture.plan if picture else None,
-        "wire": wire.page_facts(message, protocol, checks),
+        "wire": wire.page_facts(message, travels),
     }
 
 

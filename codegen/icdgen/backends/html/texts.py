@@ -45,11 +45,6 @@ def type_name(field: Field) -> str:
     return f"{field.type}{field.bits}" if field.type in ("uint", "int", "float") else field.type
 
 
-def bits(at: int, count: int) -> str:
-    """``bit 3``, ``bits 4 to 7``"""
-    return f"bit {at}" if count == 1 else f"bits {at} to {at + count - 1}"
-
-
 def count(number: int, noun: str, plural: str = "") -> str:
     """``1 byte``, ``2 bytes``"""
     return f"{number:,} {noun if number == 1 else plural or noun + 's'}"

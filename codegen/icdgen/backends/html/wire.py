@@ -1,14 +1,16 @@
-"""What goes over UART, I2C and CAN for one message, from the protocol facts of the ICD. A bus without facts is left out."""
+"""What goes over UART, I2C and CAN for one message, as the reference of the protocol makes it. A bus that the ICD does not
+describe is left out."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import NamedTuple
 
 from icdgen.backends.html.texts import count
 from icdgen.icd.model import Message
-from icdgen.protocol import crc, reading
+from icdgen.protocol import can, i2c, uart
+from icdgen.protocol.facts import Facts, Unsupported
 
 _SHOWN = 24  # data bytes that are written out
 
@@ -35,30 +37,48 @@ class Bus:
     lines: list[Line]
 
 
-def buses(message: Message, protocol: dict, checks: list[dict], data: bytes) -> list[Bus]:
-    """The bytes of the message on each bus. ``data`` is the frame shown, ``checks`` are the CRC-8 facts of the nodes
-    that speak the message."""
-    found = [
-        _uart(message, protocol, checks, data),
-        _i2c(message, protocol, checks, data),
-        _can(message, protocol, data),
-    ]
+class Speaker(NamedTuple):
+    """A node that speaks a message: what code is made from, and the section of the ICD that it is read from."""
+
+    facts: Facts
+    section: dict
+
+
+class Wire(NamedTuple):
+    """How a message travels: as the node that declares it says, with the checksums of all nodes that speak it."""
+
+    facts: Facts
+    section: dict
+    checked: list[Speaker]
+
+
+def buses(message: Message, wire: Wire, data: bytes) -> list[Bus]:
+    """The bytes of the message on each bus. ``data`` is the frame shown."""
+    found = [make(message, wire, data) for make in (_uart, _i2c, _can)]
     return [bus for bus in found if bus is not None]
 
 
-def page_facts(message: Message, protocol: dict, checks: list[dict]) -> dict[str, object]:
+def page_facts(message: Message, wire: Wire) -> dict[str, object]:
     """What the decoder of a page needs to know: framing, ids and checksums."""
-    framing = protocol.get("uart", {}).get("framing")
-    keys = ("width", "polynomial", "init", "reflect_in", "reflect_out", "xor_out", "empty")
     facts: dict[str, object] = {
         "ids": list(message.ids),
         "id": message.telecommand_id if message.telecommand_id is not None else message.telemetry_id,
         "command": message.telecommand_id is not None,
-        "crc": [{key: facts[key] for key in keys if key in facts} for facts in checks if facts["width"] == 8],
+        "crc": [_crc_facts(one.facts) for one in wire.checked if one.section["crc8"]["width"] == 8],
     }
+    framing = wire.facts.framing
     if framing:
-        facts["framing"] = [framing[k] for k in ("escape", "start_of_message", "end_of_message", "escaped_data")]
+        facts["framing"] = [framing.escape, framing.start, framing.end, framing.escaped]
+        if not framing.escapes_id:
+            facts["plain_id"] = True
     return facts
+
+
+def _crc_facts(facts: Facts) -> dict[str, object]:
+    form = facts.checksum
+    assert form is not None
+    found = {key: value for key, value in asdict(form.crc).items() if value is not None}
+    return found | ({"covers_id": True} if form.covers_id else {})
 
 
 def _hex(data: bytes) -> str:
@@ -67,168 +87,152 @@ def _hex(data: bytes) -> str:
     return f"{data[: _SHOWN - 4].hex(' ').upper()} … {data[-4:].hex(' ').upper()}"
 
 
-def _data(data: bytes, title: str = "data") -> list[Chunk]:
-    return [Chunk("data", _hex(data), f"{title}, {count(len(data), 'byte')}")] if data else []
+def _data(data: bytes) -> list[Chunk]:
+    return [Chunk("data", _hex(data), f"data, {count(len(data), 'byte')}")] if data else []
 
 
-def _id(id: int) -> Chunk:
-    return Chunk("id", f"{id:02X}", f"id {id}")
-
-
-def _check(checks: list[dict], direction: str, bus: str, data: bytes) -> Chunk | None:
-    for facts in checks:
-        rule = facts.get(direction)
-        if facts["width"] == 8 and rule and bus in rule.get("buses", [bus]):
-            return Chunk(
-                "crc",
-                f"{crc.compute(reading.crc(facts), data):02X}",
-                "CRC-8" + (", optional" if rule.get("optional") else ""),
-            )
+def _check(wire: Wire, direction: str, bus: str) -> Speaker | None:
+    """The node whose checksum is shown with messages of the direction."""
+    for speaker in wire.checked:
+        form = speaker.facts.checksum
+        assert form is not None
+        if bus in (form.telecommand_buses if direction == "telecommand" else form.telemetry_buses):
+            return speaker
     return None
+
+
+def _crc_chunk(sent: bytes, speaker: Speaker, direction: str) -> Chunk:
+    optional = speaker.section["crc8"][direction].get("optional")
+    return Chunk("crc", _hex(sent), "CRC-8" + (", optional" if optional else ""))
 
 
 # UART
 
 
-def _uart(message: Message, protocol: dict, checks: list[dict], data: bytes) -> Bus | None:
-    facts = protocol.get("uart", {}).get("framing")
-    if not facts:
+def _uart(message: Message, wire: Wire, data: bytes) -> Bus | None:
+    if wire.facts.framing is None:
         return None
     lines = []
     if message.telecommand_id is not None:
-        check = _check(checks, "telecommand", "uart", data)
-        lines.append(Line("Telecommand", _framed(facts, message.telecommand_id, data)))
-        if check:
-            lines.append(Line("with CRC", _framed(facts, message.telecommand_id, data, check)))
+        lines.append(Line("Telecommand", _framed(wire.facts, message.telecommand_id, data)))
+        checked = _check(wire, "telecommand", "uart")
+        if checked:
+            lines.append(Line("with CRC", _framed(wire.facts, message.telecommand_id, data, checked)))
     if message.telemetry_id is not None:
-        lines.append(Line("Request", _framed(facts, message.telemetry_id, b"")))
-        lines.append(Line("Answer", _framed(facts, message.telemetry_id, data)))
-    return Bus("UART", _uart_note(protocol["uart"]), lines)
+        lines.append(Line("Request", _framed(wire.facts, message.telemetry_id, b"")))
+        lines.append(Line("Answer", _framed(wire.facts, message.telemetry_id, data)))
+    return Bus("UART", _uart_note(wire.section["uart"], wire.facts), lines)
 
 
-def _framed(facts: dict, id: int, data: bytes, check: Chunk | None = None) -> list[Chunk]:
-    escape = facts["escape"]
+def _framed(facts: Facts, id: int, data: bytes, checked: Speaker | None = None) -> list[Chunk]:
+    """The bytes on the line, cut where the id, the data and the checksum begin and end."""
+    assert facts.framing is not None
+    body = i2c.telecommand(checked.facts if checked else facts, id, data, checked is not None)
+    line = uart.encode(facts.framing, body)
+    # What is sent for a part begins where the parts before it, sent alone, would be followed by the end of message.
+    ends = [len(uart.encode(facts.framing, body[:size])) - 2 for size in (0, 1, 1 + len(data), len(body))]
+    start, id_sent, data_sent, check_sent = (line[at:to] for at, to in zip([0, *ends], ends, strict=False))
+    chunks = [Chunk("frame", _hex(start), "start of message"), Chunk("id", _hex(id_sent), f"id {id}")]
+    chunks += _data(data_sent)
+    if checked:
+        chunks.append(_crc_chunk(check_sent, checked, "telecommand"))
+    return [*chunks, Chunk("frame", _hex(line[ends[-1] :]), "end of message")]
 
-    def escaped(raw: bytes) -> bytes:
-        return b"".join(bytes([escape, facts["escaped_data"]]) if byte == escape else bytes([byte]) for byte in raw)
 
-    chunks = [Chunk("frame", f"{escape:02X} {facts['start_of_message']:02X}", "start of message")]
-    chunks.append(Chunk("id", _hex(escaped(bytes([id]))), f"id {id}") if id < 256 else _id(id))
-    chunks += _data(escaped(data))
-    if check:
-        chunks.append(Chunk("crc", _hex(escaped(bytes.fromhex(check.text))), check.title))
-    return [*chunks, Chunk("frame", f"{escape:02X} {facts['end_of_message']:02X}", "end of message")]
-
-
-def _uart_note(facts: dict) -> str:
-    parts = [f"{facts['baud_rate']:,} baud"] if "baud_rate" in facts else []
-    if {"data_bits", "parity", "stop_bits"} <= facts.keys():
-        parity = facts["parity"]
-        parts.append(f"{facts['data_bits']}{'N' if parity == 'none' else parity[0].upper()}{facts['stop_bits']}")
-    framing = facts["framing"]
-    doubled = (
-        f"{framing['escape']:02X} within id and data is sent as {framing['escape']:02X} {framing['escaped_data']:02X}"
-    )
+def _uart_note(section: dict, facts: Facts) -> str:
+    parts = [f"{section['baud_rate']:,} baud"] if "baud_rate" in section else []
+    if {"data_bits", "parity", "stop_bits"} <= section.keys():
+        parity = section["parity"]
+        parts.append(f"{section['data_bits']}{'N' if parity == 'none' else parity[0].upper()}{section['stop_bits']}")
+    framing = facts.framing
+    assert framing is not None
+    within = "id and data" if framing.escapes_id else "the data"
+    doubled = f"{framing.escape:02X} within {within} is sent as {framing.escape:02X} {framing.escaped:02X}"
     return ", ".join(parts) + (". " if parts else "") + doubled + "."
 
 
 # I2C
 
 
-def _i2c(message: Message, protocol: dict, checks: list[dict], data: bytes) -> Bus | None:
-    facts = protocol.get("i2c", {})
-    write, read = _address(facts.get("write")), _address(facts.get("read"))
-    if write is None or read is None:
+def _i2c(message: Message, wire: Wire, data: bytes) -> Bus | None:
+    address = wire.facts.i2c_address
+    if address is None:
         return None
+    write = Chunk("frame", f"{address << 1:02X}", "address, write")
     lines = []
     if message.telecommand_id is not None:
-        check = _check(checks, "telecommand", "i2c", data)
-        sent = [Chunk("frame", write, "address, write"), _id(message.telecommand_id), *_data(data)]
+        sent = [write, _id(message.telecommand_id), *_data(data)]
         lines.append(Line("Telecommand", sent))
-        if check:
-            lines.append(Line("with CRC", [*sent, check]))
+        lines += _with_crc(wire, "telecommand", message.telecommand_id, data, sent)
     if message.telemetry_id is not None:
-        request = [Chunk("frame", write, "address, write"), _id(message.telemetry_id)]
-        again = Chunk("note", "repeated start", " or ".join(facts.get("telemetry_request", [])))
-        answer = [*request, again, Chunk("frame", read, "address, read"), *_data(data)]
+        again = Chunk("note", "repeated start", " or ".join(wire.section["i2c"].get("telemetry_request", [])))
+        read = Chunk("frame", f"{address << 1 | 1:02X}", "address, read")
+        answer = [write, _id(message.telemetry_id), again, read, *_data(data)]
         lines.append(Line("Request and answer", answer))
-        check = _check(checks, "telemetry", "i2c", data)
-        if check:
-            lines.append(Line("with CRC", [*answer, check]))
-    seven = facts["write"].get("address_7bit")
-    return Bus("I²C", f"7-bit address {seven:02X}." if isinstance(seven, int) else "", lines)
+        lines += _with_crc(wire, "telemetry", message.telemetry_id, data, answer)
+    return Bus("I²C", f"7-bit address {address:02X}.", lines)
 
 
-def _address(facts: dict | None) -> str | None:
-    value = (facts or {}).get("address_8bit")
-    return f"{value:02X}" if isinstance(value, int) else None
+def _id(id: int) -> Chunk:
+    return Chunk("id", f"{id:02X}", f"id {id}")
+
+
+def _with_crc(wire: Wire, direction: str, id: int, data: bytes, sent: list[Chunk]) -> Iterator[Line]:
+    checked = _check(wire, direction, "i2c")
+    if checked:
+        whole = i2c.telecommand(checked.facts, id, data, True)
+        yield Line("with CRC", [*sent, _crc_chunk(whole[1 + len(data) :], checked, direction)])
 
 
 # CAN
 
 
-def _can(message: Message, protocol: dict, data: bytes) -> Bus | None:
-    facts = protocol.get("can", {})
-    parts = [part["bits"] for part in facts.get("identifier", [])]
-    types = {one["name"]: one["value"] for one in facts.get("message_types", {}).get("values", [])}
-    most = facts.get("max_data_bytes")
-    if len(parts) != 4 or not types or most is None or not isinstance(facts.get("node_address"), int):
+def _can(message: Message, wire: Wire, data: bytes) -> Bus | None:
+    form = wire.facts.can
+    if form is None:
         return None
-    node = facts["node_address"]
+    node = form.node_address
     lines: list[Line] = []
-    for direction, id in (("telecommand", message.telecommand_id), ("telemetry", message.telemetry_id)):
-        rules = facts.get(direction, {})
-        if id is None or rules.get("request") not in types:
-            continue
-        if direction == "telecommand":
-            lines += _packets(facts, types, rules, "request", parts, (id, 0, node), data, "Telecommand")
-        else:
-            lines.append(
-                Line("Request", [_identifier(rules["request"], types[rules["request"]], parts, (id, 0, node))])
-            )
-            lines += _packets(facts, types, rules, "response", parts, (id, node, 0), data, "Answer")
-    note = f"{sum(parts)}-bit identifiers. Your own address stands as 0: put it in its place."
+    if message.telecommand_id is not None:
+        sent = can.Message("telecommand", message.telecommand_id, 0, node, data)
+        lines += _packets(wire, sent, "Telecommand")
+    if message.telemetry_id is not None:
+        lines += _packets(wire, can.Message("request", message.telemetry_id, 0, node), "Request")
+        lines += _packets(wire, can.Message("reply", message.telemetry_id, node, 0, data), "Answer")
+    bits = sum(part.bits for part in form.parts.values())
+    note = f"{bits}-bit identifiers. Your own address stands as 0: put it in its place."
     return Bus("CAN", note, lines) if lines else None
 
 
-def _identifier(name: str, kind: int, parts: list[int], rest: tuple[int, int, int]) -> Chunk:
-    value = 0
-    for bits, one in zip(parts, (kind, *rest), strict=True):
-        value = value << bits | one & ((1 << bits) - 1)
-    title = f"{name}: type {kind}, channel {rest[0]}, source {rest[1]}, destination {rest[2]}"
-    return Chunk("id", f"{value:0{(sum(parts) + 3) // 4}X}", title)
-
-
-def _packets(
-    facts: dict,
-    types: dict,
-    rules: dict,
-    way: str,
-    parts: list[int],
-    rest: tuple[int, int, int],
-    data: bytes,
-    label: str,
-) -> Iterator[Line]:
+def _packets(wire: Wire, message: can.Message, label: str) -> Iterator[Line]:
     """One packet, or as many extended ones as it takes; of many the first two and the last."""
-    most, name = facts["max_data_bytes"], rules.get(way)
-    if len(data) <= most:
-        if name in types:
-            yield Line(label, [_identifier(name, types[name], parts, rest), *_data(data)])
+    form = wire.facts.can
+    assert form is not None
+    try:
+        packets = can.split(wire.facts, message)
+    except (can.TooLong, Unsupported):
         return
-    name, extended = rules.get(f"extended_{way}"), facts.get("extended")
-    if name not in types or not extended or extended["packets_left_byte"] != extended["data_bytes"]:
+    if len(packets) == 1 and len(message.data) <= form.data_bytes:
+        yield Line(label, [_identifier(wire, packets[0].id), *_data(packets[0].data)])
         return
-    size = extended["data_bytes"]
-    packets = [data[at : at + size] for at in range(0, len(data), size)]
-    last = extended.get("packets_left_in_last", 0)
+    assert form.extended is not None
     for index, packet in enumerate(packets):
         if 2 <= index < len(packets) - 1:
             if index == 2:
                 yield Line("", [Chunk("note", f"… {count(len(packets) - 3, 'more packet')}", "")])
             continue
-        left = len(packets) - 1 - index + last
-        chunks = [
-            _identifier(name, types[name], parts, rest),
-            *_data(packet.ljust(size, bytes([extended.get("fill", 0)]))),
-        ]
-        yield Line(f"{label} {index + 1}/{len(packets)}", [*chunks, Chunk("crc", f"{left:02X}", "packets left")])
+        left_at = form.extended.left_at
+        left = Chunk("crc", _hex(packet.data[left_at:]), "packets left")
+        chunks = [_identifier(wire, packet.id), *_data(packet.data[:left_at]), left]
+        yield Line(f"{label} {index + 1}/{len(packets)}", chunks)
+
+
+def _identifier(wire: Wire, id: int) -> Chunk:
+    form = wire.facts.can
+    assert form is not None
+    parts = can.parts_of(form, id)
+    rows = wire.section["can"]["message_types"]["values"]
+    name = next(row["name"] for row in rows if row["value"] == parts["type"])
+    rest = f"channel {parts['channel']}, source {parts['source']}, destination {parts['destination']}"
+    bits = sum(part.bits for part in form.parts.values())
+    return Chunk("id", f"{id:0{(bits + 3) // 4}X}", f"{name}: type {parts['type']}, {rest}")

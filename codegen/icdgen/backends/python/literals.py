@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from icdgen.backends.python.black import WIDTH
-from icdgen.backends.python.text import literal, wrapped
+from icdgen.backends.python.text import literal, sentence, wrapped
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,22 +25,49 @@ class Verbatim:
     text: str
 
 
+@dataclass(frozen=True, slots=True)
+class Noted:
+    """An item of a call or a mapping, with a comment above it."""
+
+    item: object
+    notes: tuple[str, ...]
+
+
 def expression(value: object, indent: int = 0, before: int = 0, after: int = 0) -> str:
     """The source of a value: on one line if it fits between so many characters, else one item a line.
 
     ``indent`` is that of the line it begins on.
     """
-    line = _line(value)
-    if indent + before + len(line) + after <= WIDTH:
+    is_noted = _is_noted(value)
+    line = "" if is_noted else _line(value)
+    if not is_noted and indent + before + len(line) + after <= WIDTH:
         return line
     if isinstance(value, str):
         return _long_text(value, indent)
     opening, items, closing = _parts(value)
     if not items:
         return line
-    pad = " " * (indent + 4)
-    rows = [f"{pad}{head}{expression(item, indent + 4, len(head), 1)},\n" for head, item in items]
+    rows = [_row(head, item, indent + 4) for head, item in items]
     return f"{opening}\n{''.join(rows)}{' ' * indent}{closing}"
+
+
+def _row(head: str, item: object, indent: int) -> str:
+    """An item on lines of its own, under its comment."""
+    pad = " " * indent
+    if not isinstance(item, Noted):
+        return f"{pad}{head}{expression(item, indent, len(head), 1)},\n"
+    comment = ""
+    for note in item.notes:
+        first, *rest = wrapped(" ".join(sentence(note).split()), WIDTH - indent - 4)
+        # What goes on is indented, so that no line of it can be read as an instruction to a tool.
+        comment += f"{pad}# {first}\n" + "".join(f"{pad}#   {line}\n" for line in rest)
+    return comment + _row(head, item.item, indent)
+
+
+def _is_noted(value: object) -> bool:
+    if isinstance(value, Noted):
+        return True
+    return not isinstance(value, str | Verbatim) and any(_is_noted(item) for _, item in _parts(value)[1])
 
 
 def _long_text(text: str, indent: int) -> str:

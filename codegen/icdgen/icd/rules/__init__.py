@@ -23,6 +23,7 @@ from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its r
     loggable,
     pages,
     protocol,
+    protocol_limits,
     protocol_names,
     protocol_sizes,
     reading,

@@ -81,10 +81,7 @@ def crc_checks(ctx: Context) -> Iterator[Fault]:
                 continue
             if not 1 <= width <= MAX_WIDTH:
                 continue
-            big = next((k for k in ("polynomial", "init", "xor_out", "check") if _is_wide(section.get(k), width)), None)
-            if big:
-                message = f"`{big}` does not fit {width} bits"
-                yield Fault(section, section.at(big), message, f"correct `{big}` or `width`")
+            if any(_is_wide(section.get(key), width) for key in ("polynomial", "init", "xor_out", "check")):
                 continue
             reflect_in, reflect_out = (bool(section.get(k)) for k in ("reflect_in", "reflect_out"))
             got = crc(CHECKED, width, polynomial, init, reflect_in, reflect_out, xor_out)
@@ -124,7 +121,8 @@ def rows_apart(ctx: Context) -> Iterator[Fault]:
 
 
 def _rows(section: Map, key: str, rows: Seq, at: str, size: str) -> Iterator[Fault]:
-    room = section.get(f"{key}_{size}")
+    named = f"{key}_{size}" if f"{key}_{size}" in section else size
+    room = section.get(named)
     placed = [r for r in rows if isinstance(r, Map) and isinstance(r.get(at), int) and isinstance(r.get(size), int)]
     last: Map | None = None
     for row in sorted(placed, key=lambda r: r[at]):
@@ -135,7 +133,12 @@ def _rows(section: Map, key: str, rows: Seq, at: str, size: str) -> Iterator[Fau
             message = f"{name} overlaps {other} in {size[:-1]} {row[at]}"
             yield Fault(row, row.at(at), message, f"correct `{at}` or `{size}`")
         if isinstance(room, int) and end > room:
-            message = f"{name} ends at {end}, but `{key}_{size}` is {room}"
-            yield Fault(row, row.at(size), message, f"correct `{at}`, `{size}` or `{key}_{size}`")
+            message = f"{name} ends at {end}, but `{named}` is {room}"
+            yield Fault(
+                row,
+                row.at(size),
+                message,
+                f"correct `{at}`, " + (f"`{size}` or `{named}`" if named != size else f"or a `{size}`"),
+            )
         if last is None or end > last[at] + last[size]:
             last = row

@@ -14,14 +14,15 @@ from icdgen.icd.tree import Map, Seq
 CAN_IDENTIFIER_BITS = 29  # of an extended CAN frame
 
 
-def _section(node: Node, *path: str) -> Map | None:
+def section_of(node: Node, *path: str) -> Map | None:
+    """A section of the node's own protocol."""
     found: object = node.source
     for key in ("protocol", *path):
         found = found.get(key) if isinstance(found, Map) else None
     return found if isinstance(found, Map) else None
 
 
-def _numbers(section: Map, *keys: str) -> tuple[int, ...] | None:
+def numbers(section: Map, *keys: str) -> tuple[int, ...] | None:
     """The numbers under the keys, if all of them are there."""
     found = tuple(section.get(key) for key in keys)
     return found if all(isinstance(value, int) for value in found) else None  # type: ignore[return-value]
@@ -30,10 +31,11 @@ def _numbers(section: Map, *keys: str) -> tuple[int, ...] | None:
 @rule("ICD096")
 def markers_differ(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        framing = _section(node, "uart", "framing")
+        framing = section_of(node, "uart", "framing")
         if framing is None:
             continue
         seen: dict[int, str] = {}
+        escape = framing.get("escape")
         for key in ("start_of_message", "end_of_message", "escaped_data"):
             value = framing.get(key)
             if isinstance(value, int) and value in seen:
@@ -41,19 +43,23 @@ def markers_differ(ctx: Context) -> Iterator[Fault]:
                 yield Fault(framing, framing.at(key), message, "each has a byte of its own")
             elif isinstance(value, int):
                 seen[value] = key
+            if isinstance(value, int) and value == escape and key != "escaped_data":
+                message = f"the escape byte 0x{value:02X} is also `{key}`"
+                help = "with one byte lost, nothing would tell where a message begins or ends"
+                yield Fault(framing, framing.at(key), message, help)
 
 
 @rule("ICD097")
 def sizes_agree(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        can = _section(node, "can")
+        can = section_of(node, "can")
         if can is not None:
             yield from _identifier(can)
-        extended = _section(node, "can", "extended")
+        extended = section_of(node, "can", "extended")
         if extended is not None:
             yield from _product(extended, "max_bytes", "max_packets", "data_bytes")
             yield from _packets_left(can, extended)
-        files = _section(node, "file_transfer")
+        files = section_of(node, "file_transfer")
         if files is not None:
             yield from _product(files, "block_bytes", "block_packets", "packet_bytes")
             hole_map = files.get("hole_map")
@@ -63,9 +69,9 @@ def sizes_agree(ctx: Context) -> Iterator[Fault]:
 
 
 def _product(section: Map, whole: str, count: str, part: str) -> Iterator[Fault]:
-    numbers = _numbers(section, whole, count, part)
-    if numbers and numbers[0] != numbers[1] * numbers[2]:
-        message = f"`{whole}` is {numbers[0]}, but `{count}` times `{part}` is {numbers[1] * numbers[2]}"
+    found = numbers(section, whole, count, part)
+    if found and found[0] != found[1] * found[2]:
+        message = f"`{whole}` is {found[0]}, but `{count}` times `{part}` is {found[1] * found[2]}"
         yield Fault(section, section.at(whole), message, f"correct `{whole}`, `{count}` or `{part}`")
 
 

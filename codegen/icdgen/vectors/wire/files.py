@@ -27,6 +27,8 @@ def requests(known: Facts, source: Random) -> Requests:
             (1979, 12, 31, 0, 0, 0), (2108, 1, 1, 0, 0, 0), (2100, 2, 29, 0, 0, 0), (2021, 4, 31, 0, 0, 0),
             (2021, 0, 1, 0, 0, 0), (2021, 13, 1, 0, 0, 0), (2021, 1, 0, 0, 0, 0), (2021, 1, 1, 24, 0, 0),
             (2021, 1, 1, 0, 60, 0), (2021, 1, 1, 0, 0, 60),
+            # several at once: what does not exist is named before what does not fit, each from the year on
+            (2108, 1, 1, 24, 60, 0), (1979, 13, 32, 0, 0, 0), (2021, 2, 30, 0, 0, 60), (2108, 1, 1, 23, 0, 0),
         ]  # fmt: skip
         for date in dates:
             yield "a date", {

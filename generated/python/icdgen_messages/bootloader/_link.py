@@ -15,13 +15,19 @@ LINK = link.Link(
     longest_data=22,
     telemetry_ids=(128, 255),
     settings=link.Settings(
+        # Assumed: No time is given. The longest message takes 90 ms on the UART.
         reply_timeout=1000,
+        # Assumed: Nothing is said about trying again.
         retries=3,
+        # Assumed: No time is given.
         poll_interval=20,
+        # Assumed: No time is given.
         poll_timeout=5000,
     ),
     errors={"none": 0, "unknown_id": 1, "length": 2, "parameter": 3, "checksum": 4},
     commands={
+        # Assumed, acknowledge: Whether the acknowledge comes before the restart is
+        #   not said. None is waited for, and one that comes is accepted.
         1: link.Sent(1, acknowledged=False),
         2: link.Sent(6, setting=True),
         3: link.Sent(1, setting=True),
@@ -33,6 +39,7 @@ LINK = link.Link(
         9: link.Sent(2, setting=True),
         33: link.Sent(1),
         100: link.Sent(1),
+        # Assumed, acknowledge: As for Reset.
         101: link.Sent(0, acknowledged=False),
         102: link.Sent(1),
         103: link.Sent(2),
@@ -93,9 +100,14 @@ LINK = link.Link(
         start=127,
         end=255,
         escaped=31,
+        # Assumed: That the id is escaped like the data is not said. It matters for
+        #   telecommand 31 only, and for the id in its acknowledge.
         escapes_id=True,
         ignores_other=False,
     ),
+    # Assumed, data: Two bytes are announced, the last being the error. That the first
+    #   is the id of the telecommand, and that no other id heads the message, stood in a
+    #   figure.
     acknowledge=link.Acknowledge(length=2, id_at=0, error_at=1),
     polled=link.Polled(
         telemetry=240,
@@ -129,7 +141,11 @@ LINK = link.Link(
             left_in_last=0,
             packets=256,
             bytes=1792,
+            # Assumed: Neither the value of the fill nor how the receiver learns the
+            #   true length is said. The receiver takes the length of the message from
+            #   its id.
             fill=0,
+            # Assumed: No time-out between packets is given.
             packet_timeout=1000,
         ),
     ),
@@ -166,6 +182,9 @@ LINK = link.Link(
         message_bytes=16,
         msb0=False,
         received=1,
+        # Assumed: What the bits beyond the end of a short block are is not said.
+        #   Marked as received, nothing is sent for them; from the node they are
+        #   ignored.
         beyond_end=1,
         telecommands=(120, 121, 122, 123, 124, 125, 126, 127),
         telemetry=(247, 248, 249, 250, 251, 252, 253, 254),
@@ -174,7 +193,10 @@ LINK = link.Link(
     files=link.Files(
         packet_bytes=20,
         counter_bytes=2,
+        # Assumed: Where the count begins is not said. Bit 0 of the hole map is the
+        #   first packet.
         first_packet=0,
+        # Assumed: The value is not defined. Erased flash memory reads 0xFF.
         fill=255,
         block_packets=1024,
         block_bytes=20480,
@@ -231,6 +253,8 @@ LINK = link.Link(
                 telemetry=246,
                 fields={"checksum": "checksum"},
             ),
+            # Assumed: The procedure ends with the checksum and does not name the
+            #   telecommand that commits the block.
             "upload.finalize": link.Step(
                 telecommand=116,
                 fields={
@@ -259,27 +283,55 @@ LINK = link.Link(
             "format.progress": link.Step(telemetry=234, fields={"busy": "format_busy"}),
         },
         numbers={
+            # Assumed: No time is given.
             "list.poll_interval_ms": 50,
+            # Assumed: No time is given. The checksum of a large file has to be
+            #   computed meanwhile.
             "list.timeout_ms": 10000,
+            # Assumed: The field is not explained. Drivers in use send 20, the bytes
+            #   of the file in a packet.
             "download.message_length": 20,
+            # Assumed: Not said. The checksum comes with the length of the block,
+            #   which does not count the fill.
             "download.checksum_covers_fill": 0,
+            # Assumed: Which counter goes with the index file is not said.
             "download.index_counter": 0,
+            # Assumed: No time is given.
             "download.poll_interval_ms": 50,
+            # Assumed: No time is given.
             "download.ready_timeout_ms": 10000,
+            # Assumed: How a burst ends is not said. Packets follow one another in
+            #   rapid succession.
             "download.silence_ms": 500,
+            # Assumed: Nothing is said about giving up.
             "download.rounds": 32,
             "upload.block_size": 0,
+            # Assumed: No time is given.
             "upload.poll_interval_ms": 50,
             "upload.erase_timeout_s": 8,
+            # Assumed: Nothing is said about giving up.
             "upload.rounds": 32,
+            # Assumed: Not said. The node learns the length of the block only when the
+            #   block is committed, after the checksum.
             "upload.checksum_covers_fill": 1,
+            # Assumed: No time is given.
             "upload.finalize_timeout_ms": 5000,
+            # Assumed: No time is given.
             "erase.poll_interval_ms": 200,
+            # Assumed: No time is given.
             "erase.timeout_ms": 60000,
+            # Assumed: No time is given.
             "format.poll_interval_ms": 200,
+            # Assumed: No time is given.
             "format.timeout_ms": 60000,
         },
-        packet_ids={"uart": 119, "i2c": 241, "can": 241},
+        packet_ids={
+            "uart": 119,
+            "i2c": 241,
+            # Assumed: Download over CAN is not described. The packets are requested
+            #   one by one as on I2C.
+            "can": 241,
+        },
     ),
     identification=link.Step(
         telemetry=128,

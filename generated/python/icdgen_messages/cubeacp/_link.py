@@ -15,13 +15,19 @@ LINK = link.Link(
     longest_data=504,
     telemetry_ids=(128, 255),
     settings=link.Settings(
+        # Assumed: No time is given. The longest message takes 90 ms on the UART.
         reply_timeout=1000,
+        # Assumed: Nothing is said about trying again.
         retries=3,
+        # Assumed: No time is given.
         poll_interval=20,
+        # Assumed: No time is given.
         poll_timeout=5000,
     ),
     errors={"none": 0, "unknown_id": 1, "length": 2, "parameter": 3, "checksum": 4},
     commands={
+        # Assumed, acknowledge: Whether the acknowledge comes before the restart is
+        #   not said. None is waited for, and one that comes is accepted.
         1: link.Sent(1, acknowledged=False),
         2: link.Sent(6, setting=True),
         3: link.Sent(1, setting=True),
@@ -226,9 +232,14 @@ LINK = link.Link(
         start=127,
         end=255,
         escaped=31,
+        # Assumed: That the id is escaped like the data is not said. It matters for
+        #   telecommand 31 only, and for the id in its acknowledge.
         escapes_id=True,
         ignores_other=False,
     ),
+    # Assumed, data: Two bytes are announced, the last being the error. That the first
+    #   is the id of the telecommand, and that no other id heads the message, stood in a
+    #   figure.
     acknowledge=link.Acknowledge(length=2, id_at=0, error_at=1),
     polled=link.Polled(
         telemetry=240,
@@ -262,7 +273,11 @@ LINK = link.Link(
             left_in_last=0,
             packets=256,
             bytes=1792,
+            # Assumed: Neither the value of the fill nor how the receiver learns the
+            #   true length is said. The receiver takes the length of the message from
+            #   its id.
             fill=0,
+            # Assumed: No time-out between packets is given.
             packet_timeout=1000,
         ),
     ),
@@ -276,7 +291,11 @@ LINK = link.Link(
             xor_out=0,
             empty=255,
         ),
+        # Assumed: Whether the id counts among the bytes of a command is not said. The
+        #   extra byte of a frame can cover the frame only.
         covers_id=False,
+        # Assumed: Checksums on CAN are not sent. In an extended message the receiver
+        #   could not tell the checksum from the fill.
         telecommand_buses=("uart", "i2c"),
         telemetry_buses=("i2c",),
         bytes=1,
@@ -289,10 +308,17 @@ LINK = link.Link(
         reflect_out=False,
         xor_out=0,
     ),
+    # Assumed, frame_order: The order of the frames in an entry is not said. They
+    #   follow the bits of the mask, bit 0 of the first byte first.
+    # Assumed, short_frames: All loggable frames are said to have 6 bytes, two have 4.
+    #   They are taken to be filled up, since only then the given sizes hold.
+    # Assumed, unassigned_bits: What a log with an unassigned bit holds is not said.
+    #   The given sizes count every bit that is set.
     mask=link.LogMask(
         size=10,
         msb0=False,
         slot_bytes=6,
+        # Assumed: The value is not given. It is written and never looked at.
         fill=0,
         bits={
             0: link.LogBit(0, 144, 6, "Communication Status"),
@@ -368,6 +394,8 @@ LINK = link.Link(
         frames_at=6,
         file_type=2,
     ),
+    # Assumed, framed: Start, end and escapes of these messages are not described.
+    #   They are taken to be those of every other message.
     log_message=link.LogMessageForm(id=255, mask_at=1, frames_at=11),
     time={
         "second": link.TimePart(at=0, bits=5, factor=2, offset=0),
@@ -394,6 +422,9 @@ LINK = link.Link(
         message_bytes=16,
         msb0=False,
         received=1,
+        # Assumed: What the bits beyond the end of a short block are is not said.
+        #   Marked as received, nothing is sent for them; from the node they are
+        #   ignored.
         beyond_end=1,
         telecommands=(120, 121, 122, 123, 124, 125, 126, 127),
         telemetry=(247, 248, 249, 250, 251, 252, 253, 254),
@@ -402,7 +433,10 @@ LINK = link.Link(
     files=link.Files(
         packet_bytes=20,
         counter_bytes=2,
+        # Assumed: Where the count begins is not said. Bit 0 of the hole map is the
+        #   first packet.
         first_packet=0,
+        # Assumed: The value is not defined. Erased flash memory reads 0xFF.
         fill=255,
         block_packets=1024,
         block_bytes=20480,
@@ -459,6 +493,8 @@ LINK = link.Link(
                 telemetry=246,
                 fields={"checksum": "checksum"},
             ),
+            # Assumed: The procedure ends with the checksum and does not name the
+            #   telecommand that commits the block.
             "upload.finalize": link.Step(
                 telecommand=116,
                 fields={
@@ -487,27 +523,55 @@ LINK = link.Link(
             "format.progress": link.Step(telemetry=234, fields={"busy": "format_busy"}),
         },
         numbers={
+            # Assumed: No time is given.
             "list.poll_interval_ms": 50,
+            # Assumed: No time is given. The checksum of a large file has to be
+            #   computed meanwhile.
             "list.timeout_ms": 10000,
+            # Assumed: The field is not explained. Drivers in use send 20, the bytes
+            #   of the file in a packet.
             "download.message_length": 20,
+            # Assumed: Not said. The checksum comes with the length of the block,
+            #   which does not count the fill.
             "download.checksum_covers_fill": 0,
+            # Assumed: Which counter goes with the index file is not said.
             "download.index_counter": 0,
+            # Assumed: No time is given.
             "download.poll_interval_ms": 50,
+            # Assumed: No time is given.
             "download.ready_timeout_ms": 10000,
+            # Assumed: How a burst ends is not said. Packets follow one another in
+            #   rapid succession.
             "download.silence_ms": 500,
+            # Assumed: Nothing is said about giving up.
             "download.rounds": 32,
             "upload.block_size": 0,
+            # Assumed: No time is given.
             "upload.poll_interval_ms": 50,
             "upload.erase_timeout_s": 8,
+            # Assumed: Nothing is said about giving up.
             "upload.rounds": 32,
+            # Assumed: Not said. The node learns the length of the block only when the
+            #   block is committed, after the checksum.
             "upload.checksum_covers_fill": 1,
+            # Assumed: No time is given.
             "upload.finalize_timeout_ms": 5000,
+            # Assumed: No time is given.
             "erase.poll_interval_ms": 200,
+            # Assumed: No time is given.
             "erase.timeout_ms": 60000,
+            # Assumed: No time is given.
             "format.poll_interval_ms": 200,
+            # Assumed: No time is given.
             "format.timeout_ms": 60000,
         },
-        packet_ids={"uart": 119, "i2c": 241, "can": 241},
+        packet_ids={
+            "uart": 119,
+            "i2c": 241,
+            # Assumed: Download over CAN is not described. The packets are requested
+            #   one by one as on I2C.
+            "can": 241,
+        },
     ),
     identification=link.Step(
         telemetry=128,

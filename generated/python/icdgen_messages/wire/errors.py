@@ -69,14 +69,18 @@ class ReplyTimeoutError(IcdError):
 
 
 class FailedError(IcdError):
-    """A procedure did not end well: ``result`` is its `Procedure.result`."""
+    """A procedure did not end well: ``result`` is its `Procedure.result`.
 
-    def __init__(self, result: str) -> None:
-        super().__init__(f"the procedure ended with: {result}")
-        self.result = result
+    ``event`` is the refusal that ended it, if one did.
+    """
 
-    def __reduce__(self) -> tuple[type[FailedError], tuple[str]]:
-        return FailedError, (self.result,)
+    def __init__(self, result: str, event: Refused | None = None) -> None:
+        why = "" if event is None else f": {RefusedError(event)}"
+        super().__init__(f"the procedure ended with: {result}{why}")
+        self.result, self.event = result, event
+
+    def __reduce__(self) -> tuple[type[FailedError], tuple[str, Refused | None]]:
+        return FailedError, (self.result, self.event)
 
 
 def need(part: T | None, name: str) -> T:

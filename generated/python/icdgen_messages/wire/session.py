@@ -30,7 +30,8 @@ class Session:
 
     The port is yours: ``write(data)`` sends, ``read(seconds)`` returns what has come,
     after so many seconds at the latest, if need be nothing. ``clock`` gives seconds.
-    ``on_event`` is told of what comes unasked, such as logs.
+    ``on_event`` is told of what comes unasked, such as logs, and by `run` of refusals
+    with a code that the ICD does not have.
     """
 
     def __init__(
@@ -68,21 +69,26 @@ class Session:
     ) -> P:
         """Runs a procedure to its end; ``progress`` is told of bytes, and of how many.
 
-        A refusal with a code that the ICD does not have is taken for a damaged
-        acknowledge, which tells nothing. Raises `FailedError`.
+        A request that is refused with a code that the ICD does not have is sent again, if
+        it may be, as the acknowledge may be damaged, and else taken for a time-out. Raises
+        `FailedError`.
         """
         events: list[Event] = []
         shown: tuple[int, int | None] | None = None
         asked: Request | None = None
+        refused: Refused | None = None
         left = 0
         while True:
             is_again = False
             for event in events:
-                if isinstance(event, Refused) and _is_damaged(event):
-                    is_again = asked is not None and asked.repeat and left > 0
-                    if is_again:
-                        continue
-                    event = Timeout(event.id, event.attempts)
+                if isinstance(event, Refused):
+                    refused = event
+                    if _may_be_damaged(event):
+                        self._tell(event)
+                        is_again = bool(asked and asked.repeat) and left > 0
+                        if is_again:
+                            continue
+                        event = Timeout(event.id, event.attempts)
                 procedure.event(self._now(), event)
             events = []
             if is_again:
@@ -99,7 +105,8 @@ class Session:
             if procedure.result == "done":
                 return procedure
             if procedure.result:
-                raise FailedError(procedure.result)
+                why = refused if procedure.result == "refused" else None
+                raise FailedError(procedure.result, why)
             if not events:
                 events = self.wait(procedure.deadline)
 
@@ -119,9 +126,13 @@ class Session:
             events = self.client.tick(self._now())
         self._flush()
         for event in events:
-            if self._on_event and not isinstance(event, (Done, Refused, Timeout)):
-                self._on_event(event)
+            if not isinstance(event, (Done, Refused, Timeout)):
+                self._tell(event)
         return events
+
+    def _tell(self, event: Event) -> None:
+        if self._on_event:
+            self._on_event(event)
 
     def _outcome(self, events: list[Event]) -> Outcome:
         while True:
@@ -148,6 +159,6 @@ def _done(outcome: Outcome) -> Done:
     return outcome
 
 
-def _is_damaged(event: Refused) -> bool:
+def _may_be_damaged(event: Refused) -> bool:
     """Whether the code is one that the ICD does not have."""
     return event.code is not None and event.reason is None

@@ -1,4 +1,4 @@
-"""Random requests about the protocol layer, such as no vector holds: streams cut anywhere, packets in any order, long scripts."""
+"""Random requests about the wire layer, such as no vector holds: streams cut anywhere, packets in any order, long scripts."""
 
 from __future__ import annotations
 

@@ -1,0 +1,228 @@
+"""Numbers that have to fit the bits and bytes in which the protocol sends them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import ceil
+
+from icdgen.icd.model import Message, Node
+from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.ids import KEYS
+from icdgen.icd.rules.protocol_sizes import numbers, section_of
+from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.wording import count, listing, quote
+from icdgen.icd.tree import Map, Seq
+
+BYTE = 255
+MAX_PACKETS = 256  # of an extended message, where the ICD gives no other number
+CRC_WIDTHS = (8, 32)  # that generated code computes
+TIME_BITS = 32  # of a packed time, at most
+TIME_PARTS = ("year", "month", "day", "hour", "minute", "second")
+ROLES = ("type", "channel", "source", "destination")  # parts of a CAN identifier
+
+
+def in_force(ctx: Context, node: Node, *path: str) -> Map | None:
+    """The section that holds for the node: its own, or that of what it includes."""
+    for one in reversed(ctx.scope(node)):
+        if section_of(one, path[0]) is not None:
+            return section_of(one, *path)
+    return None
+
+
+@rule("ICD099")
+def packets_can_be_counted(ctx: Context) -> Iterator[Fault]:
+    seen: set[tuple[int, int]] = set()
+    for node in ctx.icd.nodes:
+        can, extended = in_force(ctx, node, "can"), in_force(ctx, node, "can", "extended")
+        size = extended.get("data_bytes") if extended is not None else None
+        if can is None or extended is None or not isinstance(size, int) or size < 1:
+            continue
+        last = extended.get("packets_left_in_last", 0)
+        most = extended.get("max_packets", MAX_PACKETS)
+        if not isinstance(last, int) or not isinstance(most, int):
+            continue
+        if ("max_packets" in extended or last > BYTE) and last + most - 1 > BYTE:
+            if (id(extended), 0) not in seen:
+                seen.add((id(extended), 0))
+                key = "max_packets" if "max_packets" in extended else "packets_left_in_last"
+                message = (
+                    f"the first of {count(most, 'packet')} would count {last + most - 1} left, a byte holds {BYTE}"
+                )
+                help = f"correct `packets_left_in_last`, or `max_packets`: at most {max(BYTE + 1 - last, 0)}"
+                yield Fault(extended, extended.at(key), message, help)
+            continue
+        for message_ in _extended(ctx, node, can):
+            packets = ceil(message_.length / size)
+            if last + packets - 1 > BYTE and (id(extended), id(message_.source)) not in seen:
+                seen.add((id(extended), id(message_.source)))
+                message = (
+                    f"{quote(message_.name)} takes {count(packets, 'CAN packet')}, the first with {last + packets - 1} left: "
+                    f"a byte holds {BYTE}"
+                )
+                help = f"{count((BYTE + 1 - last) * size, 'byte')} can be sent: correct `length` or `can.extended`"
+                yield Fault(message_.source, message_.source.at("length"), message, help)
+
+
+def _extended(ctx: Context, node: Node, can: Map) -> Iterator[Message]:
+    """Messages that are sent as several packets."""
+    room = can.get("max_data_bytes", 8)
+    named = {
+        direction: isinstance(can.get(direction), Map) and key in can[direction]
+        for direction, key in (("telecommand", "extended_request"), ("telemetry", "extended_response"))
+    }
+    for message in ctx.messages_of(node):
+        ways = {direction for _, direction in KEYS[message.kind] if named[direction]}
+        if ways and isinstance(room, int) and message.length > room:
+            yield message
+
+
+@rule("ICD100")
+def numbers_fit(ctx: Context) -> Iterator[Fault]:
+    seen: set[tuple[int, str, int]] = set()
+    for node in ctx.icd.nodes:
+        for fault in (*_on_can(ctx, node), *_ids(ctx, node), *_codes(node), *_checksums(node), *_counter(node)):
+            key = (id(fault.owner), fault.message, fault.place.line)
+            if key not in seen:
+                seen.add(key)
+                yield fault
+
+
+def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
+    own = section_of(node, "can")
+    can = in_force(ctx, node, "can")
+    bits = _widths(can) if can is not None else {}
+    if own is not None:
+        types = section_of(node, "can", "message_types")
+        for row in mappings(types.get("values") if types is not None else None):
+            yield from _fits(row, "value", bits.get("type"), "a message type")
+        for role in ("source", "destination"):
+            yield from _fits(own, "node_address", bits.get(role), f"a {role} address")
+    for message in ctx.messages_of(node):
+        for key, _ in KEYS[message.kind]:
+            yield from _fits(message.source, key, bits.get("channel"), "the channel of a CAN identifier")
+
+
+def _widths(can: Map) -> dict[str, int]:
+    rows = [row for row in mappings(can.get("identifier")) if isinstance(row.get("bits"), int)]
+    return {row.get("role", row.get("name")): row["bits"] for row in rows}
+
+
+def _fits(owner: Map, key: str, bits: int | None, what: str) -> Iterator[Fault]:
+    value = owner.get(key)
+    if bits is not None and isinstance(value, int) and value >= 1 << bits:
+        message = f"{what} has {count(bits, 'bit')}: 0 to {(1 << bits) - 1}, not {value}"
+        yield Fault(owner, owner.at(key), message, f"correct `{key}`, or `bits` of the identifier")
+
+
+def _ids(ctx: Context, node: Node) -> Iterator[Fault]:
+    """Ids on the buses where an id is a byte. That messages keep to `message_id` is another rule's."""
+    bus = next((one for one in ("uart", "i2c") if in_force(ctx, node, one) is not None), None)
+    for direction in ("telecommand", "telemetry") if bus is not None else ():
+        section = in_force(ctx, node, "message_id", direction)
+        if section is not None:
+            yield from _byte(section, "last", f"an id on {bus}")
+    log = section_of(node, "unsolicited_log")
+    if log is not None:
+        yield from _byte(log, "id", "the id of an unsolicited log")
+
+
+def _codes(node: Node) -> Iterator[Fault]:
+    errors = section_of(node, "errors")
+    if errors is None:
+        return
+    roles: dict[int, str] = {}
+    for role in ("none", "unknown_id", "length", "parameter", "checksum"):
+        yield from _byte(errors, role, "an error code")
+        code = errors.get(role)
+        if isinstance(code, int) and code in roles:
+            yield Fault(
+                errors, errors.at(role), f"{code} means both `{roles[code]}` and `{role}`", "each has its own code"
+            )
+        elif isinstance(code, int):
+            roles[code] = role
+
+
+def _byte(owner: Map, key: str, what: str) -> Iterator[Fault]:
+    value = owner.get(key)
+    if isinstance(value, int) and value > BYTE:
+        yield Fault(owner, owner.at(key), f"{what} is a byte: 0 to {BYTE}, not {value}", f"correct `{key}`")
+
+
+def _checksums(node: Node) -> Iterator[Fault]:
+    least, most = CRC_WIDTHS
+    for name in ("crc8", "crc16"):
+        crc = section_of(node, name)
+        width = crc.get("width") if crc is not None else None
+        if crc is None or not isinstance(width, int):
+            continue
+        if not least <= width <= most:
+            message = f"a CRC of {count(width, 'bit')}: those of {least} to {most} bits can be generated"
+            yield Fault(crc, crc.at("width"), message, "correct `width`, or leave the section out")
+            continue
+        for key in ("polynomial", "init", "xor_out", "empty", "check"):
+            value = crc.get(key)
+            if isinstance(value, int) and value >= 1 << width:
+                yield Fault(crc, crc.at(key), f"`{key}` does not fit {width} bits", f"correct `{key}` or `width`")
+        for direction in ("telecommand", "telemetry"):
+            form = crc.get(direction)
+            extra = form.get("extra_bytes") if isinstance(form, Map) else None
+            if isinstance(extra, int) and extra * 8 < width:
+                message = f"a CRC of {width} bits does not fit {count(extra, 'byte')}"
+                yield Fault(form, form.at("extra_bytes"), message, "correct `extra_bytes` or `width`")
+
+
+def _counter(node: Node) -> Iterator[Fault]:
+    files = section_of(node, "file_transfer")
+    found = numbers(files, "packet_counter_bytes", "block_packets") if files is not None else None
+    if files is None or found is None:
+        return
+    first = files.get("first_packet", 0)
+    size, packets = found
+    if isinstance(first, int) and first + packets > 256**size:
+        message = (
+            f"the last packet of a block has number {first + packets - 1}, which does not fit {count(size, 'byte')}"
+        )
+        yield Fault(files, files.at("packet_counter_bytes"), message, "correct it, `block_packets` or `first_packet`")
+
+
+@rule("ICD101")
+def identifier_is_whole(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        can = section_of(node, "can")
+        parts = can.get("identifier") if can is not None else None
+        if can is None or not isinstance(parts, Seq) or not {"message_types", "telecommand", "telemetry"} & set(can):
+            continue
+        roles: set[str] = set()
+        for row in mappings(parts):
+            role = row.get("role", row.get("name"))
+            if role in ROLES and role in roles:
+                yield Fault(
+                    row, row.at("role" if "role" in row else "name"), f"a second {role}", "each role stands once"
+                )
+            roles.add(role)
+        missing = [f"`{role}`" for role in ROLES if role not in roles]
+        if missing:
+            message = f"the identifier has no part for {listing(missing)}"
+            yield Fault(can, can.at("identifier"), message, "give the parts their `role`")
+
+
+@rule("ICD102")
+def times_are_whole(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        time = section_of(node, "msdos_time")
+        if time is None or not isinstance(time.get("parts"), Seq):
+            continue
+        bits = time.get("bits")
+        if isinstance(bits, int) and bits > TIME_BITS:
+            message = f"a packed time of {bits} bits: up to {TIME_BITS} can be generated"
+            yield Fault(time, time.at("bits"), message, "correct `bits`, or leave the section out")
+        named: set[str] = set()
+        for row in mappings(time["parts"]):
+            name = row.get("name")
+            if name in named:
+                yield Fault(row, row.at("name"), f"a second {name}", "each part stands once")
+            named.add(name)
+        missing = [f"`{name}`" for name in TIME_PARTS if name not in named]
+        if missing:
+            message = f"the packed time has no {listing(missing)}"
+            yield Fault(time, time.at("parts"), message, "it has all parts from `year` to `second`")

@@ -1,0 +1,52 @@
+"""A byte port with the simulated device behind it, in a time that passes as fast as it can."""
+
+from __future__ import annotations
+
+from icdgen.icd.model import Icd
+from icdgen.protocol import uart
+from icdgen.sim import run
+
+
+class Port:
+    """Nothing sleeps: reading moves the clock, ``now`` in milliseconds."""
+
+    def __init__(self, icd: Icd, node: str, **options) -> None:
+        self.line, _ = run.build(icd, node, run.Options(**options))
+        self.now = 0.0
+
+    def clock(self) -> float:
+        return self.now / 1000
+
+    def write(self, data: bytes) -> None:
+        self.line.received(int(self.now), data)
+
+    def read(self, seconds: float) -> bytes:
+        end = self.now + seconds * 1000
+        while True:
+            data = self.line.take(int(self.now))
+            due = self.line.deadline
+            if data or self.now >= end:
+                return data
+            self.now = end if due is None else min(end, max(self.now + 1, due))
+            self.line.tick(int(self.now))
+
+    def close(self) -> None:
+        pass
+
+
+class Refusing(Port):
+    """So many times the acknowledge of the telecommand has the error code. ``acknowledged``: how often there was one."""
+
+    def __init__(self, icd: Icd, node: str, id: int, code: int, times: int, **options) -> None:
+        super().__init__(icd, node, **options)
+        framing = self.line.decoder.framing
+        self.good, self.bad = (uart.encode(framing, bytes((id, one))) for one in (0, code))
+        self.times, self.acknowledged = times, 0
+
+    def read(self, seconds: float) -> bytes:
+        data = super().read(seconds)
+        if self.good in data:
+            self.acknowledged += 1
+            if self.acknowledged <= self.times:
+                return data.replace(self.good, self.bad)
+        return data

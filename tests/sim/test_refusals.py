@@ -1,0 +1,50 @@
+"""Error codes that the ICD does not have: they are kept and told, and the request is sent again."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.link.session import Session
+from icdgen.protocol import transfer
+from tests.sim.device import ICD
+from tests.sim.port import Refusing
+
+ODD = 0x55
+NODE = ICD.node("bootloader")
+
+
+class Talking(Session):
+    """A session in the time of its port."""
+
+    @property
+    def now(self) -> int:
+        return int(self.port.now)
+
+
+def uploading(code: int, times: int):
+    """What became of an upload whose first telecommand is refused; what the session told; and the port."""
+    heard = []
+    step = ICD.protocol_of(NODE)["file_transfer"]["upload"]["initiate"]["message"]
+    id = next(m.id for m in ICD.messages_of(NODE) if m.name == step)
+    port = Refusing(ICD, NODE.name, id, code, times, boot=10**9)
+    talking = Talking(ICD, NODE, port, on_event=heard.append)
+    return talking.run(transfer.Upload(talking.known, 3, bytes(100))), heard, port.acknowledged
+
+
+@pytest.mark.parametrize("times", [1, 3])
+def test_a_refusal_that_the_icd_does_not_know_is_told_and_asked_again(times):
+    result, heard, acknowledged = uploading(ODD, times)
+    assert result == "done"
+    assert [(event["event"], event["code"], event["reason"]) for event in heard] == [("refused", ODD, None)] * times
+    assert acknowledged == times + 1
+
+
+def test_a_refusal_that_the_icd_does_not_know_is_a_time_out_at_last():
+    result, heard, acknowledged = uploading(ODD, 100)
+    assert result == "timeout"
+    assert [event["code"] for event in heard] == [ODD] * 4 and acknowledged == 4
+
+
+def test_a_refusal_that_the_icd_knows_is_not_asked_again():
+    code = ICD.protocol_of(NODE)["errors"]["length"]
+    assert uploading(code, 1) == ("refused", [], 1)
