@@ -1,0 +1,143 @@
+"""The generated package as the client of `tests.sim.harness`: python -m tests.python.sim_client HOST PORT SIZE
+
+``generated/python`` has to be on the path; the ICD itself is asked only which telecommands restart the node.
+"""
+
+from __future__ import annotations
+
+import select
+import socket
+import sys
+from typing import TYPE_CHECKING
+
+from icdgen_messages import cubeacp
+from icdgen_messages.wire import (
+    Download,
+    FailedError,
+    RefusedError,
+    ReplyTimeoutError,
+    Session,
+    Settings,
+    Upload,
+    identify,
+)
+
+from icdgen.protocol import facts
+from tests.sim.client import log_message
+from tests.sim.device import ICD, hasty
+
+if TYPE_CHECKING:
+    from icdgen_messages import Message
+
+KNOWN = hasty(facts.of(ICD, ICD.node("cubeacp")))
+LINK = cubeacp.LINK._replace(files=cubeacp.LINK.files._replace(numbers=dict(KNOWN.files.numbers)))
+LOGS = next(m for _, m in LINK.TELECOMMANDS.items() if log_message() == m.NAME)
+FAST = Settings(reply_timeout=150, retries=4, poll_interval=5, poll_timeout=2000)
+TRIES = 20
+
+
+class Failed(Exception):
+    """Not what the harness expects."""
+
+
+def main(host: str, number: str, size: str) -> int:
+    with socket.create_connection((host, int(number))) as port:
+        port.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+        def read(seconds: float) -> bytes:
+            return port.recv(4096) if select.select([port], [], [], seconds)[0] else b""
+
+        device = Session(LINK, port.sendall, read, settings=FAST)
+        if not identity(device).matches:
+            return 3
+        try:
+            for _, message in LINK.TELEMETRY.items():
+                device.get(message)
+            every_setting(device)
+            insist(device, LOGS())  # none during the transfers
+            data = transfer(device, lambda: Download(LINK, "uart", 2, 1, int(size))).data
+            transfer(device, lambda: Upload(LINK, 3, data))
+            every_telecommand(device)
+        except (Failed, FailedError, RefusedError, ReplyTimeoutError) as failure:
+            print(type(failure).__name__, failure, file=sys.stderr)
+            return 1
+    return 0
+
+
+def identity(device: Session):
+    return identify(LINK, device.get(cubeacp.Identification).to_bytes())
+
+
+def every_setting(device: Session) -> None:
+    for _, message in LINK.TELECOMMANDS.items():
+        if message.KIND == "configuration":
+            made = numbered(message)
+            insist(device, made)
+            if device.get(message) != made:
+                raise Failed(f"{message.NAME} is not what was set")
+
+
+def numbered(message: type[Message]) -> Message:
+    """A message in which hardly two numbers have the same value, so that none can be taken for another."""
+    made = message.from_bytes(message().to_bytes())
+    for number, info in enumerate(message.FIELDS, 1):
+        if info.type in ("uint", "int") and info.const is None:
+            setattr(made, info.attribute, number % (1 << info.bits - 1))
+    return made
+
+
+def every_telecommand(device: Session) -> None:
+    others = [message for _, message in LINK.TELECOMMANDS.items() if message.KIND != "configuration"]
+    resets = {m.name for m in KNOWN.telecommands.values() if m.expects_reset}
+    for message in sorted(others, key=lambda message: message.NAME in resets):
+        if message.NAME in resets:
+            device.send(message())
+            if identity(device).matches:
+                raise Failed(f"{message.NAME} does not restart the node")
+        elif message.ACKNOWLEDGED:
+            try:
+                insist(device, message())
+            except RefusedError as error:
+                if error.event.reason is None:
+                    raise
+        else:
+            silent(device, message)
+
+
+def silent(device: Session, message: type[Message]) -> None:
+    """The node does not acknowledge it, but remembers that it was the last one. If it is lost nobody notices."""
+    last = LINK.TELEMETRY[LINK.polled.telemetry]
+    for _ in range(TRIES):
+        device.send(message())
+        if getattr(device.get(last), LINK.polled.id) in message.IDS:
+            return
+    raise Failed(f"{message.NAME} does not arrive")
+
+
+def insist(device: Session, message: Message) -> None:
+    """Sends it until it is acknowledged, or refused twice: an acknowledge may be spoilt."""
+    refused = 0
+    for _ in range(TRIES):
+        try:
+            return device.send(message, repeat=True)
+        except RefusedError as error:
+            refused += error.event.reason is not None
+            if refused > 1:
+                raise
+    raise Failed(f"{message.NAME} is never acknowledged")
+
+
+def transfer(device: Session, procedure):
+    """A spoilt acknowledge may look like a refusal, which ends a transfer: only what happens each time is believed."""
+    for _ in range(TRIES):
+        try:
+            return device.run(procedure())
+        except FailedError as error:
+            if error.result != "refused":
+                raise
+            failure = error
+    raise failure
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
