@@ -82,6 +82,66 @@ def test_the_sections_of_the_icd_are_those_of_the_link(nodes, headers, tmp_path)
     assert told == [" ".join([node.name, *parts(node.protocol)]) for node in nodes]
 
 
+CLIENTS = """
+#include <stdio.h>
+#include <stdlib.h>
+{includes}
+
+static void on_event(void *context, const icd_event_t *event)
+{{
+    (void)context;
+    (void)event;
+}}
+
+/* The status of a client and of its request, after which it is told of input. */
+static void try_on(const icd_link_t *link, icd_bus_t bus, size_t size)
+{{
+    static const uint8_t bytes[] = {{1, 2, 3}};
+    uint8_t *const buffer = (uint8_t *)malloc(size);
+    icd_can_packet_t packet;
+    icd_client_t client;
+    memset(&packet, 0, sizeof packet);
+    printf(" %d", (int)icd_client_init(&client, link, bus, buffer, size));
+    printf("%d", (int)icd_client_request(&client, 0, link->telemetry[0].id));
+    if (bus == ICD_BUS_CAN) {{
+        icd_client_packet(&client, 1, &packet, on_event, NULL);
+    }} else if (bus == ICD_BUS_UART) {{
+        icd_client_received(&client, 1, bytes, sizeof bytes, on_event, NULL);
+    }} else {{
+        icd_client_transferred(&client, 1, bytes, sizeof bytes, on_event, NULL);
+    }}
+    free(buffer);
+}}
+
+int main(void)
+{{
+    static const icd_link_t *(*const links[])(void) = {{{links}}};
+    for (size_t i = 0; i < sizeof links / sizeof links[0]; ++i) {{
+        const icd_link_t *const link = links[i]();
+        const size_t size = icd_client_bytes(link);
+        try_on(link, ICD_BUS_UART, size);
+        try_on(link, ICD_BUS_I2C, size);
+        try_on(link, ICD_BUS_CAN, size);
+        try_on(link, ICD_BUS_UART, size - 1u);
+        puts("");
+    }}
+    return 0;
+}}
+"""
+
+
+def test_a_client_on_a_bus_that_the_icd_does_not_have_refuses_every_request(nodes, headers, tmp_path):
+    source = tmp_path / "clients.c"
+    includes = "\n".join(f'#include "{node.name}/link.h"' for node in nodes)
+    source.write_text(CLIENTS.format(includes=includes, links=", ".join(f"{node.name}_link" for node in nodes)))
+    flags = ("-std=c99", *harness.WARNINGS, *harness.SANITIZERS, f"-I{headers}")
+    program = harness.compile(source, *flags, output=tmp_path / "clients")
+    told = subprocess.run([program], capture_output=True, text=True, check=True).stdout.splitlines()
+    ok, length, unsupported = "00", "14", "44"  # of the client and of the request
+    buses = [["uart" in node.protocol, "i2c" in node.protocol, "can" in node.protocol] for node in nodes]
+    assert told == [" ".join(["", *(ok if bus else unsupported for bus in three), length]) for three in buses]
+
+
 def parts(protocol: dict) -> list[str]:
     """What the program above tells of a link for this protocol."""
     logs = {"telemetry_log", "unsolicited_log"}  # which nobody can read without the mask
