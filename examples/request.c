@@ -9,7 +9,9 @@ int main(int argc, char **argv)
     cubeacp_estimated_attitude_angles_t angles;
     const int port = port_open("127.0.0.1", argc > 1 ? argv[1] : "4000");
     icd_client_init(&client, cubeacp_link(), ICD_BUS_UART, buffer, sizeof buffer);
-    ICD_REQUEST(&client, port_now(), CUBEACP_ESTIMATED_ATTITUDE_ANGLES);
+    if (ICD_REQUEST(&client, port_now(), CUBEACP_ESTIMATED_ATTITUDE_ANGLES) != ICD_OK) {
+        return fprintf(stderr, "no such request on this bus\n"), 1;
+    }
     const icd_event_t end = port_ask(port, &client, frame, sizeof frame); /* sends, waits, asks again */
     if (cubeacp_estimated_attitude_angles_decode(&angles, frame, end.length) != ICD_OK) {
         return fprintf(stderr, "no reply, asked %u times\n", (unsigned)end.attempts), 1;

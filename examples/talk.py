@@ -1,15 +1,17 @@
-"""Asks a node for its attitude, and switches it on. In another terminal: icdgen sim --node cubeacp --tcp 4000"""
+"""Switches the loop of a node on and asks for its attitude. In another terminal: icdgen sim --node cubeacp --tcp 4000"""
 
 import select
 import socket
-import sys
 
-from icdgen_messages.cubeacp import LINK, AdcsRunMode, EstimatedAttitudeAngles, Identification, SetAdcsRunMode
-from icdgen_messages.wire import Session, identify
+from icdgen_messages.cubeacp import LINK, AdcsRunMode, EstimatedAttitudeAngles, SetAdcsRunMode
+from icdgen_messages.wire import Session
 
-with socket.create_connection(("127.0.0.1", int(sys.argv[1]))) as port:
-    device = Session(LINK, port.sendall, lambda s: port.recv(4096) if select.select([port], [], [], s)[0] else b"")
-    print(identify(LINK, device.get(Identification).to_bytes()))
-    device.send(SetAdcsRunMode(enabled=AdcsRunMode.ENABLED))
+with socket.create_connection(("127.0.0.1", 4000)) as port:
+
+    def read(seconds):
+        return port.recv(4096) if select.select([port], [], [], seconds)[0] else b""
+
+    device = Session(LINK, port.sendall, read)  # a serial port's write and read do as well
+    device.send(SetAdcsRunMode(enabled=AdcsRunMode.ENABLED))  # returns when it is acknowledged
     angles = device.get(EstimatedAttitudeAngles)
     print(f"roll {angles.estimated_roll_angle_deg:.2f} deg")

@@ -1849,6 +1849,7 @@ typedef struct {
     const icd_link_t *link;
     icd_client_settings_t settings; /**< May be changed while no request is going on. */
     icd_bus_t bus;
+    bool ready; /* icd_client_init() was successful */
     icd_client_state_t state;
     bool checks_telecommands;
     bool checks_telemetry;
@@ -1883,24 +1884,14 @@ static inline size_t icd_client_bytes(const icd_link_t *link)
     return link->longest_telecommand + (slot > link->longest ? slot : link->longest);
 }
 
-/**
- * A client on one bus with the times of the ICD. ICD_ERROR_UNSUPPORTED if the node is not on that bus, ICD_ERROR_LENGTH
- * if the buffer is smaller than icd_client_bytes(). The client must stay where it is.
- */
-static inline icd_status_t icd_client_init(
-    icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
+static inline icd_status_t icdgen_client_input_init(icd_client_t *client, uint8_t *buffer, size_t size)
 {
+    const icd_link_t *const link = client->link;
     const size_t first = link->longest_telecommand;
-    memset(client, 0, sizeof *client);
-    client->link = link;
-    client->bus = bus;
-    client->settings = link->client;
-    client->whole = buffer;
-    client->encoder.ended = true;
     if (size < icd_client_bytes(link)) {
         return ICD_ERROR_LENGTH;
     }
-    switch (bus) {
+    switch (client->bus) {
     case ICD_BUS_UART:
         return icd_uart_decoder_init(&client->decoder, link, buffer + first, link->longest);
     case ICD_BUS_CAN:
@@ -1909,6 +1900,25 @@ static inline icd_status_t icd_client_init(
     default:
         return link->i2c_address < 0 ? ICD_ERROR_UNSUPPORTED : ICD_OK;
     }
+}
+
+/**
+ * A client on one bus with the times of the ICD. ICD_ERROR_UNSUPPORTED if the node is not on that bus, ICD_ERROR_LENGTH
+ * if the buffer is smaller than icd_client_bytes(); it refuses every request then. The client must stay where it is.
+ */
+static inline icd_status_t icd_client_init(
+    icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
+{
+    icd_status_t status;
+    memset(client, 0, sizeof *client);
+    client->link = link;
+    client->bus = bus;
+    client->settings = link->client;
+    client->whole = buffer;
+    client->encoder.ended = true;
+    status = icdgen_client_input_init(client, buffer, size);
+    client->ready = status == ICD_OK;
+    return status;
 }
 
 /** Uses checksums where the ICD has them for the bus. */
@@ -1994,14 +2004,19 @@ static inline bool icdgen_client_fits_bus(const icd_client_t *client)
 
 /**
  * Begins a request; its data are copied. ICD_ERROR_UNKNOWN_ID, ICD_ERROR_BUSY while another one is going on or has not
- * been taken by the output functions, ICD_ERROR_LENGTH; nothing has happened then.
+ * been taken by the output functions, ICD_ERROR_LENGTH, ICD_ERROR_UNSUPPORTED if icd_client_init() failed; nothing has
+ * happened then.
  */
 static inline icd_status_t icd_client_start(
     icd_client_t *client, uint32_t now, const icd_request_t *request, icd_event_fn *on_event, void *context)
 {
-    const icd_message_t *const message = icd_find_message(client->link, request->direction, request->id);
+    const icd_message_t *message;
     const bool telecommand = request->direction == ICD_TELECOMMAND;
     icd_status_t status;
+    if (!client->ready) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    message = icd_find_message(client->link, request->direction, request->id);
     if (message == NULL) {
         return ICD_ERROR_UNKNOWN_ID;
     }
@@ -2327,7 +2342,9 @@ static inline void icd_client_received(
     call.on_event = on_event;
     call.context = context;
     icd_client_tick(client, now, on_event, context);
-    icd_uart_feed(&client->decoder, bytes, count, icdgen_client_on_uart, &call);
+    if (client->ready) {
+        icd_uart_feed(&client->decoder, bytes, count, icdgen_client_on_uart, &call);
+    }
 }
 
 /** CAN: takes a packet. */
@@ -2340,7 +2357,9 @@ static inline void icd_client_packet(
     call.on_event = on_event;
     call.context = context;
     icd_client_tick(client, now, on_event, context);
-    icd_can_feed(&client->joiner, now, packet, icdgen_client_on_can, &call);
+    if (client->ready) {
+        icd_can_feed(&client->joiner, now, packet, icdgen_client_on_can, &call);
+    }
 }
 
 /* I2C: what was read of the acknowledge frame. */
@@ -2608,7 +2627,10 @@ static inline void icd_procedure_event(icd_procedure_t *procedure, uint32_t now,
     }
 }
 
-/** When icd_procedure_next() wants to be called again; false while an outcome is awaited, and at the end. */
+/**
+ * When icd_procedure_next() wants to be called again. False while a request is ready, which is before the first call
+ * and after an outcome: it may be called at once; false also while an outcome is awaited, and at the end.
+ */
 static inline bool icd_procedure_deadline(const icd_procedure_t *procedure, uint32_t *deadline)
 {
     *deadline = procedure->until;

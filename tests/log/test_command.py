@@ -23,6 +23,19 @@ def test_a_log_is_listed(write, everything, known):
         assert slot.name in result.stdout
 
 
+def test_what_can_hardly_be_a_log_is_doubted(tmp_path, write, known):
+    text = tmp_path / "README.md"
+    text.write_bytes(b"telemetry of zebras, yaks and antelopes " * 100 + b"\0" * 1000)
+    listed, converted = icdgen(text), icdgen(text, "--format", "csv")
+    for said in (listed.stdout, converted.stderr):
+        assert "bits that no frame has; is this a log of cubeacp?" in said
+        assert "the last entry is older than the first; is this a log of cubeacp?" in said
+    bits = sorted(known.mask.bits)[:2]
+    mask = sum(1 << (bit ^ 7 if known.mask.msb0 else bit) for bit in bits).to_bytes(known.mask.size, "little")
+    path, _ = write(mask, 3)
+    assert "is this a log" not in icdgen(path).stdout
+
+
 @pytest.mark.parametrize("form", ["csv", "jsonl", "parquet"])
 def test_a_log_is_converted(write, everything, form, tmp_path):
     path, _ = write(everything, 5, b"rest")

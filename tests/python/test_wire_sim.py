@@ -6,13 +6,16 @@ import os
 import subprocess
 import sys
 from random import Random
+from urllib.parse import urlsplit
 
 import pytest
 
 from tests.conftest import ROOT
 from tests.python import packages
+from tests.sim.device import simulator
 from tests.sim.port import Port, Refusing
 
+EXAMPLE = ROOT / "examples" / "talk.py"
 RESETS = ("Reset", "Run Selected Program")
 
 
@@ -173,16 +176,20 @@ def test_logs_that_come_unasked_are_told(shipped, wire):
     assert [type(event) for event in heard] == [wire.Log]
 
 
-def test_the_example_talks_to_the_simulator_of_the_command_line(shipped):
-    told = ["--set", "Estimated Attitude Angles", "Estimated Roll Angle=-12.34"]
-    command = [sys.executable, "-m", "icdgen", "sim", "--node", "cubeacp", "--tcp", "0", *told]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as simulator:
-        try:
-            port = simulator.stdout.readline().strip().rpartition(":")[2]
-            program = [sys.executable, "-B", str(ROOT / "examples" / "talk.py"), port]
-            path = {"PATH": os.environ["PATH"], "PYTHONPATH": str(shipped.folder)}  # without icdgen
-            done = subprocess.run(program, capture_output=True, text=True, timeout=60, env=path)
-        finally:
-            simulator.terminate()
-    assert not done.returncode, done.stderr
-    assert done.stdout.splitlines() == ["Identity(node_type=10, interface_version=7, matches=True)", "roll -12.34 deg"]
+def test_the_readme_holds_the_example():
+    _, code = EXAMPLE.read_text().split("\n\n", 1)
+    assert f"```python\n{code}```\n" in (ROOT / "README.md").read_text()
+
+
+def test_the_example_talks_to_the_simulator_of_the_command_line(shipped, tmp_path):
+    code = EXAMPLE.read_text()
+    assert code.count("4000))") == 1
+    with simulator("--node", "cubeacp", "--tcp", "0", "--set", "Estimated Attitude Angles", "roll=-12.34") as (
+        place,
+        _,
+    ):
+        program = tmp_path / "talk.py"
+        program.write_text(code.replace("4000))", f"{urlsplit(place).port}))"))
+        path = {"PATH": os.environ["PATH"], "PYTHONPATH": str(shipped.folder)}  # without icdgen
+        done = subprocess.run([sys.executable, "-B", program], capture_output=True, text=True, timeout=60, env=path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "roll -12.34 deg\n", "")

@@ -48,8 +48,9 @@ def test_an_id_of_both_directions_needs_the_kind(icd):
     assert find_message(icd, "top", "150", "telemetry").name == "Everything"
     assert find_message(icd, "top", "150", "telecommand").name == "Everything Else"
     assert find_message(icd, "top", "150", "configuration").name == "Everything"
-    with pytest.raises(NotFound, match="top has no telemetry `20`"):
+    with pytest.raises(NotFound, match="top has no telemetry `20`") as caught:
         find_message(icd, "top", "20", "telemetry")
+    assert caught.value.help == "`Everything` is configuration 20/150"
 
 
 @pytest.mark.parametrize(

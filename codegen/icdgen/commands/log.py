@@ -40,6 +40,8 @@ def log(file, name, out, form, head, icds) -> None:
             raise click.UsageError("--head needs --format or --out")
         click.echo(listing.to_text(found, tables.width_of(sys.stdout)), nl=False)
         return
+    for doubt in found.doubts():
+        click.echo(f"icdgen: {file}: {doubt}", err=True)
     if found.truncated:
         click.echo(f"icdgen: {file}: the last {found.truncated} bytes belong to no whole entry", err=True)
     entries = found.entries if head is None else min(head, found.entries)

@@ -31,6 +31,7 @@ def to_text(source: Source, width: int | None) -> str:
         rows.append((str(slot.bit), id, slot.name or "(not assigned)", str(slot.length), str(fields)))
     text = "".join(clean(line) + "\n" for line in lines)
     text += "\n" + render(_COLUMNS, rows, width) if rows else "\nThe mask selects no frame.\n"
+    notes = source.doubts()
     if source.truncated:
-        text += f"\nnote: the last {source.truncated} bytes belong to no whole entry\n"
-    return text
+        notes.append(f"the last {source.truncated} bytes belong to no whole entry")
+    return text + "".join(f"\nnote: {note}\n" for note in notes)

@@ -65,6 +65,16 @@ class Source:
         except OSError as error:
             raise _unreadable(self.path, error) from None
 
+    def doubts(self) -> list[str]:
+        """What a log of this node would not have: any file of some length can be read as one. Raises `icdgen.errors.UserError`."""
+        found = []
+        unknown = sum(slot.id is None for slot in self.plan.slots)
+        if unknown:
+            found.append(f"the mask selects {unknown} bit{'s' * (unknown > 1)} that no frame has")
+        if self.entries > 1 and self.time(self.entry(self.entries - 1)) < self.time(self.entry(0)):
+            found.append("the last entry is older than the first")
+        return [f"{doubt}; is this a log of {self.plan.node.name}?" for doubt in found]
+
 
 def open_log(icd: Icd, node: Node, path: Path) -> Source:
     """The log file. Raises `icdgen.errors.UserError`."""

@@ -127,9 +127,10 @@ def _file(icd: Icd, node: Node, text: str) -> tuple[tuple[int, int], File]:
     """``TYPE:COUNTER=PATH``. Raises `icdgen.errors.UserError`."""
     known = facts.of(icd, node)
     key, _, path = text.partition("=")
-    kind, _, counter = key.rpartition(":")
-    type_, number = _type(known, kind.strip()), numbers.integer(counter.strip())
-    if not path or type_ is None or number is None or not (0 <= type_ <= 255 and 0 <= number <= 255):
+    kind, colon, counter = key.rpartition(":")
+    number = numbers.integer(counter.strip())
+    type_ = _type(known, kind.strip()) if path and colon else None
+    if type_ is None or number is None or not (0 <= type_ <= 255 and 0 <= number <= 255):
         raise UserError(f"`{text}` is no file of the device", "TYPE:COUNTER=PATH, for instance 2:1=log.bin")
     if known.index and type_ == known.index.file_type:
         raise UserError(f"`{text}`: the index file is made of the others", "leave it out")
@@ -160,6 +161,8 @@ def _type(known: facts.Facts, text: str) -> int | None:
 def _saver(folder: Path | None) -> Callable[[int, bytes], None] | None:
     if folder is None:
         return None
+    if folder.exists() and not folder.is_dir():
+        raise UserError(f"{folder} is not a folder", "--uploads names the folder for uploaded programs")
     folder.mkdir(parents=True, exist_ok=True)
 
     def save(destination: int, data: bytes) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import os
 import time
 from collections.abc import Callable
@@ -153,4 +154,7 @@ async def pty(server: Server) -> tuple[str, object]:
 
 
 def _cannot(kind: str, host: str, port: int, error: OSError) -> UserError:
-    return UserError(f"cannot listen on {kind} {host}:{port}: {error.strerror or error}", "port 0 takes a free one")
+    taken = error.errno in (errno.EADDRINUSE, errno.EACCES)
+    why = os.strerror(error.errno) if error.errno and error.errno > 0 else error.strerror or str(error)
+    help = "port 0 takes a free one" if taken else "--host is an address of this machine"
+    return UserError(f"cannot listen on {kind} {host}:{port}: {why}", help)

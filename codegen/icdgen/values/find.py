@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from typing import TypeVar
 
 from icdgen import naming
@@ -43,7 +44,7 @@ def find_message(icd: Icd, node_name: str, key: str, kind: str | None = None) ->
     if found:
         listed = ", ".join(f"`{m.name}` ({describe(m)})" for m in found)
         raise Ambiguous(f"`{key}` fits several messages of {node.name}: {listed}", "give the full name, or the kind")
-    raise NotFound(f"{node.name} has no {kind or 'message'} `{key}`", _message_help(icd, node, messages, key))
+    raise NotFound(f"{node.name} has no {kind or 'message'} `{key}`", _message_help(icd, node, messages, key, kind))
 
 
 def find_field(message: Message, key: str, vocabulary: tuple[str, ...] = ()) -> Field:
@@ -112,7 +113,11 @@ def _by_words(fields: Sequence[Field], key: str, vocabulary: tuple[str, ...]) ->
     return found or [f for f, words in known if all(any(w.startswith(one) for w in words) for one in wanted)]
 
 
-def _message_help(icd: Icd, node: Node, messages: Sequence[Message], key: str) -> str:
+def _message_help(icd: Icd, node: Node, messages: Sequence[Message], key: str, kind: str | None) -> str:
+    if kind is not None:
+        with suppress(NotFound, Ambiguous):
+            other = find_message(icd, node.name, key)
+            return f"`{other.name}` is {describe(other)}"
     elsewhere = [n.name for n in icd.nodes if n is not node and by_name(n.messages, key, n.vocabulary)]
     if elsewhere:
         return f"it is a message of {' and '.join(elsewhere)}"

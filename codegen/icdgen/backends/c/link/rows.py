@@ -68,8 +68,11 @@ def lines(items: Iterable[str]) -> list[str]:
 def aligned(rows: Iterable[str]) -> list[str]:
     """The rows with the comments at their ends below each other, as far as they fit."""
     found = [row.partition(" /* ") for row in rows]
-    short = [code for code, _, text in found if text and "\n" not in code + text]
-    widest = max((len(code) for code in short), default=0)
+    ends = [bool(text) and "\n" not in code + text for code, _, text in found]
+    widest = max((len(code) for (code, _, _), end in zip(found, ends, strict=True) if end), default=0)
     if any(text and "\n" not in text and widest + len(text) + 12 > WIDTH for _, _, text in found):
         return list(rows)
-    return [f"{code:{widest}} /* {text}" if code in short else code + sep + text for code, sep, text in found]
+    return [
+        f"{code:{widest}} /* {text}" if end else code + sep + text
+        for (code, sep, text), end in zip(found, ends, strict=True)
+    ]

@@ -1,0 +1,150 @@
+"""A node need not describe every part of a protocol: what its ICD has is in its link, and nothing else."""
+
+from __future__ import annotations
+
+import dataclasses
+import subprocess
+
+import pytest
+
+from icdgen.icd.model import Icd
+from tests.c import harness
+
+PARTS = {
+    "message_id": [],
+    "errors": ["errors"],
+    "client": [],
+    "identification": ["identification"],
+    "statistics": [],
+    "uart": ["framing", "acknowledge"],
+    "i2c": ["polled"],
+    "can": ["can"],
+    "file_transfer": ["hole_map", "files", "list", "download", "upload", "erase", "format"],
+    "crc16": ["crc16"],
+    "index_file": ["index"],
+    "msdos_time": ["time"],
+    "boot": [],
+    "crc8": ["checksum"],
+    "log_mask": ["log_mask"],
+    "telemetry_log": ["log_file"],
+    "unsolicited_log": ["log_message"],
+}
+"""The pointers of a link that each section of a protocol gives."""
+
+MEMBERS = sorted(member for members in PARTS.values() for member in members)
+
+
+@pytest.fixture(scope="module")
+def icd() -> Icd:
+    """Nodes with the messages of the CubeACP: with its whole protocol, without each section, with each alone."""
+    shipped = harness.shipped()
+    acp = shipped.node("cubeacp")
+    whole = shipped.protocol_of(acp)
+    protocols = {"whole": whole}
+    for section in whole:
+        protocols[f"without_{section}"] = {name: part for name, part in whole.items() if name != section}
+        protocols[f"only_{section}"] = {section: whole[section]}
+    bases = [dataclasses.replace(node, protocol={}) for node in (*shipped.included(acp), acp)]
+    includes = tuple(node.name for node in bases)
+    variant = dataclasses.replace(acp, messages=(), enums=(), includes=includes)
+    return Icd((*bases, *(dataclasses.replace(variant, name=n, protocol=p) for n, p in protocols.items())))
+
+
+@pytest.fixture(scope="module")
+def nodes(icd) -> list:
+    return [node for node in icd.nodes if node.protocol]
+
+
+@pytest.fixture(scope="module")
+def headers(icd, tmp_path_factory):
+    return harness.generate(icd, tmp_path_factory.mktemp("headers"))
+
+
+@pytest.mark.parametrize(("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")])
+def test_every_choice_of_sections_compiles_without_a_warning(icd, headers, compiler, standard):
+    harness.compile_all(icd, headers, compiler, standard, "-fsyntax-only")
+
+
+def test_the_sections_of_the_icd_are_those_of_the_link(nodes, headers, tmp_path):
+    source = tmp_path / "parts.c"
+    source.write_text(
+        "#include <stdio.h>\n"
+        + "".join(f'#include "{node.name}/link.h"\n' for node in nodes)
+        + "static void tell(const char *name, const icd_link_t *link)\n{\n    fputs(name, stdout);\n"
+        + "".join(f'    if (link->{member} != NULL) fputs(" {member}", stdout);\n' for member in MEMBERS)
+        + '    puts(link->i2c_address >= 0 ? " at an address" : "");\n}\nint main(void)\n{\n'
+        + "".join(f'    tell("{node.name}", {node.name}_link());\n' for node in nodes)
+        + "    return 0;\n}\n"
+    )
+    flags = ("-std=c99", *harness.WARNINGS, f"-I{headers}")
+    program = harness.compile(source, *flags, output=tmp_path / "parts")
+    told = subprocess.run([program], capture_output=True, text=True, check=True).stdout.splitlines()
+    assert told == [" ".join([node.name, *parts(node.protocol)]) for node in nodes]
+
+
+CLIENTS = """
+#include <stdio.h>
+#include <stdlib.h>
+{includes}
+
+static void on_event(void *context, const icd_event_t *event)
+{{
+    (void)context;
+    (void)event;
+}}
+
+/* The status of a client and of its request, after which it is told of input. */
+static void try_on(const icd_link_t *link, icd_bus_t bus, size_t size)
+{{
+    static const uint8_t bytes[] = {{1, 2, 3}};
+    uint8_t *const buffer = (uint8_t *)malloc(size);
+    icd_can_packet_t packet;
+    icd_client_t client;
+    memset(&packet, 0, sizeof packet);
+    printf(" %d", (int)icd_client_init(&client, link, bus, buffer, size));
+    printf("%d", (int)icd_client_request(&client, 0, link->telemetry[0].id));
+    if (bus == ICD_BUS_CAN) {{
+        icd_client_packet(&client, 1, &packet, on_event, NULL);
+    }} else if (bus == ICD_BUS_UART) {{
+        icd_client_received(&client, 1, bytes, sizeof bytes, on_event, NULL);
+    }} else {{
+        icd_client_transferred(&client, 1, bytes, sizeof bytes, on_event, NULL);
+    }}
+    free(buffer);
+}}
+
+int main(void)
+{{
+    static const icd_link_t *(*const links[])(void) = {{{links}}};
+    for (size_t i = 0; i < sizeof links / sizeof links[0]; ++i) {{
+        const icd_link_t *const link = links[i]();
+        const size_t size = icd_client_bytes(link);
+        try_on(link, ICD_BUS_UART, size);
+        try_on(link, ICD_BUS_I2C, size);
+        try_on(link, ICD_BUS_CAN, size);
+        try_on(link, ICD_BUS_UART, size - 1u);
+        puts("");
+    }}
+    return 0;
+}}
+"""
+
+
+def test_a_client_on_a_bus_that_the_icd_does_not_have_refuses_every_request(nodes, headers, tmp_path):
+    source = tmp_path / "clients.c"
+    includes = "\n".join(f'#include "{node.name}/link.h"' for node in nodes)
+    source.write_text(CLIENTS.format(includes=includes, links=", ".join(f"{node.name}_link" for node in nodes)))
+    flags = ("-std=c99", *harness.WARNINGS, *harness.SANITIZERS, f"-I{headers}")
+    program = harness.compile(source, *flags, output=tmp_path / "clients")
+    told = subprocess.run([program], capture_output=True, text=True, check=True).stdout.splitlines()
+    ok, length, unsupported = "00", "14", "44"  # of the client and of the request
+    buses = [["uart" in node.protocol, "i2c" in node.protocol, "can" in node.protocol] for node in nodes]
+    assert told == [" ".join(["", *(ok if bus else unsupported for bus in three), length]) for three in buses]
+
+
+def parts(protocol: dict) -> list[str]:
+    """What the program above tells of a link for this protocol."""
+    logs = {"telemetry_log", "unsolicited_log"}  # which nobody can read without the mask
+    sections = protocol.keys() - (logs if "log_mask" not in protocol else set())
+    found = sorted(member for section in sections for member in PARTS[section])
+    return [*found, *(["at an address"] if "i2c" in protocol else [])]
