@@ -48,6 +48,25 @@ def test_what_cannot_be_opened_is_said(name):
         open_port(name, {})
 
 
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("127.0.0.1:4000", "did you mean tcp://127.0.0.1:4000?"),
+        ("my-bench.local:80", "did you mean tcp://my-bench.local:80?"),
+        ("[::1]:4000", "did you mean tcp://[::1]:4000?"),
+        ("/dev/no-such-port", "no such file"),
+        ("./no-such-port", "no such file"),
+        ("dev/ttyUSB0:1/none", "no such file"),
+    ],
+)
+def test_what_was_meant_is_said_before_pyserial_is_asked_for(name, words, monkeypatch):
+    monkeypatch.setitem(sys.modules, "serial", None)
+    with pytest.raises(PortError) as error:
+        open_port(name, {})
+    assert words in f"{error.value} {error.value.help}"
+    assert "pyserial" not in f"{error.value} {error.value.help}"
+
+
 @pytest.mark.parametrize(("name", "package"), [("COM3", "pyserial"), ("can://virtual/0", "python-can")])
 def test_a_missing_library_is_named(name, package, monkeypatch):
     monkeypatch.setitem(sys.modules, "serial", None)

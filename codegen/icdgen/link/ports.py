@@ -7,6 +7,7 @@ port, ``can://interface/channel`` (of python-can).
 from __future__ import annotations
 
 import os
+import re
 import select
 import socket
 import stat
@@ -20,6 +21,7 @@ from icdgen.protocol.can import Packet
 
 CONNECT_TIMEOUT = 5.0  # s
 WRITE_TIMEOUT = 5.0
+_BARE_ADDRESS = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[\w.-]+):\d{1,5}")  # host and port without tcp:// or udp://
 FORMS = "tcp://HOST:PORT, udp://HOST:PORT, /dev/ttyUSB0, COM3, can://socketcan/can0"
 
 
@@ -210,8 +212,10 @@ def open_port(text: str, protocol: dict) -> Port | Can:
         return makers[scheme]()
     if _is_pty(text):
         return Terminal(text)
-    if text.startswith("/") and not os.path.exists(text):
-        raise PortError(f"there is no port {text}", f"a port is named so: {FORMS}")
+    if _BARE_ADDRESS.fullmatch(text) and not os.path.exists(text):
+        raise PortError(f"there is no port `{text}`", f"did you mean tcp://{text}?")
+    if "/" in text and not os.path.exists(text):
+        raise PortError(f"there is no port `{text}`: no such file", f"a port is named so: {FORMS}")
     return Serial(text, protocol.get("uart", {}))
 
 

@@ -24,6 +24,7 @@ from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its r
     pages,
     protocol,
     protocol_limits,
+    protocol_meaning,
     protocol_names,
     protocol_sizes,
     reading,

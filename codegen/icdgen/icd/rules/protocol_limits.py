@@ -80,7 +80,7 @@ def _extended(ctx: Context, node: Node, can: Map) -> Iterator[Message]:
 def numbers_fit(ctx: Context) -> Iterator[Fault]:
     seen: set[tuple[int, str, int]] = set()
     for node in ctx.icd.nodes:
-        for fault in (*_on_can(ctx, node), *_ids(ctx, node), *_codes(node), *_checksums(node), *_counter(node)):
+        for fault in (*_on_can(ctx, node), *_log_id(node), *_codes(node), *_checksums(node), *_counter(node)):
             key = (id(fault.owner), fault.message, fault.place.line)
             if key not in seen:
                 seen.add(key)
@@ -114,13 +114,7 @@ def _fits(owner: Map, key: str, bits: int | None, what: str) -> Iterator[Fault]:
         yield Fault(owner, owner.at(key), message, f"correct `{key}`, or `bits` of the identifier")
 
 
-def _ids(ctx: Context, node: Node) -> Iterator[Fault]:
-    """Ids on the buses where an id is a byte. That messages keep to `message_id` is another rule's."""
-    bus = next((one for one in ("uart", "i2c") if in_force(ctx, node, one) is not None), None)
-    for direction in ("telecommand", "telemetry") if bus is not None else ():
-        section = in_force(ctx, node, "message_id", direction)
-        if section is not None:
-            yield from _byte(section, "last", f"an id on {bus}")
+def _log_id(node: Node) -> Iterator[Fault]:
     log = section_of(node, "unsolicited_log")
     if log is not None:
         yield from _byte(log, "id", "the id of an unsolicited log")

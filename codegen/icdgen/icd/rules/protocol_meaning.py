@@ -1,0 +1,143 @@
+"""What a receiver could not tell apart, not find, or never get."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.icd.model import TELECOMMAND, TELEMETRY, Node
+from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.ids import KEYS
+from icdgen.icd.rules.protocol_limits import in_force
+from icdgen.icd.rules.protocol_sizes import numbers, section_of
+from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.wording import count, line_of, listing, quote
+from icdgen.icd.tree import Map, Seq
+
+ACKNOWLEDGE_ROLES = ("id", "error")
+PACKET = 8  # data bytes of a CAN packet, where the ICD gives no other number
+# what is sent in each direction with data -> the keys of its message types, and those of messages of several packets
+CAN_TYPES = {TELECOMMAND: ("request", "extended_request"), TELEMETRY: ("response", "extended_response")}
+
+
+@rule("ICD103")
+def directions_differ(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        ids = section_of(node, "message_id")
+        ranges = {}
+        for direction in (TELECOMMAND, TELEMETRY):
+            section = section_of(node, "message_id", direction)
+            found = numbers(section, "first", "last") if section is not None else None
+            if ids is None or section is None or found is None:
+                continue
+            ranges[direction] = section
+            if found[0] > found[1]:
+                message = f"the last id, {found[1]}, comes before the first, {found[0]}"
+                yield Fault(section, section.at("last"), message, "correct `first` or `last`")
+            yield from _bit(ids, section, direction, *found)
+        if len(ranges) == 2:
+            yield from _overlap(ranges[TELECOMMAND], ranges[TELEMETRY])
+
+
+def _bit(ids: Map, section: Map, direction: str, first: int, last: int) -> Iterator[Fault]:
+    """An id of the range whose direction bit is that of the other direction."""
+    bit, wanted = ids.get("direction_bit"), section.get("direction")
+    if not isinstance(bit, int) or bit < 0 or wanted not in (0, 1) or not 0 <= first <= last <= 255:
+        return
+    other = next((id for id in range(first, last + 1) if id >> bit & 1 != wanted), None)
+    if other is not None:
+        message = f"bit {bit} of {other} is {1 - wanted}, but {wanted} in a {direction} id"
+        key = "first" if other == first else "last"
+        yield Fault(section, section.at(key), message, "correct the range, `direction` or `direction_bit`")
+
+
+def _overlap(one: Map, other: Map) -> Iterator[Fault]:
+    least, most = max(one["first"], other["first"]), min(one["last"], other["last"])
+    if least <= most:
+        which = f"ids {least} to {most} are" if least < most else f"id {least} is"
+        message = f"{which} in the range of telecommands, too"
+        yield Fault(other, other.at("first"), message, "the ranges of the two directions have no id in common")
+
+
+@rule("ICD104")
+def message_types_differ(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        types = section_of(node, "can", "message_types")
+        seen: dict[tuple[str, object], Map] = {}
+        for row in mappings(types.get("values") if types is not None else None):
+            for key in ("value", "name"):
+                value = row.get(key)
+                first = seen.setdefault((key, value), row) if isinstance(value, int | str) else row
+                if first is not row:
+                    other = f"{quote(first.get('name'))} ({line_of(first.at(key), row.at(key))})"
+                    message = f"the value {value} already belongs to {other}" if key == "value" else f"a second {other}"
+                    yield Fault(row, row.at(key), message, f"correct one `{key}`")
+
+
+@rule("ICD105")
+def acknowledge_is_whole(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        section = section_of(node, "uart", "acknowledge")
+        rows = section.get("data") if section is not None else None
+        if section is None or not isinstance(rows, Seq):
+            continue
+        roles: set[object] = set()
+        for row in mappings(rows):
+            role, size = row.get("role"), row.get("bytes")
+            if role in ACKNOWLEDGE_ROLES and role in roles:
+                yield Fault(row, row.at("role"), f"a second {role}", "each role stands once")
+            elif role in ACKNOWLEDGE_ROLES and isinstance(size, int) and size > 1:
+                message = f"the {role} has {count(size, 'byte')}, but one is read"
+                yield Fault(row, row.at("bytes"), message, "correct `bytes`, or leave the section out")
+            roles.add(role)
+        missing = [f"`{role}`" for role in ACKNOWLEDGE_ROLES if role not in roles]
+        if missing:
+            message = f"the acknowledge has no part for {listing(missing)}"
+            yield Fault(section, section.at("data"), message, "give the parts their `role`")
+
+
+@rule("ICD106", whole=True)
+def named_buses_exist(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        users = [one for one in ctx.icd.nodes if node in ctx.scope(one)]
+        for path in (("crc8", TELECOMMAND), ("crc8", TELEMETRY), ("unsolicited_log",)):
+            section = section_of(node, *path)
+            buses = section.get("buses") if section is not None else None
+            if section is None or not isinstance(buses, Seq):
+                continue
+            for bus, place in zip(buses, buses.items_at, strict=True):
+                if isinstance(bus, str) and not any(_has(ctx, one, bus) for one in users):
+                    yield Fault(section, place, f"the protocol has no section `{bus}`", f"add it, or remove `{bus}`")
+
+
+def _has(ctx: Context, node: Node, bus: str) -> bool:
+    return in_force(ctx, node, bus) is not None
+
+
+@rule("ICD107", whole=True)
+def messages_can_be_sent(ctx: Context) -> Iterator[Fault]:
+    seen: set[int] = set()
+    for node in ctx.icd.nodes:
+        can = in_force(ctx, node, "can")
+        room = can.get("max_data_bytes", PACKET) if can is not None else None
+        # What does not go over CAN may go over another bus.
+        if can is None or not isinstance(room, int) or _has(ctx, node, "uart") or _has(ctx, node, "i2c"):
+            continue
+        short = {direction for direction in CAN_TYPES if _is_short(can, direction)}
+        for message in ctx.messages_of(node):
+            if message.length > room and id(message.source) not in seen:
+                if any(direction in short for _, direction in KEYS[message.kind]):
+                    seen.add(id(message.source))
+                    text = f"{quote(message.name)} has {count(message.length, 'byte')}, a packet up to {room}"
+                    help = (
+                        "correct `length`, or say how CAN sends several packets: `can.extended` and its message types"
+                    )
+                    yield Fault(message.source, message.source.at("length"), text, help)
+
+
+def _is_short(can: Map, direction: str) -> bool:
+    """Whether messages of the direction are one packet each."""
+    section = can.get(direction)
+    plain, several = CAN_TYPES[direction]
+    if not isinstance(section, Map) or plain not in section:
+        return False
+    return several not in section or not isinstance(can.get("extended"), Map)

@@ -1,0 +1,44 @@
+"""Numbers of the protocol section: none passes the schema that generated code cannot hold."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+
+from icdgen.icd import schema
+
+# Rules hold these, as most depend on other numbers, or they stand in no generated code.
+HELD_ELSEWHERE = {
+    *(f"errors/{role}" for role in ("none", "unknown_id", "length", "parameter", "checksum")),
+    *(f"{crc}/{key}" for crc in ("crc8", "crc16") for key in ("polynomial", "init", "xor_out", "empty", "check")),
+    *(f"{crc}/printed_constant" for crc in ("crc8", "crc16")),
+    "can/extended/packets_left_in_last",
+    "can/extended/max_packets",
+    "unsolicited_log/id",
+    "boot/attempts",
+    "boot/external_flash/program_areas",
+}
+
+
+def whole_numbers(node: dict, path: tuple[str, ...] = ()) -> Iterator[tuple[str, dict]]:
+    """Every whole number of a part of the schema, by its path."""
+    if node.get("type") == "integer":
+        yield "/".join(path), node
+    for key, value in node.items():
+        if isinstance(value, dict):
+            yield from whole_numbers(value, path if key == "properties" else (*path, key))
+
+
+NUMBERS = dict(whole_numbers(json.loads(schema.PATH.read_text(encoding="utf-8"))["$defs"]["protocol"]))
+
+
+def test_every_number_of_the_protocol_has_a_largest_value():
+    assert {path for path, number in NUMBERS.items() if "maximum" not in number} == HELD_ELSEWHERE
+
+
+def test_times_can_be_compared_by_the_sign_of_their_difference():
+    times = {path: number["maximum"] for path, number in NUMBERS.items() if path.endswith("_ms")}
+    assert times
+    assert set(times.values()) == {2**31 - 1}
+    seconds = {number["maximum"] for path, number in NUMBERS.items() if path.endswith(("_s", "/seconds"))}
+    assert seconds == {(2**31 - 1) // 1000}
