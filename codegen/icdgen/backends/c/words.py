@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+_HEADERS = """
+    assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic stdbit
+    stdbool stdckdint stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype
+    alloca endian features pthread sched strings unistd
+    """.split()
+"""Of the language and the system: a node's header of that name would be found in their place."""
+
 RESERVED = frozenset("""
     auto break case char const continue default do double else enum extern float for goto if inline int long register
     restrict return short signed sizeof static struct switch typedef union unsigned void volatile while
@@ -16,5 +23,5 @@ RESERVED = frozenset("""
     uint_fast64_t size_t ptrdiff_t max_align_t nullptr_t
     complex imaginary offsetof errno assert stdin stdout stderr setjmp
     unix linux i386 mips sparc
-    """.split())
+    """.split()) | {f"{name}.h" for name in _HEADERS}
 """Member names are lower case, and every other name begins with the node's, so upper-case macros can't be met."""

@@ -27,6 +27,8 @@ def _place(ctx: Context, identifier: Identifier) -> Place:
 
 
 def _help(identifier: Identifier) -> str:
+    if identifier.source is not None and "node" in identifier.source:
+        return "give the node another name"
     another = "another" if identifier.source and "identifier" in identifier.source else "an"
     return f"give it {another} `identifier:`, words to build the name from"
 
@@ -56,7 +58,10 @@ def not_reserved(ctx: Context) -> Iterator[Fault]:
             if one.text in reserved:
                 found.add(language, one)
     for one, _, texts in found:
-        words = " and ".join(f"{quote(text)}, a reserved word in {listing(langs)}" for text, langs in texts.items())
+        words = " and ".join(
+            f"{quote(text)}, a {'header' if _is_file(text) else 'reserved word'} in {listing(langs)}"
+            for text, langs in texts.items()
+        )
         yield Fault(one.source, _place(ctx, one), f"{one.owner} becomes {words}", _help(one))
 
 
