@@ -75,12 +75,3 @@ def gaps(message: Message) -> tuple[Gap, ...]:
     if reached < message.length * 8:
         found.append(Gap(reached, message.length * 8 - reached))
     return tuple(found)
-
-
-def reserved_mask(message: Message, node: Node) -> bytes:
-    """One byte a byte of the frame, a set bit for each reserved bit."""
-    mask = bytearray(message.length)
-    for gap in gaps(message):
-        for piece in pieces_at(gap.at, gap.bits, node.byte_order, node.bit_order):
-            mask[piece.byte] |= piece.mask
-    return bytes(mask)

@@ -15,6 +15,10 @@ from icdgen.icd.units import Unit
 
 TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configuration"
 
+# Where the ICD gives no other numbers.
+CAN_DATA_BYTES = 8  # of a packet
+CAN_PACKETS = 256  # of an extended message
+
 
 class _Value:
     """Pickles as a call of its class: several times faster than what ``slots=True`` comes with."""

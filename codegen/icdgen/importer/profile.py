@@ -72,10 +72,6 @@ class Profile:
         return {tuple(sorted(folded(text))): what for what, texts in self.data["labels"].items() for text in texts}
 
     @cached_property
-    def label_words(self) -> frozenset[str]:
-        return frozenset(word for label in self.labels for word in label)
-
-    @cached_property
     def caption(self) -> re.Pattern:
         """A line that begins like a caption."""
         words = "|".join(re.escape(word) for word in sorted(self.data["captions"], key=len, reverse=True))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Icd, Message, Node
 from icdgen.protocol.facts import (
     Acknowledge,
     Assumption,
@@ -155,7 +155,7 @@ class Reader:
         return Can(
             parts=parts,
             node_address=given["node_address"],
-            data_bytes=given.get("max_data_bytes", 8),
+            data_bytes=given.get("max_data_bytes", CAN_DATA_BYTES),
             types={kind: numbers[name] for kind, name in named.items() if name is not None},
             extended_types={kind: numbers[name] for kind, name in extended_named.items() if name is not None},
             extended=extended(self.section("can", "extended")),
@@ -308,7 +308,7 @@ def crc(given: dict) -> Crc | None:
 def extended(given: dict) -> Extended | None:
     if not given:
         return None
-    size, packets = given["data_bytes"], given.get("max_packets", 256)
+    size, packets = given["data_bytes"], given.get("max_packets", CAN_PACKETS)
     return Extended(
         size,
         given["packets_left_byte"],

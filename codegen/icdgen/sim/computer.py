@@ -15,7 +15,6 @@ class Computer:
     def __init__(self, icd: Icd, node: Node, settings: Settings, storage: Storage, now: int = 0) -> None:
         self.icd, self.settings, self.storage = icd, settings, storage
         self.boot_at: int | None = None
-        self.resets = 0
         self.start(now, node)
 
     def start(self, now: int, node: Node) -> None:
@@ -55,7 +54,6 @@ class Computer:
 
     def restart(self, now: int) -> None:
         """As after a reset or at power-up."""
-        self.resets += 1
         running = self.program.node
         starters = (n for n in self.icd.nodes if self._application(n) is running)
         self.start(now, next(starters, running))

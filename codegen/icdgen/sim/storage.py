@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cache
 
 from icdgen.protocol import crc
 from icdgen.protocol.facts import Crc, Facts
@@ -65,15 +64,8 @@ def checksum_of(form: Crc | None, data: bytes) -> int:
         return 0
     if not data or form.width < 8:
         return crc.compute(form, data)
-    table, low, value = _table(form), form.width - 8, form.init
+    table, low, value = crc.table(form), form.width - 8, form.init
     mask = (1 << low) - 1
     for byte in data.translate(_MIRRORED) if form.reflect_in else data:
         value = (value & mask) << 8 ^ table[value >> low ^ byte]
     return crc.compute(replace(form, init=value, empty=None), b"")
-
-
-@cache
-def _table(form: Crc) -> tuple[int, ...]:
-    """What each byte, first bit on top, makes of a register of zeros."""
-    plain = replace(form, init=0, reflect_in=False, reflect_out=False, xor_out=0)
-    return tuple(crc.compute(plain, bytes([byte])) for byte in range(256))

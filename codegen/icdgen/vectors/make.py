@@ -63,12 +63,12 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
     """The vectors of one message that ``node`` declares."""
     frames = dict.fromkeys(frame for _, frame in patterns.frames(message))
     whys = {frame: why for why, frame in reversed(list(patterns.frames(message)))}
-    rows = [_row(node, message, whys[frame], frame) for frame in frames]
+    rows = [frame_row(node, message, whys[frame], frame) for frame in frames]
     for number, raw in enumerate(patterns.raw_columns(message)):
         frame = codec.encode(node, message, raw)
         if frame not in frames:
             frames[frame] = None
-            rows.append(_row(node, message, f"chosen values {number}", frame))
+            rows.append(frame_row(node, message, f"chosen values {number}", frame))
     scaled = [field for field in message.fields if field.scale]
     return MessageVectors(
         message=message,
@@ -82,10 +82,6 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
 
 def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
     """What the reference codec makes of a frame."""
-    return _row(node, message, why, frame)
-
-
-def _row(node: Node, message: Message, why: str, frame: bytes) -> Row:
     raw = codec.decode(node, message, frame)
     physical, doubles = {}, {}
     for field in message.fields:

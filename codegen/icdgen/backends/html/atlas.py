@@ -95,10 +95,6 @@ class Atlas:
         """Anchors of the fields, in their order."""
         return [self.links.anchor(message, field.name) for field in message.fields]
 
-    def mask_bits(self, message: Message) -> list[int]:
-        """Bits of the log mask that select the message."""
-        return [row.bit for _, row in self.logged.get((message.node, message.name), [])]
-
     def wire(self, message: Message) -> Wire:
         """How the message travels."""
         spoken = [self._speaker(node) for node in self.speakers[message.node]]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import ceil
 
-from icdgen.icd.model import Message, Node
+from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.ids import KEYS
 from icdgen.icd.rules.protocol_sizes import numbers, section_of
@@ -14,7 +14,6 @@ from icdgen.icd.rules.wording import count, listing, quote
 from icdgen.icd.tree import Map, Seq
 
 BYTE = 255
-MAX_PACKETS = 256  # of an extended message, where the ICD gives no other number
 CRC_WIDTHS = (8, 32)  # that generated code computes
 TIME_BITS = 32  # of a packed time, at most
 TIME_PARTS = ("year", "month", "day", "hour", "minute", "second")
@@ -38,7 +37,7 @@ def packets_can_be_counted(ctx: Context) -> Iterator[Fault]:
         if can is None or extended is None or not isinstance(size, int) or size < 1:
             continue
         last = extended.get("packets_left_in_last", 0)
-        most = extended.get("max_packets", MAX_PACKETS)
+        most = extended.get("max_packets", CAN_PACKETS)
         if not isinstance(last, int) or not isinstance(most, int):
             continue
         if ("max_packets" in extended or last > BYTE) and last + most - 1 > BYTE:
@@ -65,7 +64,7 @@ def packets_can_be_counted(ctx: Context) -> Iterator[Fault]:
 
 def _extended(ctx: Context, node: Node, can: Map) -> Iterator[Message]:
     """Messages that are sent as several packets."""
-    room = can.get("max_data_bytes", 8)
+    room = can.get("max_data_bytes", CAN_DATA_BYTES)
     named = {
         direction: isinstance(can.get(direction), Map) and key in can[direction]
         for direction, key in (("telecommand", "extended_request"), ("telemetry", "extended_response"))

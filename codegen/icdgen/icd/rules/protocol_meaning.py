@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.icd.model import TELECOMMAND, TELEMETRY, Node
+from icdgen.icd.model import CAN_DATA_BYTES, TELECOMMAND, TELEMETRY, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.ids import KEYS
 from icdgen.icd.rules.protocol_limits import in_force
@@ -14,7 +14,6 @@ from icdgen.icd.rules.wording import count, line_of, listing, quote
 from icdgen.icd.tree import Map, Seq
 
 ACKNOWLEDGE_ROLES = ("id", "error")
-PACKET = 8  # data bytes of a CAN packet, where the ICD gives no other number
 # what is sent in each direction with data -> the keys of its message types, and those of messages of several packets
 CAN_TYPES = {TELECOMMAND: ("request", "extended_request"), TELEMETRY: ("response", "extended_response")}
 
@@ -118,7 +117,7 @@ def messages_can_be_sent(ctx: Context) -> Iterator[Fault]:
     seen: set[int] = set()
     for node in ctx.icd.nodes:
         can = in_force(ctx, node, "can")
-        room = can.get("max_data_bytes", PACKET) if can is not None else None
+        room = can.get("max_data_bytes", CAN_DATA_BYTES) if can is not None else None
         # What does not go over CAN may go over another bus.
         if can is None or not isinstance(room, int) or _has(ctx, node, "uart") or _has(ctx, node, "i2c"):
             continue

@@ -27,7 +27,7 @@ def read(table: Table, profile: Profile, troubles: list[Trouble]) -> ReadMessage
         return None
     message = ReadMessage("", "", table)
     _ids(message, values, both, troubles)
-    message.kind, message.kind_from = _kind(values, both)
+    message.kind = _kind(values, both)
     message.names = _names(table.caption, profile, message)
     length = values.get("telecommand_length") or values.get("telemetry_length") or values.get("length")
     if length is not None:
@@ -107,14 +107,14 @@ def _ids(message: ReadMessage, values: dict[str, str], both: str, troubles: list
             message.id = number(first)
 
 
-def _kind(values: dict[str, str], both: str) -> tuple[str, str]:
+def _kind(values: dict[str, str], both: str) -> str:
     if both or "/" in values.get("id", ""):
-        return "configuration", "its two ids"
+        return "configuration"
     if "telemetry_length" in values:
-        return "telemetry", "the label of its length"
+        return "telemetry"
     if "telecommand_length" in values:
-        return "telecommand", "the label of its length"
-    return "", ""
+        return "telecommand"
+    return ""
 
 
 def _names(caption: str, profile: Profile, message: ReadMessage) -> list[str]:
@@ -130,7 +130,7 @@ def _names(caption: str, profile: Profile, message: ReadMessage) -> list[str]:
     else:
         same = [f for f in found if f[1] == message.kind] or found
     if same and message.kind != "configuration":
-        message.kind, message.kind_from = same[0][1], "its caption"
+        message.kind = same[0][1]
     names = [name for _, kind, name in same] if same else []
     return list(dict.fromkeys([*names, plain(caption)])) if caption else names
 

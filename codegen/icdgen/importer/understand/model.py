@@ -37,7 +37,6 @@ class ReadMessage:
     group: str = ""
     listed: dict = field(default_factory=dict)
     summary: str = ""
-    kind_from: str = ""
 
     @property
     def ids(self) -> tuple[int | None, int | None, int | None]:

@@ -73,7 +73,7 @@ def classify(
         if message is None:
             return UNKNOWN, None
         if not message.kind:
-            message.kind, message.kind_from = _by_section(sections, profile), "its section"
+            message.kind = _by_section(sections, profile)
         return "message", message
     if kind == "enumeration":
         read = lists.enumeration(table, profile, troubles)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from icdgen.backends.c.link.base import BUSES, Tables
-from icdgen.backends.c.link.rows import boolean, crc_table, lines, row_of
+from icdgen.backends.c.link.rows import boolean, lines, row_of
+from icdgen.protocol import crc
 from icdgen.protocol.can import KINDS
 from icdgen.protocol.facts import Crc, Step
 
@@ -79,7 +80,7 @@ class BusTables(Tables):
     def crc(self, name: str, one: Crc) -> str:
         table = "NULL"
         if 8 <= one.width <= 16:
-            entries = [f"{value:#0{2 + -(-one.width // 4)}x}u," for value in crc_table(one)]
+            entries = [f"{value:#0{2 + -(-one.width // 4)}x}u," for value in crc.table(one)]
             self.add(f"{name}_table[]", "uint16_t", lines(entries), "")
             table = f"{name}_table"
         flags = (one.reflect_in, one.reflect_out, one.empty is not None)

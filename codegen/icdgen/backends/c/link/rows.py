@@ -7,20 +7,8 @@ from collections.abc import Iterable
 from icdgen.backends.c.statement import STEP
 from icdgen.backends.c.text import WIDTH, comment
 from icdgen.icd.model import Message
-from icdgen.protocol.facts import Crc
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
-
-
-def crc_table(one: Crc) -> list[int]:
-    """The register after each byte, begun with 0; bytes reflected already."""
-    mask, table = (1 << one.width) - 1, []
-    for byte in range(256):
-        value = byte << (one.width - 8)
-        for _ in range(8):
-            value = (value << 1 & mask) ^ (one.polynomial if value >> (one.width - 1) else 0)
-        table.append(value)
-    return table
 
 
 def short(known: dict[int, Message]) -> dict[int, Message]:
