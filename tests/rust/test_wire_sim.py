@@ -5,14 +5,10 @@
 
 from __future__ import annotations
 
-import subprocess
-from urllib.parse import urlsplit
-
 import pytest
 
 from tests.rust import sim_client
 from tests.sim import harness
-from tests.sim.device import simulator
 
 SIZE = 65_537  # a last block of one byte
 
@@ -42,8 +38,5 @@ def test_acknowledges_that_are_spoilt_or_late_cost_nothing_but_time(client, faul
     ],
 )
 def test_a_node_that_is_another_one_or_does_not_answer_is_noticed(client, options, code, why):
-    with simulator(*options, "--tcp", "0") as (place, _):
-        where = urlsplit(place)
-        words = [*client, str(where.hostname), str(where.port), "100"]
-        done = subprocess.run(words, capture_output=True, text=True, timeout=60)
+    done = harness.against(client, *options)
     assert done.returncode == code and why in done.stderr, done.stderr

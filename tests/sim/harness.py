@@ -80,5 +80,13 @@ def run(
         return f"never sent: {', '.join(never)}" if never else None
 
 
+def against(client: list[str], *options: str) -> subprocess.CompletedProcess:
+    """The client's end against a simulator with these options; the file it wants has 100 bytes."""
+    with simulator(*options, "--tcp", "0") as (place, _):
+        where = urlsplit(place)
+        words = [*client, str(where.hostname), str(where.port), "100"]
+        return subprocess.run(words, capture_output=True, text=True, timeout=60)
+
+
 if __name__ == "__main__":
     sys.exit(main())
