@@ -89,16 +89,6 @@ class Limits(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class BitField(_Value):
-    """A part of a field that the manual describes only in words; ``at`` counts within the field's value."""
-
-    at: int
-    bits: int
-    name: str
-    summary: str = ""
-
-
-@dataclass(frozen=True, slots=True)
 class Field(_Value):
     """A field of a message: ``bits`` bits at bit ``at`` of the frame."""
 
@@ -114,7 +104,6 @@ class Field(_Value):
     const: int | None = None
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
-    bitfields: tuple[BitField, ...] = ()
     summary: str = ""
     errata: tuple[Erratum, ...] = ()
     source: Map | None = field(default=None, compare=False, repr=False)
