@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from icdgen.icd import formula, model
 from icdgen.icd.errata import Applied
-from icdgen.icd.tree import Map
+from icdgen.icd.located import Map
 from icdgen.icd.units import STANDARD, Unit
 
 

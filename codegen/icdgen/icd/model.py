@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from icdgen.icd.formula import Scale
-from icdgen.icd.tree import Map
+from icdgen.icd.located import Map
 from icdgen.icd.units import Unit
 
 TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configuration"

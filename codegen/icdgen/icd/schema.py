@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from icdgen.diagnostics import Finding, Place
-from icdgen.icd.tree import Map, Seq
+from icdgen.icd.located import Map, Seq
 
 PATH = Path(__file__).with_name("schema.json")
 CODE = "ICD010"

@@ -10,7 +10,7 @@ import re
 from pathlib import Path
 
 from icdgen.diagnostics import Finding, Findings, Place
-from icdgen.icd.tree import Map, Seq
+from icdgen.icd.located import Map, Seq
 
 MAX_BYTES = 4_000_000
 MAX_DEPTH = 40

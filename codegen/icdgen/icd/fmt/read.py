@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 
 from icdgen.icd import source
-from icdgen.icd.fmt.tree import Branch, Child, Text
+from icdgen.icd.fmt.commented import Branch, Child, Text
 
 SCHEMA_LINE = "# yaml-language-server:"
 _BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diagnostics import Place
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import close_to, quote
-from icdgen.icd.tree import Map, Seq
 
 MESSAGES = ("message", "packet", "id_of", "stop_request", "set_by", "names")  # keys that name messages
 FIELDS = ("id", "until", "until_clear", "error", "parameter")  # keys that, beside `message`, name fields of it
