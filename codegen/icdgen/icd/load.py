@@ -11,7 +11,7 @@ from icdgen.diagnostics import Finding, Findings, Place, in_order
 from icdgen.icd import errata, source
 from icdgen.icd.build import Builder, Scope
 from icdgen.icd.loaded import Loaded
-from icdgen.icd.located import Map
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Icd, Node
 
 INCLUDE = "ICD004"
@@ -80,7 +80,7 @@ class _Loader:
         self.findings += applied.findings
         self.applied.append(applied)
         digest = hashlib.sha256(self.contents[path])
-        digest.update(self.contents[beside] if overlay is not None else b"")
+        digest.update(self.contents[beside] if beside is not None and overlay is not None else b"")
         for one in included:
             digest.update(one.digest.encode())
         names = tuple(dict.fromkeys(n.name for n in included))
@@ -137,9 +137,11 @@ class _Loader:
         return self.read(overlay, "errata")
 
     def include(self, tree: Map, path: Path, stack: tuple[Path, ...]) -> list[Node]:
-        nodes = []
+        nodes: list[Node] = []
         items = tree.get("include")
-        for index, item in enumerate(items if isinstance(items, list) else ()):
+        if not isinstance(items, Seq):
+            return nodes
+        for index, item in enumerate(items):
             if not isinstance(item, str):
                 continue
             place = items.items_at[index]

@@ -94,7 +94,9 @@ def _differences(field: Field, twin: Field, frame: Message) -> Iterator[Fault]:
 def list_agrees(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         listed = message.source.get("listed")
-        for key, value in listed.items() if isinstance(listed, Map) else ():
+        if not isinstance(listed, Map):
+            continue
+        for key, value in listed.items():
             held = message.source.get(key)
             if held != value:
                 what = f"the {key.replace('_', ' ')} {quote(value)}"
