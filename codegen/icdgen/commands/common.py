@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 import click
 
-from icdgen import config, places
+from icdgen import config, shipped
 from icdgen.diagnostics import Finding
 from icdgen.errors import UserError
 from icdgen.icd.loaded import Loaded
@@ -53,7 +53,7 @@ def chosen(icds: tuple[Path, ...]) -> tuple[list[Path], config.Config]:
         found = config.find(Path.cwd())
     except FileNotFoundError:
         raise UserError("the current folder is no longer there", "change to another one") from None
-    paths = list(icds) or found.icds or [places.icds()]
+    paths = list(icds) or found.icds or [shipped.icds()]
     return [_short(path) for path in paths], found
 
 
@@ -64,7 +64,7 @@ def _short(path: Path) -> Path:
 
 def load_or_exit(icds: tuple[Path, ...]) -> Loaded:
     """The checked ICDs; prints what is wrong and exits with 1 if anything is."""
-    from icdgen.checked import load_checked
+    from icdgen.model_cache import load_checked
 
     loaded = load_checked(chosen(icds)[0])
     if not loaded.ok:

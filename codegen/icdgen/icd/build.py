@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from icdgen.icd import formula, model
 from icdgen.icd.errata import Applied
-from icdgen.icd.tree import Map
+from icdgen.icd.located import Map
 from icdgen.icd.units import STANDARD, Unit
 
 T = TypeVar("T")

@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from icdgen.icd.formula import Scale
-from icdgen.icd.tree import Map, unread
+from icdgen.icd.located import Map, unread
 from icdgen.icd.units import Unit
 
 TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configuration"

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from icdgen.diagnostics import Finding, Place
-from icdgen.icd.tree import Map, Seq
+from icdgen.icd.located import Map, Seq
 
 PATH = Path(__file__).with_name("schema.json")
 CODE = "ICD010"

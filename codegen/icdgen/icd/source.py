@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Protocol, cast
 
 from icdgen.diagnostics import Finding, Findings, Place
-from icdgen.icd.tree import Map, Seq
+from icdgen.icd.located import Map, Seq
 
 MAX_BYTES = 4_000_000
 MAX_DEPTH = 40

@@ -6,7 +6,7 @@ from collections import Counter
 
 from icdgen.errors import UserError
 from icdgen.icd import source
-from icdgen.icd.tree import Map
+from icdgen.icd.located import Map
 
 
 def format_text(text: str, name: str) -> str:

@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterator
 
 from icdgen.icd import source
-from icdgen.icd.fmt.tree import NOTHING, Branch, Child, Text
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.source import Event
-from icdgen.icd.tree import Map, Seq
 
 SCHEMA_LINE = "# yaml-language-server:"
 _BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from icdgen.icd.fmt import scalars
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
 from icdgen.icd.fmt.kinds import BLOCKS, INLINE, ROWS, Kind
 from icdgen.icd.fmt.read import SCHEMA_LINE
 from icdgen.icd.fmt.rows import aligned
 from icdgen.icd.fmt.scalars import WIDTH
-from icdgen.icd.fmt.tree import NOTHING, Branch, Child, Text
 
 LONGEST_ROW = 160  # of a table whose rows may also be written in block style
 MOST_ENTRIES = 6  # of a mapping that the schema does not know and that is written on one line

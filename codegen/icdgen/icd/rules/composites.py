@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diagnostics import Place
+from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Message, Node, Part
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import close_to, line_of, listing, quote
-from icdgen.icd.tree import Map
 
 _KEYS = ("bits", "type", "enum", "unit", "formula")
 

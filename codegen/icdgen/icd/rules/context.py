@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from icdgen.icd.errata import Applied
+from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.icd.rules.rule import Fault
-from icdgen.icd.tree import Map
 
 # Keys of a field that only few fields have.
 RARE = ("enum", "unit", "formula", "formula_for", "const", "special", "min", "max", "above", "below", "bitfields")

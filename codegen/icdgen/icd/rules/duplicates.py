@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from typing import TypeVar
 
+from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Message, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import line_of, quote
-from icdgen.icd.tree import Map
 from icdgen.icd.units import STANDARD
 
 T = TypeVar("T")

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 
 from icdgen.backends import Identifier
 from icdgen.diagnostics import Place
+from icdgen.icd.located import Map
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.declarations import TWINS, declared
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import line_of, listing, quote
-from icdgen.icd.tree import Map
 
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 

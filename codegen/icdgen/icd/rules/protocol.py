@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TypeGuard
 
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import line_of, quote
-from icdgen.icd.tree import Map, Seq
 
 CHECKED = b"123456789"  # what the check value of a CRC is computed over, by convention
 MAX_WIDTH = 64

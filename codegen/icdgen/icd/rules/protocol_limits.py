@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import ceil
 
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.ids import KEYS
 from icdgen.icd.rules.protocol_sizes import numbers, section_of
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import count, listing, quote
-from icdgen.icd.tree import Map, Seq
 
 BYTE = 255
 CRC_WIDTHS = (8, 32)  # that generated code computes

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from typing import TypeVar
 
 from icdgen.diagnostics import Place
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import close_to, quote
-from icdgen.icd.tree import Map, Seq
 
 T = TypeVar("T")
 

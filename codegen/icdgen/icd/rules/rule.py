@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from icdgen.diagnostics import Place
-from icdgen.icd.tree import Map
+from icdgen.icd.located import Map
 
 if TYPE_CHECKING:
     from icdgen.icd.rules.context import Context
