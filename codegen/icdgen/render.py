@@ -5,14 +5,14 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from icdgen import memo, places
+from icdgen import cache, fingerprints, shipped
 from icdgen.errors import UserError
 
 
 class Renderer:
     """Renders the templates of one backend; those in ``override`` (``--templates DIR``) win over the shipped ones.
 
-    ``looked_at`` tells of every file below ``override`` that was read or looked for: `memo.fingerprint` as of just before.
+    ``looked_at`` tells of every file below ``override`` that was read or looked for, with its fingerprint as of just before.
     """
 
     def __init__(self, backend: str, override: Path | None = None) -> None:
@@ -21,7 +21,7 @@ class Renderer:
         own = [override / backend, override] if override else []
         self.looked_at: dict[Path, str] = {}
         self._environment = jinja2.Environment(
-            loader=_loader(own, places.templates() / backend, self.looked_at),
+            loader=_loader(own, shipped.templates() / backend, self.looked_at),
             bytecode_cache=_bytecode(),
             undefined=jinja2.StrictUndefined,
             autoescape=lambda template: template is not None and template.endswith(".html.j2"),
@@ -69,7 +69,7 @@ def _loader(own: list[Path], shipped: Path, looked_at: dict[Path, str]):
         def get_source(self, environment, template):
             for folder in own:
                 path = folder.joinpath(*split_template_path(template))
-                looked_at[path] = memo.fingerprint(os.fspath(path))
+                looked_at[path] = fingerprints.of_path(os.fspath(path))
             return super().get_source(environment, template)
 
     return Loader([*own, shipped])
@@ -81,11 +81,11 @@ def _bytecode():
 
     class Cache(jinja2.BytecodeCache):
         def load_bytecode(self, bucket) -> None:
-            data = memo.recall("templates", memo.key("template", bucket.key))
+            data = cache.recall("templates", cache.key("template", bucket.key))
             if data is not None:
                 bucket.bytecode_from_string(data)
 
         def dump_bytecode(self, bucket) -> None:
-            memo.seal("templates", memo.key("template", bucket.key), bucket.bytecode_to_string())
+            cache.seal("templates", cache.key("template", bucket.key), bucket.bytecode_to_string())
 
     return Cache()

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any, TypeVar
 
 from icdgen.icd import division, formula, model
 from icdgen.icd.errata import Applied
-from icdgen.icd.tree import Map
+from icdgen.icd.located import Map
 from icdgen.icd.units import STANDARD, Unit
+
+T = TypeVar("T")
 
 
 class Scope:
@@ -58,7 +61,7 @@ class Builder:
             includes=includes,
             vocabulary=tuple(dict.fromkeys((*self.scope.vocabulary, *words))),
             units=units,
-            protocol=plain(protocol) if isinstance(protocol, Map) else {},
+            protocol=plain_mapping(protocol) if isinstance(protocol, Map) else {},
             loggable=tuple(self.each("loggable", self.loggable)),
             missing=tuple(self.each("missing", self.missing)),
             errata=tuple(self.applied.entries),
@@ -67,7 +70,7 @@ class Builder:
             source=self.tree,
         )
 
-    def each(self, key: str, make: Callable, owner: Map | None = None) -> Iterable:
+    def each(self, key: str, make: Callable[[Map], T], owner: Map | None = None) -> Iterable[T]:
         items = (self.tree if owner is None else owner).get(key)
         for item in items if isinstance(items, list) else ():
             if isinstance(item, Map) and id(item) not in self.broken:
@@ -148,8 +151,8 @@ class Builder:
             bits=item["bits"],
             type=kind,
             identifier=get("identifier"),
-            enum=self.scope.enums.get(get("enum")) if kind == "enum" else None,
-            unit=self.scope.units.get(get("unit")),
+            enum=self.scope.enums.get(get("enum", "")) if kind == "enum" else None,
+            unit=self.scope.units.get(get("unit", "")),
             formula=get("formula", ""),
             scale=scale(get("formula")) if kind in ("uint", "int") else None,
             const=get("const"),
@@ -187,6 +190,11 @@ def limits(item: Map) -> model.Limits | None:
 def exact(number: int | float) -> Fraction:
     """The number as it is written."""
     return Fraction(number) if isinstance(number, int) else Fraction(repr(number))
+
+
+def plain_mapping(value: Map) -> dict[str, Any]:
+    """A mapping without positions, at any depth."""
+    return {key: plain(item) for key, item in value.items()}
 
 
 def plain(value: object) -> object:

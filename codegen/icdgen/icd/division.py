@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from icdgen.icd.tree import Map
+from icdgen.icd.located import Map
 
 OF_A_WHOLE = ("unit", "formula", "const", "special", "min", "max", "above", "below")
 """Keys that say what a value means: of a divided field its parts say so."""
@@ -46,7 +46,7 @@ def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Obstacle]
         if at + size > bits:
             message = f"{title} ends at bit {at + size} of {name}, which has {bits} bit{'s' * (bits != 1)}"
             yield Obstacle(part, "bits", message, "`at` counts within the field")
-        elif place(field, part, byte_order, bit_order) is None:
+        elif not lies_together(field, part, byte_order, bit_order):
             message = f"the bits of {title} do not lie together in the frame"
             yield Obstacle(part, "at", message, "make the parts fields of the message")
         clash = next((taken[bit] for bit in range(at, at + size) if bit in taken), None)
@@ -59,12 +59,19 @@ def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Obstacle]
         yield Obstacle(field, "bitfields", message, "name what it is, or that it is reserved")
 
 
-def place(field: Map, part: Map, byte_order: str, bit_order: str) -> int | None:
-    """The bit of the frame at which the part begins; None where its bits do not lie together or not in order."""
-    whole = _bits(field["at"], field["bits"], byte_order, bit_order)
-    wanted = whole[part["at"] : part["at"] + part["bits"]]
-    start = min(wanted)
-    return start if _bits(start, part["bits"], byte_order, bit_order) == wanted else None
+def place(field: Map, part: Map, byte_order: str, bit_order: str) -> int:
+    """The bit of the frame at which the part begins."""
+    return min(_wanted(field, part, byte_order, bit_order))
+
+
+def lies_together(field: Map, part: Map, byte_order: str, bit_order: str) -> bool:
+    """Whether a field at that place has the part's bits, in their order."""
+    wanted = _wanted(field, part, byte_order, bit_order)
+    return _bits(min(wanted), part["bits"], byte_order, bit_order) == wanted
+
+
+def _wanted(field: Map, part: Map, byte_order: str, bit_order: str) -> list[int]:
+    return _bits(field["at"], field["bits"], byte_order, bit_order)[part["at"] : part["at"] + part["bits"]]
 
 
 def _bits(at: int, count: int, byte_order: str, bit_order: str) -> list[int]:
