@@ -15,12 +15,12 @@ def main() -> None:
 
 
 def _main() -> None:
-    from icdgen import memo
+    from icdgen import cache
 
     arguments = sys.argv[1:]
     try:
-        name = memo.key("run", os.getcwd(), *arguments)
-        note = memo.holds("runs", name)
+        name = cache.key("run", os.getcwd(), *arguments)
+        note = cache.holds("runs", name)
     except OSError:
         name, note = "", None
     if note is not None and _said(note):

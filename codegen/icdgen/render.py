@@ -8,24 +8,24 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from icdgen import memo, places
+from icdgen import cache, fingerprints, shipped
 from icdgen.errors import UserError
 
 
 class Renderer:
     """Renders the templates of one backend and hands out its runtime; files in ``override`` (``--templates DIR``) win.
 
-    ``looked_at`` tells of every file below ``override`` that was read or looked for: `memo.fingerprint` as of just before.
+    ``looked_at`` tells of every file below ``override`` that was read or looked for, with its fingerprint as of just before.
     """
 
     def __init__(self, backend: str, override: Path | None = None) -> None:
         import jinja2
 
         self._own = [override / backend, override] if override else []
-        self._runtime = places.runtimes() / backend
+        self._runtime = shipped.runtimes() / backend
         self.looked_at: dict[Path, str] = {}
         self._environment = jinja2.Environment(
-            loader=_loader(self._own, places.templates() / backend, self.looked_at),
+            loader=_loader(self._own, shipped.templates() / backend, self.looked_at),
             bytecode_cache=_bytecode(),
             undefined=jinja2.StrictUndefined,
             autoescape=lambda template: template is not None and template.endswith(".html.j2"),
@@ -62,7 +62,7 @@ class Renderer:
         """The text of a file of the runtime. Raises `UserError` if the user's own in its place cannot be read."""
         for folder in self._own:
             path = folder / file
-            self.looked_at[path] = memo.fingerprint(os.fspath(path))
+            self.looked_at[path] = fingerprints.of_path(os.fspath(path))
             try:
                 return path.read_text(encoding="utf-8")
             except (FileNotFoundError, NotADirectoryError):
@@ -91,7 +91,7 @@ def _loader(own: list[Path], shipped: Path, looked_at: dict[Path, str]):
         def get_source(self, environment, template):
             for folder in own:
                 path = folder.joinpath(*split_template_path(template))
-                looked_at[path] = memo.fingerprint(os.fspath(path))
+                looked_at[path] = fingerprints.of_path(os.fspath(path))
             return super().get_source(environment, template)
 
     return Loader([*own, shipped])
@@ -103,11 +103,11 @@ def _bytecode():
 
     class Cache(jinja2.BytecodeCache):
         def load_bytecode(self, bucket) -> None:
-            data = memo.recall("templates", memo.key("template", bucket.key))
+            data = cache.recall("templates", cache.key("template", bucket.key))
             if data is not None:
                 bucket.bytecode_from_string(data)
 
         def dump_bytecode(self, bucket) -> None:
-            memo.seal("templates", memo.key("template", bucket.key), bucket.bytecode_to_string())
+            cache.seal("templates", cache.key("template", bucket.key), bucket.bytecode_to_string())
 
     return Cache()

@@ -8,7 +8,7 @@ from fractions import Fraction
 import jsonschema_rs
 import pytest
 
-from icdgen import places
+import icdgen.shipped
 from icdgen.icd.load import load
 from icdgen.icd.model import Icd
 from icdgen.show import SCHEMA, to_json
@@ -72,7 +72,7 @@ def shown(icd) -> dict:
 
 @pytest.fixture(scope="module")
 def shipped() -> dict:
-    return to_json(load([places.icds()], check=False).icd)
+    return to_json(load([icdgen.shipped.icds()], check=False).icd)
 
 
 @pytest.fixture(scope="module")

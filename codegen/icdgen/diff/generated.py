@@ -10,8 +10,8 @@ from typing import NamedTuple
 from icdgen import backends
 from icdgen.diagnostics import Place
 from icdgen.diff.pairs import EnumPair, FieldPair, Match, MemberPair, MessagePair, Pair
+from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Field, Icd, Message, Node
-from icdgen.icd.tree import Map
 
 LANGUAGES = ("c", "python", "rust")
 

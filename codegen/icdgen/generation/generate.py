@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from icdgen import backends, memo
-from icdgen.checked import load_checked
+from icdgen import backends, cache
 from icdgen.errors import UserError
 from icdgen.generation import manifest, parallel, write
 from icdgen.icd.loaded import Loaded
 from icdgen.icd.model import Icd
+from icdgen.model_cache import load_checked
 from icdgen.render import Renderer
 
 
@@ -33,7 +33,7 @@ class Job:
 class Outcome:
     loaded: Loaded
     plans: list[write.Plan] = field(default_factory=list)
-    inputs: dict[Path, str] = field(default_factory=dict)  # what decides the output -> its `memo.fingerprint` when read
+    inputs: dict[Path, str] = field(default_factory=dict)  # what decides the output -> its fingerprint when read
 
     @property
     def changes(self) -> bool:
@@ -107,4 +107,4 @@ def remember(name: str, note: str, job: Job, outcome: Outcome) -> None:
         files[os.path.abspath(manifest.path(plan.out, plan.language))] = manifest.digest(plan.manifest.encode())
     if job.depfile is not None and not job.check:
         files[os.path.abspath(job.depfile)] = manifest.digest(_depfile(outcome)[0])
-    memo.remember("runs", name, note, files)
+    cache.remember("runs", name, note, files)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from fractions import Fraction
+from typing import Any, TypeVar
 
 from icdgen.icd import formula, model
 from icdgen.icd.errata import Applied
-from icdgen.icd.tree import Map
+from icdgen.icd.located import Map
 from icdgen.icd.units import STANDARD, Unit
+
+T = TypeVar("T")
 
 
 class Scope:
@@ -57,7 +60,7 @@ class Builder:
             includes=includes,
             vocabulary=tuple(dict.fromkeys((*self.scope.vocabulary, *words))),
             units=units,
-            protocol=plain(protocol) if isinstance(protocol, Map) else {},
+            protocol=plain_mapping(protocol) if isinstance(protocol, Map) else {},
             loggable=tuple(self.each("loggable", self.loggable)),
             missing=tuple(self.each("missing", self.missing)),
             errata=tuple(self.applied.entries),
@@ -66,7 +69,7 @@ class Builder:
             source=self.tree,
         )
 
-    def each(self, key: str, make: Callable, owner: Map | None = None) -> Iterable:
+    def each(self, key: str, make: Callable[[Map], T], owner: Map | None = None) -> Iterable[T]:
         items = (self.tree if owner is None else owner).get(key)
         for item in items if isinstance(items, list) else ():
             if isinstance(item, Map) and id(item) not in self.broken:
@@ -130,8 +133,8 @@ class Builder:
             bits=item["bits"],
             type=kind,
             identifier=get("identifier"),
-            enum=self.scope.enums.get(get("enum")) if kind == "enum" else None,
-            unit=self.scope.units.get(get("unit")),
+            enum=self.scope.enums.get(get("enum", "")) if kind == "enum" else None,
+            unit=self.scope.units.get(get("unit", "")),
             formula=get("formula", ""),
             scale=scale(get("formula")) if kind in ("uint", "int") else None,
             const=get("const"),
@@ -174,6 +177,11 @@ def exact(number: int | float) -> Fraction:
 
 def bitfield(item: Map) -> model.BitField:
     return model.BitField(item["at"], item["bits"], item["name"], item.get("summary", ""))
+
+
+def plain_mapping(value: Map) -> dict[str, Any]:
+    """A mapping without positions, at any depth."""
+    return {key: plain(item) for key, item in value.items()}
 
 
 def plain(value: object) -> object:

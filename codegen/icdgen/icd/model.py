@@ -1,16 +1,17 @@
 """The model of an ICD: what every backend, the codec, the vectors and the diff are made from.
 
-All objects are immutable. Positions are kept as ``source``, the mapping that the object was read from (None where a
-model was made in memory or came from the cache).
+All objects are immutable. Positions are kept as ``source``, the mapping that the object was read from (an empty one
+where a model was made in memory or came from the cache).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Any
 
 from icdgen.icd.formula import Scale
-from icdgen.icd.tree import Map
+from icdgen.icd.located import Map, unread
 from icdgen.icd.units import Unit
 
 TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configuration"
@@ -23,9 +24,9 @@ CAN_PACKETS = 256  # of an extended message
 class _Value:
     """Pickles as a call of its class: several times faster than what ``slots=True`` comes with."""
 
-    __slots__ = ()
+    __slots__: tuple[str, ...] = ()
 
-    def __reduce__(self) -> tuple:
+    def __reduce__(self) -> tuple[Any, ...]:
         return type(self), tuple(getattr(self, name) for name in self.__slots__)
 
 
@@ -53,7 +54,7 @@ class Member(_Value):
     identifier: str | None = None  # words to build identifiers from, if not the name's
     summary: str = ""
     errata: tuple[Erratum, ...] = ()
-    source: Map | None = field(default=None, compare=False, repr=False)
+    source: Map = field(default_factory=unread, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +68,7 @@ class Enum(_Value):
     table: int | None = None
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
-    source: Map | None = field(default=None, compare=False, repr=False)
+    source: Map = field(default_factory=unread, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +118,7 @@ class Field(_Value):
     bitfields: tuple[BitField, ...] = ()
     summary: str = ""
     errata: tuple[Erratum, ...] = ()
-    source: Map | None = field(default=None, compare=False, repr=False)
+    source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property
     def signed(self) -> bool:
@@ -164,7 +165,7 @@ class Message(_Value):
     contains: tuple[Part, ...] = ()
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
-    source: Map | None = field(default=None, compare=False, repr=False)
+    source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property
     def telecommand_id(self) -> int | None:
@@ -190,7 +191,7 @@ class Loggable(_Value):
     id: int
     name: str = ""
     errata: tuple[Erratum, ...] = ()
-    source: Map | None = field(default=None, compare=False, repr=False)
+    source: Map = field(default_factory=unread, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,13 +221,13 @@ class Node(_Value):
     includes: tuple[str, ...] = ()  # names of the nodes it includes
     vocabulary: tuple[str, ...] = ()  # its own and what it includes
     units: tuple[Unit, ...] = ()  # units that this file declares
-    protocol: dict = field(default_factory=dict, hash=False)
+    protocol: dict[str, Any] = field(default_factory=dict, hash=False)
     loggable: tuple[Loggable, ...] = ()
     missing: tuple[Missing, ...] = ()
     errata: tuple[Erratum, ...] = ()  # all entries of its overlay, in order
     digest: str = ""  # SHA-256 over the file, its overlay and what it includes
     file: str = ""
-    source: Map | None = field(default=None, compare=False, repr=False)
+    source: Map = field(default_factory=unread, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,7 +245,8 @@ class Icd(_Value):
 
     def included(self, node: Node) -> tuple[Node, ...]:
         """All nodes that ``node`` includes, directly or not, each once, in the order of the set."""
-        names, queue = set(), list(node.includes)
+        queue = list(node.includes)
+        names: set[str] = set()
         while queue:
             name = queue.pop()
             if name not in names:
@@ -256,9 +258,9 @@ class Icd(_Value):
         """All messages that the node speaks: those of included nodes first, then its own."""
         return tuple(m for n in (*self.included(node), node) for m in n.messages)
 
-    def protocol_of(self, node: Node) -> dict:
+    def protocol_of(self, node: Node) -> dict[str, Any]:
         """The protocol facts that hold for the node: its own over those of what it includes."""
-        merged: dict = {}
+        merged: dict[str, Any] = {}
         for one in (*self.included(node), node):
             merged.update(one.protocol)
         return merged

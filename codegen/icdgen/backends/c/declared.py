@@ -10,8 +10,8 @@ from icdgen.backends.c.constants import constant_name, limits, specials
 from icdgen.backends.c.names import accessor_unit
 from icdgen.backends.c.plan import Plan, Planner
 from icdgen.backends.c.prefixes import part_of_unit
+from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Icd, Message, Node
-from icdgen.icd.tree import Map
 
 FILE = "C names at file scope"
 FILES = "C header files"

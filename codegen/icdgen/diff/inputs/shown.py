@@ -12,7 +12,7 @@ from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError
 from icdgen.icd import model, source
 from icdgen.icd.formula import Scale
-from icdgen.icd.tree import Map, Seq
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.units import STANDARD, Unit
 
 _MOST = 64_000_000  # bytes

@@ -8,18 +8,18 @@ import pickle
 from hashlib import sha256
 from pathlib import Path
 
-from icdgen import memo
+from icdgen import cache
 from icdgen.icd.loaded import Loaded
-from icdgen.icd.tree import Map
+from icdgen.icd.located import Map
 
 KIND = "models"
 
 
 def load_checked(paths: list[Path]) -> Loaded:
     """Like `icdgen.icd.load.load`. A remembered model carries no positions and comes without texts."""
-    name = memo.key("model", os.getcwd(), *(str(path) for path in paths))
-    digest = memo.holds("inputs", name)
-    data = memo.recall(KIND, digest) if digest else None
+    name = cache.key("model", os.getcwd(), *(str(path) for path in paths))
+    digest = cache.holds("inputs", name)
+    data = cache.recall(KIND, digest) if digest else None
     if data is not None:
         icd, inputs = _Unpickler(io.BytesIO(data)).load()
         return Loaded(icd, [], inputs)
@@ -31,8 +31,8 @@ def load_checked(paths: list[Path]) -> Loaded:
         _Pickler(buffer, protocol=5).dump((loaded.icd, loaded.inputs))
         data = buffer.getvalue()
         digest = sha256(data).hexdigest()
-        memo.seal(KIND, digest, data)
-        memo.remember("inputs", name, digest, {os.path.abspath(path): seen for path, seen in loaded.inputs.items()})
+        cache.seal(KIND, digest, data)
+        cache.remember("inputs", name, digest, {os.path.abspath(path): seen for path, seen in loaded.inputs.items()})
     return loaded
 
 

@@ -2,61 +2,61 @@
 
 from __future__ import annotations
 
-from icdgen import memo
+from icdgen import cache, fingerprints
 
 
 def test_a_record_holds_while_its_files_are_unchanged(tmp_path):
     path = tmp_path / "a"
     path.write_text("x")
-    memo.remember("runs", "k", "done", {str(path): memo.fingerprint(str(path))})
-    assert memo.holds("runs", "k") == "done"
+    cache.remember("runs", "k", "done", {str(path): fingerprints.of_path(str(path))})
+    assert cache.holds("runs", "k") == "done"
 
 
 def test_a_changed_a_removed_and_a_new_file_end_it(tmp_path):
     path, absent = tmp_path / "a", tmp_path / "errata"
     path.write_text("x")
-    record = {str(p): memo.fingerprint(str(p)) for p in (path, absent)}
-    memo.remember("runs", "k", "done", record)
+    record = {str(p): fingerprints.of_path(str(p)) for p in (path, absent)}
+    cache.remember("runs", "k", "done", record)
     path.write_text("y")
-    assert memo.holds("runs", "k") is None
+    assert cache.holds("runs", "k") is None
     path.write_text("x")
-    assert memo.holds("runs", "k") == "done"
+    assert cache.holds("runs", "k") == "done"
     absent.write_text("")
-    assert memo.holds("runs", "k") is None
+    assert cache.holds("runs", "k") is None
     absent.unlink()
     path.unlink()
-    assert memo.holds("runs", "k") is None
+    assert cache.holds("runs", "k") is None
 
 
 def test_a_folder_counts_by_the_names_in_it(tmp_path):
-    memo.remember("runs", "k", "done", {str(tmp_path): memo.fingerprint(str(tmp_path))})
+    cache.remember("runs", "k", "done", {str(tmp_path): fingerprints.of_path(str(tmp_path))})
     (tmp_path / "new.yaml").write_text("")
-    assert memo.holds("runs", "k") is None
+    assert cache.holds("runs", "k") is None
 
 
 def test_a_record_that_was_tampered_with_does_not_hold(tmp_path, monkeypatch):
     monkeypatch.setenv("ICDGEN_CACHE", str(tmp_path))
-    memo.remember("runs", "k", "done", {})
+    cache.remember("runs", "k", "done", {})
     record = tmp_path / "runs" / "k"
-    assert memo.holds("runs", "k") == "done"
+    assert cache.holds("runs", "k") == "done"
     record.write_bytes(record.read_bytes().replace(b"done", b"gone"))
-    assert memo.holds("runs", "k") is None
+    assert cache.holds("runs", "k") is None
 
 
 def test_the_cache_can_be_switched_off(monkeypatch):
     monkeypatch.setenv("ICDGEN_CACHE", "off")
-    memo.remember("runs", "k", "done", {})
-    assert memo.holds("runs", "k") is None
+    cache.remember("runs", "k", "done", {})
+    assert cache.holds("runs", "k") is None
 
 
 def test_the_tool_itself_is_part_of_every_key(monkeypatch):
-    before = memo.key("run")
-    monkeypatch.setattr(memo, "tool", lambda: "another version")
-    assert memo.key("run") != before
+    before = cache.key("run")
+    monkeypatch.setattr(fingerprints, "of_tool", lambda: "another version")
+    assert cache.key("run") != before
 
 
 def test_a_cache_that_cannot_be_written_is_no_error(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("ICDGEN_CACHE", str(tmp_path / "file" / "below"))
-    memo.remember("runs", "k", "done", {})
-    assert memo.holds("runs", "k") is None
+    cache.remember("runs", "k", "done", {})
+    assert cache.holds("runs", "k") is None

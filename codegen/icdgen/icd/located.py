@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from icdgen.diagnostics import Place
 
 
-class Map(dict):
+class Map(dict[str, Any]):
     """A mapping; ``place`` is where it starts, ``keys_at`` and ``values_at`` give the place of each key and value."""
 
     __slots__ = ("place", "keys_at", "values_at")
@@ -20,7 +22,7 @@ class Map(dict):
         return self.values_at.get(key, self.place)
 
 
-class Seq(list):
+class Seq(list[Any]):
     """A sequence; ``items_at`` gives the place of each item."""
 
     __slots__ = ("place", "items_at")
@@ -28,3 +30,11 @@ class Seq(list):
     def __init__(self, place: Place) -> None:
         self.place = place
         self.items_at: list[Place] = []
+
+
+_UNREAD = Map(Place(""))
+
+
+def unread() -> Map:
+    """The source of what was not read from a file: an empty mapping that stands nowhere."""
+    return _UNREAD

@@ -8,12 +8,10 @@ next to nothing.
 from __future__ import annotations
 
 import os
-import stat
-import sys
 from hashlib import sha256
 
-ABSENT = "-"
-UNKNOWN = "?"  # what can't be read, or not twice; never equal to anything
+from icdgen import fingerprints
+
 MOST = 300  # files of one kind in the cache
 
 
@@ -33,70 +31,9 @@ def folder() -> str | None:
     return os.path.join(base, "icdgen")
 
 
-def fingerprint(path: str) -> str:
-    """SHA-256 of a file, of a folder's list of names, or `ABSENT`, or `UNKNOWN`."""
-    try:
-        mode = os.stat(path).st_mode
-        if stat.S_ISREG(mode):
-            with open(path, "rb") as file:
-                return sha256(file.read()).hexdigest()
-        if stat.S_ISDIR(mode):
-            return sha256("\0".join(sorted(os.listdir(path))).encode("utf-8", "surrogateescape")).hexdigest()
-    except (FileNotFoundError, NotADirectoryError):
-        return ABSENT
-    except OSError:
-        return UNKNOWN
-    return UNKNOWN
-
-
-_known: list[str] = []  # the digest of the tool, once it is needed
-
-
-def tool() -> str:
-    """Digest of everything that decides what the tool does: its own files, its templates and runtimes, the interpreter, jinja2.
-
-    As of when it is first asked for: what changes later is not what runs.
-    """
-    if not _known:
-        _known.append(_digest())
-    return _known[0]
-
-
-def _digest() -> str:
-    package = os.path.dirname(os.path.abspath(__file__))
-    data = os.path.join(package, "data")
-    root = data if os.path.isdir(data) else os.path.dirname(os.path.dirname(package))
-    digest = sha256(sys.version.encode())
-    for top in (package, os.path.join(root, "templates"), os.path.join(root, "runtime")):
-        for path in sorted(_files(top)):
-            digest.update(path.encode("utf-8", "surrogateescape"))
-            with open(path, "rb") as file:
-                digest.update(file.read())
-    for place in sys.path:
-        try:
-            status = os.stat(os.path.join(place, "jinja2", "__init__.py"))
-        except OSError:
-            continue
-        digest.update(f"{status.st_size} {status.st_mtime_ns}".encode())
-        break
-    return digest.hexdigest()
-
-
-def _files(top: str) -> list[str]:
-    found = []
-    with os.scandir(top) as entries:
-        for entry in entries:
-            if entry.is_dir():
-                if entry.name not in ("__pycache__", "data"):
-                    found += _files(entry.path)
-            elif entry.name.endswith((".py", ".json", ".j2", ".js", ".css", ".h", ".rs")):
-                found.append(entry.path)
-    return found
-
-
 def key(*parts: str) -> str:
     """A name for a record about ``parts``, for this tool."""
-    return sha256("\0".join((tool(), *parts)).encode("utf-8", "surrogateescape")).hexdigest()
+    return sha256("\0".join((fingerprints.of_tool(), *parts)).encode("utf-8", "surrogateescape")).hexdigest()
 
 
 def holds(kind: str, name: str) -> str | None:
@@ -107,14 +44,14 @@ def holds(kind: str, name: str) -> str | None:
     note, *lines = data.decode("utf-8", "surrogateescape").split("\n")
     for line in lines:
         expected, _, path = line.partition(" ")
-        if fingerprint(path) != expected:
+        if fingerprints.of_path(path) != expected:
             return None
     return note
 
 
 def remember(kind: str, name: str, note: str, files: dict[str, str]) -> None:
     """Keeps a record: path -> fingerprint of what was read or written there. Never fails."""
-    if UNKNOWN in files.values() or any("\n" in path for path in files):
+    if fingerprints.UNKNOWN in files.values() or any("\n" in path for path in files):
         return
     body = "\n".join([note, *(f"{print_} {path}" for path, print_ in files.items())])
     seal(kind, name, body.encode("utf-8", "surrogateescape"))

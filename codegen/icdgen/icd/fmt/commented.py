@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Text:
     """A scalar. ``value`` is what the loader reads, ``spelling`` how the file has it (of interest for numbers)."""
 
@@ -13,12 +13,15 @@ class Text:
     spelling: str
 
 
+NOTHING = Text(None, "")  # the value of a key that has none yet, the key of an item
+
+
 @dataclass(slots=True)
 class Child:
-    """An entry of a mapping or, with ``key`` None, an item of a sequence. Among comments "" is a blank line."""
+    """An entry of a mapping or, with `NOTHING` for a key, an item of a sequence. Among comments "" is a blank line."""
 
-    key: Text | None
-    value: Text | Branch | None = None
+    key: Text
+    value: Text | Branch = NOTHING
     before: list[str] = field(default_factory=list)  # comments on lines of their own above it
     trailing: list[str] = field(default_factory=list)  # comments behind it on its line
 
