@@ -34,7 +34,7 @@ _known: list[str] = []  # the digest of the tool, once it is needed
 
 
 def of_tool() -> str:
-    """Digest of everything that decides what the tool does: its own files, its templates, the interpreter, jinja2.
+    """Digest of everything that decides what the tool does: its own files, its templates and runtimes, the interpreter, jinja2.
 
     As of when it is first asked for: what changes later is not what runs.
     """
@@ -48,7 +48,7 @@ def _digest() -> str:
     data = os.path.join(package, "data")
     root = data if os.path.isdir(data) else os.path.dirname(os.path.dirname(package))
     digest = sha256(sys.version.encode())
-    for top in (package, os.path.join(root, "templates")):
+    for top in (package, os.path.join(root, "templates"), os.path.join(root, "runtime")):
         for path in sorted(_files(top)):
             digest.update(path.encode("utf-8", "surrogateescape"))
             with open(path, "rb") as file:
@@ -70,6 +70,6 @@ def _files(top: str) -> list[str]:
             if entry.is_dir():
                 if entry.name not in ("__pycache__", "data"):
                     found += _files(entry.path)
-            elif entry.name.endswith((".py", ".json", ".j2", ".js", ".css")):
+            elif not entry.name.endswith(".pyc"):
                 found.append(entry.path)
     return found
