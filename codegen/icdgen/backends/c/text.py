@@ -2,27 +2,32 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from functools import lru_cache
 
 WIDTH = 120
 
+_MARKUP = re.compile(r"[\\@`]|<(?=[A-Za-z/!?])|[&#%](?=[\w#:])|(?:(?<![^\s<{(\[,:;]))[*_~](?=\S)|\[(?=[^\]]*\][(\[:])")
+_BLOCK = re.compile(r"(\d*)([-+*=#]+\Z|[.)]\Z|>)")  # begins a list, a heading or a quotation where it begins a line
+
 
 @lru_cache(maxsize=8192)
 def plain(text: str) -> str:
-    """One line that is safe within a block comment: no comment delimiters, trigraphs or control characters."""
+    """One line for a documentation comment, where it reads as it is: no comment delimiters, trigraphs or control characters,
+    and nothing that Doxygen or clang take for a command, for HTML or for emphasis."""
     text = " ".join(text.split())
     if not (text.isascii() and text.isprintable()):
         text = "".join(c if c.isprintable() else f"<U+{ord(c):04X}>" for c in text)
     for unsafe, safe in (("*/", "* /"), ("/*", "/ *"), ("??", "? ?")):
         while unsafe in text:
             text = text.replace(unsafe, safe)
-    return text
+    return text if text.replace(" ", "").isalnum() else _MARKUP.sub(r"\\\g<0>", text)
 
 
 def comment(paragraphs: Iterable[str], indent: str = "") -> str:
     """A documentation comment of `plain` paragraphs: one line where it fits, else a block."""
-    paragraphs = [p for p in paragraphs if p]
+    paragraphs = [_tamed(word) + rest for word, rest in map(_first_word, filter(None, paragraphs))]
     if len(paragraphs) == 1 and len(indent) + len(paragraphs[0]) + 7 <= WIDTH:
         return f"{indent}/** {paragraphs[0]} */"
     lines = [f"{indent}/**"]
@@ -40,10 +45,20 @@ def _lines(paragraph: str, width: int) -> list[str]:
     for word in paragraph.split(" "):
         if line.strip() and len(line) + 1 + len(word) > width:
             lines.append(line)
-            line = hang + word
+            line = hang + _tamed(word)
         else:
             line = f"{line} {word}" if line else word
     return [*lines, line]
+
+
+def _first_word(paragraph: str) -> tuple[str, str]:
+    word, space, rest = paragraph.partition(" ")
+    return word, space + rest
+
+
+def _tamed(word: str) -> str:
+    """A word as it may begin a line: no list, heading or quotation."""
+    return _BLOCK.sub(r"\1\\\2", word, 1) if _BLOCK.match(word) else word
 
 
 @lru_cache(maxsize=4096)
