@@ -34,7 +34,7 @@ _known: list[str] = []  # the digest of the tool, once it is needed
 
 
 def of_tool() -> str:
-    """Digest of everything that decides what the tool does: its own files, its templates, the interpreter, jinja2.
+    """Digest of everything that decides what the tool does: its own files, its templates and runtimes, the interpreter, jinja2.
 
     As of when it is first asked for: what changes later is not what runs.
     """

@@ -30,14 +30,14 @@ def test_a_template_behind_a_link(run, demo, tmp_path):
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "own").mkdir()
     (tmp_path / "own" / "c").symlink_to("../elsewhere")
-    template = tmp_path / "elsewhere" / "icdgen.h.j2"
+    template = tmp_path / "elsewhere" / "node.h.j2"
     for text in ("one\n", "two\n"):
         template.write_text(text)
         run("--lang", "c", "--out", "out", "--templates", "own", demo)
-        assert (tmp_path / "out" / "icdgen.h").read_text() == text
+        assert (tmp_path / "out" / "demo.h").read_text() == text
     template.unlink()
     run("--lang", "c", "--out", "out", "--templates", "own", demo)
-    assert (tmp_path / "out" / "icdgen.h").read_text() != "two\n"
+    assert (tmp_path / "out" / "demo.h").read_text() != "two\n"
 
 
 def test_an_included_file_by_a_second_path_that_leads_elsewhere(run, tmp_path):
