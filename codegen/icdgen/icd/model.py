@@ -81,16 +81,6 @@ class Limits:
 
 
 @dataclass(frozen=True, slots=True)
-class BitField:
-    """A part of a field that the manual describes only in words; ``at`` counts within the field's value."""
-
-    at: int
-    bits: int
-    name: str
-    summary: str = ""
-
-
-@dataclass(frozen=True, slots=True)
 class Field:
     """A field of a message: ``bits`` bits at bit ``at`` of the frame."""
 
@@ -106,7 +96,6 @@ class Field:
     const: int | None = None
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
-    bitfields: tuple[BitField, ...] = ()
     summary: str = ""
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, fields, is_dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -18,12 +18,8 @@ from icdgen.icd.formula import Scale
 from icdgen.icd.units import Unit
 
 _CLASSES: dict[str, Callable[..., Any]] = {
-    kind.__name__: kind
-    for kind in (
-        model.Icd, model.Node, model.Message, model.Field, model.Part, model.BitField, model.Limits, model.Special, model.Enum,
-        model.Member, model.Erratum, model.Loggable, model.Missing, Unit, Scale,
-    )
-}  # fmt: skip
+    kind.__name__: kind for kind in (Scale, Unit, *filter(is_dataclass, vars(model).values()))
+}
 
 
 def text(icd: model.Icd, inputs: dict[Path, str]) -> bytes:

@@ -700,11 +700,17 @@ typedef struct {
      */
     bool estimation_transition_on_rate_sensor_error;
     /**
-     * Cam1 and Cam2 Sampling Period: bits 3016 to 3023, in s. Bits 0 to 3 of it: Cam1 period. Bits 4 to 7 of it: Cam2
-     * period. A period of 0 stops the sampling of that camera.
+     * Cam1 period: bits 3016 to 3019, raw 0 to 15, in s. Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0
+     * stops the sampling of that camera.
      * @note ACP-169: Two sampling periods in one field with a unit.
      */
-    uint8_t cam1_and_cam2_sampling_period;
+    uint8_t cam1_period;
+    /**
+     * Cam2 period: bits 3020 to 3023, raw 0 to 15, in s. Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0
+     * stops the sampling of that camera.
+     * @note ACP-169: Two sampling periods in one field with a unit.
+     */
+    uint8_t cam2_period;
     /**
      * Incl. coefficient: bits 3024 to 3039; raw*0.001, 0 to 65.535. Of the filter of the inclination.
      * @note ACP-001: Formula announced as giving the raw value gives the physical one.
@@ -874,7 +880,8 @@ static inline icd_status_t cubeacp_adcs_configuration_decode(
     message->magnetometer_mode = (buffer[375] >> 6) & 0x03u;
     message->raw_magnetometer_selection = buffer[376] & 0x03u;
     message->estimation_transition_on_rate_sensor_error = (buffer[376] & 0x04u) != 0u;
-    message->cam1_and_cam2_sampling_period = buffer[377];
+    message->cam1_period = buffer[377] & 0x0Fu;
+    message->cam2_period = (buffer[377] >> 4) & 0x0Fu;
     message->incl_coefficient = icdgen_load_u16le(&buffer[378]);
     message->raan_coefficient = icdgen_load_u16le(&buffer[380]);
     message->ecc_coefficient = icdgen_load_u16le(&buffer[382]);
@@ -909,6 +916,12 @@ static inline const char *cubeacp_adcs_configuration_misfit(const cubeacp_adcs_c
     if ((message->raw_magnetometer_selection & 0xFCu) != 0u) {
         return "Magnetometer Selection for RAW MTM TLM";
     }
+    if ((message->cam1_period & 0xF0u) != 0u) {
+        return "Cam1 period";
+    }
+    if ((message->cam2_period & 0xF0u) != 0u) {
+        return "Cam2 period";
+    }
     return NULL;
 }
 
@@ -926,6 +939,8 @@ static inline icd_status_t cubeacp_adcs_configuration_encode(
     excess |= message->sun_pointing_facet & 0x80u;
     excess |= message->magnetometer_mode & 0xFCu;
     excess |= message->raw_magnetometer_selection & 0xFCu;
+    excess |= message->cam1_period & 0xF0u;
+    excess |= message->cam2_period & 0xF0u;
     if (excess != 0u) {
         return ICD_ERROR_RANGE;
     }
@@ -998,7 +1013,7 @@ static inline icd_status_t cubeacp_adcs_configuration_encode(
         (message->magnetometer_mode << 6));
     buffer[376] =
         ICDGEN_U8(message->raw_magnetometer_selection | (message->estimation_transition_on_rate_sensor_error << 2));
-    buffer[377] = message->cam1_and_cam2_sampling_period;
+    buffer[377] = ICDGEN_U8(message->cam1_period | (message->cam2_period << 4));
     icdgen_store_u16le(&buffer[378], message->incl_coefficient);
     icdgen_store_u16le(&buffer[380], message->raan_coefficient);
     icdgen_store_u16le(&buffer[382], message->ecc_coefficient);

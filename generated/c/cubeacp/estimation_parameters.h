@@ -87,11 +87,17 @@ typedef struct {
      */
     bool estimation_transition_on_rate_sensor_error;
     /**
-     * Cam1 and Cam2 Sampling Period: bits 240 to 247, in s. Bits 0 to 3 of it: Cam1 period. Bits 4 to 7 of it: Cam2
-     * period. A period of 0 stops the sampling of that camera.
+     * Cam1 period: bits 240 to 243, raw 0 to 15, in s. Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0
+     * stops the sampling of that camera.
      * @note ACP-169: Two sampling periods in one field with a unit.
      */
-    uint8_t cam1_and_cam2_sampling_period;
+    uint8_t cam1_period;
+    /**
+     * Cam2 period: bits 244 to 247, raw 0 to 15, in s. Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0
+     * stops the sampling of that camera.
+     * @note ACP-169: Two sampling periods in one field with a unit.
+     */
+    uint8_t cam2_period;
 } cubeacp_estimation_parameters_t;
 
 /** Makes every raw value 0. */
@@ -122,7 +128,8 @@ static inline icd_status_t cubeacp_estimation_parameters_decode(
     message->magnetometer_mode = (buffer[28] >> 6) & 0x03u;
     message->raw_magnetometer_selection = buffer[29] & 0x03u;
     message->estimation_transition_on_rate_sensor_error = (buffer[29] & 0x04u) != 0u;
-    message->cam1_and_cam2_sampling_period = buffer[30];
+    message->cam1_period = buffer[30] & 0x0Fu;
+    message->cam2_period = (buffer[30] >> 4) & 0x0Fu;
     return ICD_OK;
 }
 
@@ -134,6 +141,12 @@ static inline const char *cubeacp_estimation_parameters_misfit(const cubeacp_est
     }
     if ((message->raw_magnetometer_selection & 0xFCu) != 0u) {
         return "Magnetometer Selection for RAW MTM TLM";
+    }
+    if ((message->cam1_period & 0xF0u) != 0u) {
+        return "Cam1 period";
+    }
+    if ((message->cam2_period & 0xF0u) != 0u) {
+        return "Cam2 period";
     }
     return NULL;
 }
@@ -151,6 +164,8 @@ static inline icd_status_t cubeacp_estimation_parameters_encode(
     uint32_t excess = 0u;
     excess |= message->magnetometer_mode & 0xFCu;
     excess |= message->raw_magnetometer_selection & 0xFCu;
+    excess |= message->cam1_period & 0xF0u;
+    excess |= message->cam2_period & 0xF0u;
     if (excess != 0u) {
         return ICD_ERROR_RANGE;
     }
@@ -168,7 +183,7 @@ static inline icd_status_t cubeacp_estimation_parameters_encode(
         (message->magnetometer_mode << 6));
     buffer[29] =
         ICDGEN_U8(message->raw_magnetometer_selection | (message->estimation_transition_on_rate_sensor_error << 2));
-    buffer[30] = message->cam1_and_cam2_sampling_period;
+    buffer[30] = ICDGEN_U8(message->cam1_period | (message->cam2_period << 4));
     return ICD_OK;
 }
 

@@ -76,7 +76,6 @@ def field(one: Field, narrow: bool) -> list[str]:
     if one.limits is not None:
         facts.append(f"Must be {limits(one.limits)}.")
     facts += (f"{value(s.value)}: {sentence(s.meaning)}" for s in one.special)
-    facts += (f"{_bits(b.at, b.bits).capitalize()} of it: {plain(b.name)}." for b in one.bitfields)
     facts.append(sentence(one.summary))
     return [" ".join(f for f in facts if f), *notes(one.errata)]
 
