@@ -8,8 +8,8 @@ from pathlib import Path
 WORDS = (
     "<img src=x onerror=y>", "<b>never closed", "</p>", r"\param x", r"@return it", r"\unknowncommand", r"C:\new\file",
     "*bold* and **more**", "_it_ and trailing_", "`code", "[a](b) and [c][d] and [e]", "|sub|", "- item", "1. item", "+ item",
-    "&amp; &lt;", "> quoted", "# head", ":field: x", ".. note:: x", ">>> doctest", "#link %s", "~~~", "<!-- x", "*/ /* // ??/", '"""',
-    "'''", "$x$", "::",
+    "&amp; &lt;", "> quoted", "# head", ":field: x", ".. note:: x", ">>> doctest", "#link %s", "~~~", "<!-- x", "*/ /* // ??/",
+    '"""', "'''", "$x$", "::",
     r"\f$ x", "@endcode", "<tt>", "https://x.example/a_b", "-", "a - b", "{x}", "\\", "x < y > z", "* star",
 )  # fmt: skip
 

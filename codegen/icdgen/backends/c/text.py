@@ -1,10 +1,13 @@
-"""Text from the ICD -> C comments and string literals that nothing can break out of."""
+"""Text -> C comments and string literals that nothing can break out of."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable
 from functools import lru_cache
+
+from icdgen.backends.lines import bulleted
+from icdgen.describe.comments import Comment
 
 WIDTH = 120
 
@@ -18,7 +21,7 @@ def plain(text: str) -> str:
     and nothing that Doxygen or clang take for a command, for HTML or for emphasis."""
     text = " ".join(text.split())
     if not (text.isascii() and text.isprintable()):
-        text = "".join(c if c.isprintable() else f"<U+{ord(c):04X}>" for c in text)
+        text = "".join(c if c.isprintable() else f"U+{ord(c):04X}" for c in text)
     for unsafe, safe in (("*/", "* /"), ("/*", "/ *"), ("??", "? ?")):
         while unsafe in text:
             text = text.replace(unsafe, safe)
@@ -26,17 +29,20 @@ def plain(text: str) -> str:
 
 
 def comment(paragraphs: Iterable[str], indent: str = "") -> str:
+<<<<<<< HEAD
     """A documentation comment of `plain` paragraphs: one line where it fits, else a block."""
     paragraphs = [_tamed(word) + rest for word, rest in map(_first_word, filter(None, paragraphs))]
+=======
+    """A documentation comment: one line where it fits, else a block."""
+    paragraphs = [plain(p) for p in paragraphs if p]
+>>>>>>> main
     if len(paragraphs) == 1 and len(indent) + len(paragraphs[0]) + 7 <= WIDTH:
         return f"{indent}/** {paragraphs[0]} */"
-    lines = [f"{indent}/**"]
-    for paragraph in paragraphs:
-        lines += [f"{indent} * {line}" for line in _lines(paragraph, WIDTH - len(indent) - 3)]
-    lines.append(f"{indent} */")
-    return "\n".join(lines)
+    lines = bulleted(paragraphs, WIDTH, f"{indent} * ", "")
+    return "\n".join([f"{indent}/**", *filter(None, lines), f"{indent} */"])
 
 
+<<<<<<< HEAD
 def _lines(paragraph: str, width: int) -> list[str]:
     if len(paragraph) <= width:
         return [paragraph]
@@ -49,6 +55,16 @@ def _lines(paragraph: str, width: int) -> list[str]:
         else:
             line = f"{line} {word}" if line else word
     return [*lines, line]
+=======
+def described(one: Comment, indent: str = "") -> str:
+    """The comment of a part: what it is in one paragraph, and its errata as notes."""
+    return comment([" ".join((one.head, *one.rest)), *noted(one)], indent)
+
+
+def noted(one: Comment) -> list[str]:
+    """The errata as notes of the usual documentation tools."""
+    return [f"@note {paragraph}" for paragraph in one.errata]
+>>>>>>> main
 
 
 def _first_word(paragraph: str) -> tuple[str, str]:
