@@ -137,11 +137,15 @@ class Builder:
             const=get("const"),
             special=tuple(self.each("special", lambda s: model.Special(s["value"], s["meaning"]), item)),
             limits=limits(item),
-            bitfields=tuple(self.each("bitfields", bitfield, item)) if "bitfields" in item else (),
+            bitfields=tuple(self.each("bitfields", self.bitfield, item)) if "bitfields" in item else (),
             summary=get("summary", ""),
             errata=self.applied.about(item),
             source=item,
         )
+
+    def bitfield(self, item: Map) -> model.BitField:
+        unit = self.scope.units.get(item.get("unit"))
+        return model.BitField(item["at"], item["bits"], item["name"], item.get("summary", ""), unit)
 
     def loggable(self, item: Map) -> model.Loggable:
         errata = self.applied.about(item)
@@ -170,10 +174,6 @@ def limits(item: Map) -> model.Limits | None:
 def exact(number: int | float) -> Fraction:
     """The number as it is written."""
     return Fraction(number) if isinstance(number, int) else Fraction(repr(number))
-
-
-def bitfield(item: Map) -> model.BitField:
-    return model.BitField(item["at"], item["bits"], item["name"], item.get("summary", ""))
 
 
 def plain(value: object) -> object:

@@ -96,6 +96,7 @@ class BitField(_Value):
     bits: int
     name: str
     summary: str = ""
+    unit: Unit | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -197,7 +197,10 @@ class _Reader:
             limits=model.Limits(**{key: Fraction(value) for key, value in item["limits"].items()})
             if "limits" in item else None,
             bitfields=tuple(
-                model.BitField(b["offset"], b["bits"], b["name"], b.get("summary", "")) for b in get("bitfields", ())
+                model.BitField(
+                    b["offset"], b["bits"], b["name"], b.get("summary", ""), self.units.get(b.get("unit"))
+                )
+                for b in get("bitfields", ())
             ),
             summary=get("summary", ""), errata=self.about(item), source=item,
         )  # fmt: skip
