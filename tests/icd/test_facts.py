@@ -35,9 +35,9 @@ def test_a_position_of_16_bits_is_not_told_in_metres(icd):
 @pytest.mark.parametrize("message", ["Estimation Parameters", "ADCS Configuration"])
 def test_of_two_sampling_periods_in_a_byte_each_is_a_time_and_the_byte_is_none(icd, message):
     """Tables 192 and 200: the lower four bits are Cam1's, the upper four Cam2's."""
-    both = field(icd, "cubeacp", message, "Cam1 and Cam2 Sampling Period")
-    assert both.unit is None
-    assert [(p.at, p.bits, p.unit.symbol) for p in both.bitfields] == [(0, 4, "s"), (4, 4, "s")]
+    fields = {f.name: f for m in icd.node("cubeacp").messages if m.name == message for f in m.fields}
+    assert "Cam1 and Cam2 Sampling Period" not in {name for name, f in fields.items() if f.unit is not None}
+    assert [(fields[f"Cam{n} period"].bits, fields[f"Cam{n} period"].unit.symbol) for n in (1, 2)] == [(4, "s")] * 2
 
 
 @pytest.mark.parametrize(

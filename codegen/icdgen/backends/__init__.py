@@ -10,8 +10,8 @@ from importlib import import_module
 from pathlib import PurePosixPath
 from typing import NamedTuple, Protocol
 
+from icdgen.icd.located import Map
 from icdgen.icd.model import Icd
-from icdgen.icd.tree import Map
 
 GROUP = "icdgen.backends"
 

@@ -1,9 +1,12 @@
-"""Text from the ICD -> C comments and string literals that nothing can break out of."""
+"""Text -> C comments and string literals that nothing can break out of."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import lru_cache
+
+from icdgen.backends.lines import bulleted
+from icdgen.describe.comments import Comment
 
 WIDTH = 120
 
@@ -21,29 +24,22 @@ def plain(text: str) -> str:
 
 
 def comment(paragraphs: Iterable[str], indent: str = "") -> str:
-    """A documentation comment of `plain` paragraphs: one line where it fits, else a block."""
-    paragraphs = [p for p in paragraphs if p]
+    """A documentation comment: one line where it fits, else a block."""
+    paragraphs = [plain(p) for p in paragraphs if p]
     if len(paragraphs) == 1 and len(indent) + len(paragraphs[0]) + 7 <= WIDTH:
         return f"{indent}/** {paragraphs[0]} */"
-    lines = [f"{indent}/**"]
-    for paragraph in paragraphs:
-        lines += [f"{indent} * {line}" for line in _lines(paragraph, WIDTH - len(indent) - 3)]
-    lines.append(f"{indent} */")
-    return "\n".join(lines)
+    lines = bulleted(paragraphs, WIDTH, f"{indent} * ", "")
+    return "\n".join([f"{indent}/**", *filter(None, lines), f"{indent} */"])
 
 
-def _lines(paragraph: str, width: int) -> list[str]:
-    if len(paragraph) <= width:
-        return [paragraph]
-    hang = "  " if paragraph.startswith("@") else ""
-    lines, line = [], ""
-    for word in paragraph.split(" "):
-        if line.strip() and len(line) + 1 + len(word) > width:
-            lines.append(line)
-            line = hang + word
-        else:
-            line = f"{line} {word}" if line else word
-    return [*lines, line]
+def described(one: Comment, indent: str = "") -> str:
+    """The comment of a part: what it is in one paragraph, and its errata as notes."""
+    return comment([" ".join((one.head, *one.rest)), *noted(one)], indent)
+
+
+def noted(one: Comment) -> list[str]:
+    """The errata as notes of the usual documentation tools."""
+    return [f"@note {paragraph}" for paragraph in one.errata]
 
 
 @lru_cache(maxsize=4096)

@@ -11,7 +11,7 @@ from icdgen.diff.rule import rule
 from icdgen.diff.similar import same_sense
 from icdgen.diff.wording import formula, number
 from icdgen.icd.formula import Scale
-from icdgen.icd.model import BitField, Field, Limits
+from icdgen.icd.model import Field, Limits
 from icdgen.icd.rules.wording import quote
 
 BOUNDS = ("min", "max", "above", "below")
@@ -112,18 +112,3 @@ def limits_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     text = f"{quote(pair.new.name)} may be {now or 'anything'}, could be {was or 'anything'}"
     detail = "What was allowed still is." if is_wider(old, new) else "Values that were allowed no longer are."
     yield Found(text, BOUNDS, was, now, (detail,))
-
-
-@rule("DIF214", "field", severity="warning")
-def parts_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    old, new = ({(p.at, p.bits): _part(p) for p in field.bitfields} for field in (pair.old, pair.new))
-    for at, size in sorted(old.keys() | new.keys()):
-        was, now = old.get((at, size), ""), new.get((at, size), "")
-        if was != now:
-            bits = f"bit {at}" if size == 1 else f"bits {at} to {at + size - 1}"
-            text = f"{bits} of {quote(pair.new.name)} are {quote(now) if now else 'no part'}, were {quote(was) if was else 'none'}"
-            yield Found(text, ("bitfields",), was, now)
-
-
-def _part(part: BitField) -> str:
-    return f"{part.name} ({part.unit.symbol})" if part.unit else part.name

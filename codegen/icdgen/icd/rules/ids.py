@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from icdgen.icd.located import Map
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.duplicates import is_news, together
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import line_of, listing, quote
-from icdgen.icd.tree import Map
 
 # kind -> the keys of its ids and the direction each belongs to
 KEYS = {

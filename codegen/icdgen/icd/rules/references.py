@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.icd.located import Map
 from icdgen.icd.model import Node
-from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import close_to, quote
-from icdgen.icd.tree import Map
 from icdgen.icd.units import SPELLINGS, STANDARD
 
 
@@ -71,17 +71,8 @@ def _protocol_enums(node: Node) -> Iterator[tuple[Map, str]]:
 def unit_known(ctx: Context) -> Iterator[Fault]:
     for field, _, node in ctx.having["unit"]:
         if field.unit is None:
-            yield _unknown_unit(field.source, field.source, ctx, node)
-    for field, _, node in ctx.having["bitfields"]:
-        found = {(part.at, part.bits): part.unit for part in field.bitfields}
-        for item in mappings(field.source["bitfields"]):
-            if "unit" in item and found.get((item.get("at"), item.get("bits")), item) is None:
-                yield _unknown_unit(field.source, item, ctx, node)
-
-
-def _unknown_unit(owner: Map, item: Map, ctx: Context, node: Node) -> Fault:
-    unit = item["unit"]
-    known = (u.symbol for n in ctx.scope(node) for u in n.units)
-    close = SPELLINGS.get(unit) or close_to(unit, [*known, *STANDARD])
-    help = f"did you mean {quote(close)}?" if close else "declare it in `units:`"
-    return Fault(owner, item.at("unit"), f"the unit {quote(unit)} is unknown", help)
+            unit = field.source["unit"]
+            known = (u.symbol for n in ctx.scope(node) for u in n.units)
+            close = SPELLINGS.get(unit) or close_to(unit, [*known, *STANDARD])
+            help = f"did you mean {quote(close)}?" if close else "declare it in `units:`"
+            yield Fault(field.source, field.source.at("unit"), f"the unit {quote(unit)} is unknown", help)

@@ -732,13 +732,20 @@ pub struct AdcsConfiguration {
     ///
     /// From MEMS rate estimation to RKF on a rate sensor error.
     pub estimation_transition_on_rate_sensor_error: bool,
-    /// Cam1 and Cam2 Sampling Period (bits 3016 to 3023): 0 to 255 s.
+    /// Cam1 period (bits 3016 to 3019): 0 to 15 s.
     ///
-    /// A period of 0 stops the sampling of that camera. Bits 0 to 3 of it: Cam1 period. Bits 4 to 7
-    /// of it: Cam2 period.
+    /// Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
+    /// camera.
     ///
     /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
-    pub cam1_and_cam2_sampling_period: u8,
+    pub cam1_period: u8,
+    /// Cam2 period (bits 3020 to 3023): 0 to 15 s.
+    ///
+    /// Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
+    /// camera.
+    ///
+    /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    pub cam2_period: u8,
     /// Incl. coefficient (bits 3024 to 3039): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the inclination.
@@ -1070,7 +1077,8 @@ impl AdcsConfiguration {
             magnetometer_mode: Coded::from_raw(bytes[375] >> 6),
             raw_magnetometer_selection: Coded::from_raw(bytes[376] & 0x03),
             estimation_transition_on_rate_sensor_error: bytes[376] & 0x04 != 0,
-            cam1_and_cam2_sampling_period: bytes[377],
+            cam1_period: bytes[377] & 0x0f,
+            cam2_period: bytes[377] >> 4,
             incl_coefficient: u16::from_le_bytes(take!(bytes[378; 2])),
             raan_coefficient: u16::from_le_bytes(take!(bytes[380; 2])),
             ecc_coefficient: u16::from_le_bytes(take!(bytes[382; 2])),
@@ -1321,7 +1329,8 @@ impl AdcsConfiguration {
         bytes[376] |= self.raw_magnetometer_selection.raw() & 0x03;
         let value = self.estimation_transition_on_rate_sensor_error;
         bytes[376] |= u8::from(value) << 2;
-        bytes[377] = self.cam1_and_cam2_sampling_period;
+        bytes[377] |= self.cam1_period & 0x0f;
+        bytes[377] |= self.cam2_period << 4;
         put!(self.incl_coefficient.to_le_bytes() => bytes[378; 2]);
         put!(self.raan_coefficient.to_le_bytes() => bytes[380; 2]);
         put!(self.ecc_coefficient.to_le_bytes() => bytes[382; 2]);
@@ -1355,6 +1364,8 @@ impl AdcsConfiguration {
         MAGNETOMETER_MODE.fit(self.magnetometer_mode.raw())?;
         let value = self.raw_magnetometer_selection.raw();
         RAW_MAGNETOMETER_SELECTION.fit(value)?;
+        CAM1_PERIOD.fit(self.cam1_period)?;
+        CAM2_PERIOD.fit(self.cam2_period)?;
         Ok(self.to_bytes())
     }
 
@@ -2948,7 +2959,8 @@ impl Default for AdcsConfiguration {
             magnetometer_mode: Coded::from_raw(0),
             raw_magnetometer_selection: Coded::from_raw(0),
             estimation_transition_on_rate_sensor_error: false,
-            cam1_and_cam2_sampling_period: 0,
+            cam1_period: 0,
+            cam2_period: 0,
             incl_coefficient: 0,
             raan_coefficient: 0,
             ecc_coefficient: 0,
@@ -3543,6 +3555,24 @@ const RAW_MAGNETOMETER_SELECTION: Scale = Scale {
     field: "Magnetometer Selection for RAW MTM TLM",
     min: 0,
     max: 3,
+    factor: 1,
+    offset: 0,
+    divisor: 1,
+};
+
+const CAM1_PERIOD: Scale = Scale {
+    field: "Cam1 period",
+    min: 0,
+    max: 15,
+    factor: 1,
+    offset: 0,
+    divisor: 1,
+};
+
+const CAM2_PERIOD: Scale = Scale {
+    field: "Cam2 period",
+    min: 0,
+    max: 15,
     factor: 1,
     offset: 0,
     divisor: 1,

@@ -35,6 +35,8 @@ _BITS_5 = _codec.bit_table(
 _BYTES_5 = _codec.Inverse(_BITS_5)
 _BITS_6 = _codec.bit_table((0, 2, MagModeVal), (2, 1, bool))
 _BYTES_6 = _codec.Inverse(_BITS_6)
+_BITS_7 = _codec.bit_table((0, 4, int), (4, 4, int))
+_BYTES_7 = _codec.Inverse(_BITS_7)
 _DEFAULT_0 = bytes(48)
 
 
@@ -276,7 +278,8 @@ class AdcsConfiguration(_base.Message):
         "magnetometer_mode",
         "raw_magnetometer_selection",
         "estimation_transition_on_rate_sensor_error",
-        "cam1_and_cam2_sampling_period",
+        "cam1_period",
+        "cam2_period",
         "incl_coefficient",
         "raan_coefficient",
         "ecc_coefficient",
@@ -1428,14 +1431,8 @@ class AdcsConfiguration(_base.Message):
             1,
             "bool",
         ),
-        _base.FieldInfo(
-            "cam1_and_cam2_sampling_period",
-            "Cam1 and Cam2 Sampling Period",
-            3016,
-            8,
-            "uint",
-            unit="s",
-        ),
+        _base.FieldInfo("cam1_period", "Cam1 period", 3016, 4, "uint", unit="s"),
+        _base.FieldInfo("cam2_period", "Cam2 period", 3020, 4, "uint", unit="s"),
         _base.FieldInfo(
             "incl_coefficient",
             "Incl. coefficient",
@@ -2418,14 +2415,19 @@ class AdcsConfiguration(_base.Message):
 
     From MEMS rate estimation to RKF on a rate sensor error.
     """
-    cam1_and_cam2_sampling_period: int
-    """Cam1 and Cam2 Sampling Period: bits 3016 to 3023, 0 to 255, in s.
+    cam1_period: int
+    """Cam1 period: bits 3016 to 3019, 0 to 15, in s.
 
-    A period of 0 stops the sampling of that camera.
+    Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
+    that camera.
 
-    Its bits 0 to 3: Cam1 period.
+    Erratum ACP-169: Two sampling periods in one field with a unit.
+    """
+    cam2_period: int
+    """Cam2 period: bits 3020 to 3023, 0 to 15, in s.
 
-    Its bits 4 to 7: Cam2 period.
+    Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
+    that camera.
 
     Erratum ACP-169: Two sampling periods in one field with a unit.
     """
@@ -2743,7 +2745,8 @@ class AdcsConfiguration(_base.Message):
         magnetometer_mode: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
         raw_magnetometer_selection: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
         estimation_transition_on_rate_sensor_error: bool = False,
-        cam1_and_cam2_sampling_period: int = 0,
+        cam1_period: int = 0,
+        cam2_period: int = 0,
         incl_coefficient: int = 0,
         raan_coefficient: int = 0,
         ecc_coefficient: int = 0,
@@ -3015,7 +3018,8 @@ class AdcsConfiguration(_base.Message):
         self.estimation_transition_on_rate_sensor_error = (
             estimation_transition_on_rate_sensor_error
         )
-        self.cam1_and_cam2_sampling_period = cam1_and_cam2_sampling_period
+        self.cam1_period = cam1_period
+        self.cam2_period = cam2_period
         self.incl_coefficient = incl_coefficient
         self.raan_coefficient = raan_coefficient
         self.ecc_coefficient = ecc_coefficient
@@ -3231,7 +3235,8 @@ class AdcsConfiguration(_base.Message):
         magnetometer_mode: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
         raw_magnetometer_selection: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
         estimation_transition_on_rate_sensor_error: bool = False,
-        cam1_and_cam2_sampling_period: int = 0,
+        cam1_period: int = 0,
+        cam2_period: int = 0,
         incl_coefficient_physical: float = 0.0,
         raan_coefficient_physical: float = 0.0,
         ecc_coefficient_physical: float = 0.0,
@@ -3529,7 +3534,8 @@ class AdcsConfiguration(_base.Message):
         self.estimation_transition_on_rate_sensor_error = (
             estimation_transition_on_rate_sensor_error
         )
-        self.cam1_and_cam2_sampling_period = cam1_and_cam2_sampling_period
+        self.cam1_period = cam1_period
+        self.cam2_period = cam2_period
         self.incl_coefficient_physical = incl_coefficient_physical
         self.raan_coefficient_physical = raan_coefficient_physical
         self.ecc_coefficient_physical = ecc_coefficient_physical
@@ -3739,7 +3745,7 @@ class AdcsConfiguration(_base.Message):
                 self.star_tracker_measurement_noise,
                 v375,
                 v376,
-                self.cam1_and_cam2_sampling_period,
+                v377,
                 self.incl_coefficient,
                 self.raan_coefficient,
                 self.ecc_coefficient,
@@ -3804,6 +3810,7 @@ class AdcsConfiguration(_base.Message):
             self.raw_magnetometer_selection,
             self.estimation_transition_on_rate_sensor_error,
         ) = _BITS_6[v376]
+        self.cam1_period, self.cam2_period = _BITS_7[v377]
         total = (
             self.star_tracker_centroid_x
             + self.star_tracker_centroid_y
@@ -3871,6 +3878,7 @@ class AdcsConfiguration(_base.Message):
                 self.raw_magnetometer_selection,
                 self.estimation_transition_on_rate_sensor_error,
             ]
+            v377 = _BYTES_7[self.cam1_period, self.cam2_period]
             frame = _pack(
                 self.magnetorquer_1_configuration,
                 self.magnetorquer_2_configuration,
@@ -4054,7 +4062,7 @@ class AdcsConfiguration(_base.Message):
                 self.star_tracker_measurement_noise,
                 v375,
                 v376,
-                self.cam1_and_cam2_sampling_period,
+                v377,
                 self.incl_coefficient,
                 self.raan_coefficient,
                 self.ecc_coefficient,
