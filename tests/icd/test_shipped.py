@@ -50,7 +50,7 @@ def test_nothing_is_missing(icd):
     assert (len(fields), sum(f.scale is not None for f in fields), sum(f.unit is not None for f in fields)) == (
         1251,
         346,
-        314,
+        324,
     )
     assert (len(enums), sum(len(e.members) for e in enums)) == (37, 233)
     assert len(icd.node("cubeacp").loggable) == 63

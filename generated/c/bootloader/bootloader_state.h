@@ -6,7 +6,7 @@
 /**
  * @file
  * Bootloader State: telemetry 132, 6 bytes. Table 69.
- * Up-time, SRAM state and error flags. The flags stay set until Clear Error Flags.
+ * Up-time, SRAM state and error flags. The error flags stay set until Clear Error Flags.
  * @note Erratum BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
  * @note Erratum BOOT-013 (open): Bootloader State: 6 bytes announced, 28 bits described.
  */
@@ -25,15 +25,9 @@ typedef struct {
      * @note Erratum BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds.
      */
     uint16_t uptime;
-    /**
-     * SRAM1 is enabled: bit 16.
-     * @note Erratum BOOT-014 (certain): Bootloader State: some of the latched error flags are states.
-     */
+    /** SRAM1 is enabled: bit 16. */
     bool sram1_is_enabled;
-    /**
-     * SRAM2 is enabled: bit 17.
-     * @note Erratum BOOT-014 (certain): Bootloader State: some of the latched error flags are states.
-     */
+    /** SRAM2 is enabled: bit 17. */
     bool sram2_is_enabled;
     /**
      * SRAM Latch-up Error occurred and could not be recovered: bit 18.

@@ -28,8 +28,9 @@ typedef struct {
     /** Busy: bit 8. Still reading. */
     bool busy;
     /**
-     * File Size: bits 16 to 47, raw 0 to 4294967295. In bytes.
+     * File Size: bits 16 to 47, raw 0 to 4294967295, in byte.
      * @note Erratum BOOT-019 (open): Program Information: what the checksum covers.
+     * @note Erratum BOOT-021 (certain): Size of a program has its unit in words only.
      */
     uint32_t file_size;
     /**

@@ -29,7 +29,7 @@ typedef struct {
     /** Block CRC16 Checksum: bits 8 to 23, raw 0 to 65535. */
     uint16_t block_crc16_checksum;
     /**
-     * Block Length: bits 24 to 39, raw 0 to 65535.
+     * Block Length: bits 24 to 39, raw 0 to 65535, in byte.
      * @note Erratum COM-039 (likely): Offsets and lengths of files have no unit.
      */
     uint16_t block_length;

@@ -38,7 +38,7 @@ typedef struct {
      */
     uint8_t file_ctr;
     /**
-     * File Size: bits 16 to 47, raw 0 to 4294967295.
+     * File Size: bits 16 to 47, raw 0 to 4294967295, in byte.
      * @note Erratum COM-039 (likely): Offsets and lengths of files have no unit.
      */
     uint32_t file_size;

@@ -10,6 +10,7 @@
  * The node does not acknowledge it.
  * @note Erratum COM-041 (open): File upload is listed as common but described for the bootloader only.
  * @note Erratum COM-046 (likely): File Upload Packet is not acknowledged, against the rule.
+ * @note Erratum COM-125 (certain): File Upload Packet: messages of 20 bytes, parameters of 22.
  */
 
 #include "../icdgen.h"

@@ -24,12 +24,12 @@ typedef struct {
     /** Destination: bits 0 to 7. */
     common_file_upload_destination_t destination;
     /**
-     * Offset: bits 8 to 39, raw 0 to 4294967295. Where in the file the block belongs.
+     * Offset: bits 8 to 39, raw 0 to 4294967295, in byte. Where in the file the block belongs.
      * @note Erratum COM-039 (likely): Offsets and lengths of files have no unit.
      */
     uint32_t offset;
     /**
-     * Block Length: bits 40 to 55, raw 0 to 65535.
+     * Block Length: bits 40 to 55, raw 0 to 65535, in byte.
      * @note Erratum COM-039 (likely): Offsets and lengths of files have no unit.
      */
     uint16_t block_length;

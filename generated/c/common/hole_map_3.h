@@ -11,6 +11,7 @@
  * @note Erratum COM-116 (open): Hole map: who clears it before a download.
  * @note Erratum COM-117 (likely): Hole map: bits beyond the last packet.
  * @note Erratum COM-118 (likely): Hole map: order of the eight parts.
+ * @note Erratum COM-124 (certain): The hole map is read with eight frames, one table is referred to.
  */
 
 #include "../icdgen.h"

@@ -32,14 +32,14 @@ typedef struct {
     /** Firmware version (Minor): bits 24 to 31, raw 0 to 255. */
     uint8_t firmware_version_minor;
     /**
-     * Runtime (seconds): bits 32 to 47, raw 0 to 65535. Since the processor started.
+     * Runtime (seconds): bits 32 to 47, raw 0 to 65535, in s. Since the processor started.
      * @note Erratum COM-056 (open): Runtime wraps after 18 hours.
-     * @note Erratum COM-057 (certain): Runtime has its units in the name only.
+     * @note Erratum COM-057 (certain): Runtime has its unit in words only.
      */
     uint16_t runtime_seconds;
     /**
-     * Runtime (milliseconds): bits 48 to 63, raw 0 to 65535. Beyond the whole seconds.
-     * @note Erratum COM-057 (certain): Runtime has its units in the name only.
+     * Runtime (milliseconds): bits 48 to 63, raw 0 to 65535, in ms. Beyond the whole seconds.
+     * @note Erratum COM-127 (certain): Milliseconds of the runtime have their unit in words only.
      */
     uint16_t runtime_milliseconds;
 } common_identification_t;

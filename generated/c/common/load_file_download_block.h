@@ -16,7 +16,7 @@
 #define COMMON_LOAD_FILE_DOWNLOAD_BLOCK_ID 112u
 /** Bytes of a frame, without the id. */
 #define COMMON_LOAD_FILE_DOWNLOAD_BLOCK_LENGTH 8u
-/** BlockLength: largest value. */
+/** BlockLength in byte: largest value. */
 #define COMMON_LOAD_FILE_DOWNLOAD_BLOCK_BLOCK_LENGTH_MAX 20480
 
 /** Raw values. */
@@ -30,12 +30,12 @@ typedef struct {
      */
     uint8_t counter;
     /**
-     * Offset: bits 16 to 47, raw 0 to 4294967295. Where in the file the block begins.
+     * Offset: bits 16 to 47, raw 0 to 4294967295, in byte. Where in the file the block begins.
      * @note Erratum COM-039 (likely): Offsets and lengths of files have no unit.
      */
     uint32_t offset;
     /**
-     * BlockLength: bits 48 to 63, raw 0 to 65535. 20 kB at most. Must be at most 20480.
+     * BlockLength: bits 48 to 63, raw 0 to 65535, in byte. 20 kB at most. Must be at most 20480 byte.
      * @note Erratum COM-029 (certain): One field, several spellings.
      * @note Erratum COM-039 (likely): Offsets and lengths of files have no unit.
      */

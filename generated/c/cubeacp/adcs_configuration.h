@@ -228,9 +228,9 @@ typedef struct {
      */
     uint16_t cam2_boresight_y;
     /**
-     * Nadir Max Deviation Percentage: bits 528 to 535, raw 0 to 255. Largest deviation of an edge, in percent of the
+     * Nadir Max Deviation Percentage: bits 528 to 535, raw 0 to 255, in %. Largest deviation of an edge, of the
      * measured angular radius.
-     * @note Erratum ACP-151 (certain): Deviation percentage has no unit.
+     * @note Erratum ACP-151 (certain): Deviation percentage has its unit in words only.
      */
     uint8_t nadir_max_deviation_percentage;
     /**
@@ -570,9 +570,15 @@ typedef struct {
      * @note Erratum ACP-140 (certain): milliseconds is ms.
      */
     uint16_t star_tracker_delay_time;
-    /** Star Tracker Centroid X: bits 1840 to 1871, 32-bit float. In pixels. */
+    /**
+     * Star Tracker Centroid X: bits 1840 to 1871, 32-bit float, in pixels.
+     * @note Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
+     */
     float star_tracker_centroid_x;
-    /** Star Tracker Centroid Y: bits 1872 to 1903, 32-bit float. In pixels. */
+    /**
+     * Star Tracker Centroid Y: bits 1872 to 1903, 32-bit float, in pixels.
+     * @note Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
+     */
     float star_tracker_centroid_y;
     /** Star Tracker Focal Length: bits 1904 to 1935, 32-bit float, in mm. */
     float star_tracker_focal_length;
@@ -690,16 +696,19 @@ typedef struct {
     /**
      * Product Of Inertia - Ixy: bits 2680 to 2711, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+     * @note Erratum ACP-201 (open): Products of inertia: the sign is not given.
      */
     float product_of_inertia_ixy;
     /**
      * Product Of Inertia - Ixz: bits 2712 to 2743, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+     * @note Erratum ACP-201 (open): Products of inertia: the sign is not given.
      */
     float product_of_inertia_ixz;
     /**
      * Product Of Inertia - Iyz: bits 2744 to 2775, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+     * @note Erratum ACP-201 (open): Products of inertia: the sign is not given.
      */
     float product_of_inertia_iyz;
     /** Magnetometer Rate Filter System Noise: bits 2776 to 2807, 32-bit float. */

@@ -227,20 +227,20 @@ typedef struct {
      */
     uint16_t altitude;
     /**
-     * ECEF Position X: bits 384 to 399, raw -32768 to 32767, in m.
-     * @note Erratum ACP-098 (open): ECEF position: 16 bits in metres.
+     * ECEF Position X: bits 384 to 399, raw -32768 to 32767.
+     * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
      * @note Erratum ACP-099 (certain): ECEF position: one name, two widths.
      */
     int16_t ecef_position_x;
     /**
-     * ECEF Position Y: bits 400 to 415, raw -32768 to 32767, in m.
-     * @note Erratum ACP-098 (open): ECEF position: 16 bits in metres.
+     * ECEF Position Y: bits 400 to 415, raw -32768 to 32767.
+     * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
      * @note Erratum ACP-099 (certain): ECEF position: one name, two widths.
      */
     int16_t ecef_position_y;
     /**
-     * ECEF Position Z: bits 416 to 431, raw -32768 to 32767, in m.
-     * @note Erratum ACP-098 (open): ECEF position: 16 bits in metres.
+     * ECEF Position Z: bits 416 to 431, raw -32768 to 32767.
+     * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
      * @note Erratum ACP-099 (certain): ECEF position: one name, two widths.
      */
     int16_t ecef_position_z;

@@ -114,9 +114,9 @@ typedef struct {
      */
     uint16_t cam2_boresight_y;
     /**
-     * Nadir Max Deviation Percentage: bits 224 to 231, raw 0 to 255. Largest deviation of an edge, in percent of the
+     * Nadir Max Deviation Percentage: bits 224 to 231, raw 0 to 255, in %. Largest deviation of an edge, of the
      * measured angular radius.
-     * @note Erratum ACP-151 (certain): Deviation percentage has no unit.
+     * @note Erratum ACP-151 (certain): Deviation percentage has its unit in words only.
      */
     uint8_t nadir_max_deviation_percentage;
     /**

@@ -19,20 +19,20 @@
 /** Raw values. */
 typedef struct {
     /**
-     * ECEF Position X: bits 0 to 15, raw -32768 to 32767, in m.
-     * @note Erratum ACP-098 (open): ECEF position: 16 bits in metres.
+     * ECEF Position X: bits 0 to 15, raw -32768 to 32767.
+     * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
      * @note Erratum ACP-099 (certain): ECEF position: one name, two widths.
      */
     int16_t ecef_position_x;
     /**
-     * ECEF Position Y: bits 16 to 31, raw -32768 to 32767, in m.
-     * @note Erratum ACP-098 (open): ECEF position: 16 bits in metres.
+     * ECEF Position Y: bits 16 to 31, raw -32768 to 32767.
+     * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
      * @note Erratum ACP-099 (certain): ECEF position: one name, two widths.
      */
     int16_t ecef_position_y;
     /**
-     * ECEF Position Z: bits 32 to 47, raw -32768 to 32767, in m.
-     * @note Erratum ACP-098 (open): ECEF position: 16 bits in metres.
+     * ECEF Position Z: bits 32 to 47, raw -32768 to 32767.
+     * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
      * @note Erratum ACP-099 (certain): ECEF position: one name, two widths.
      */
     int16_t ecef_position_z;

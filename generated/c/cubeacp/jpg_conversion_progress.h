@@ -19,8 +19,8 @@
 /** Raw values. */
 typedef struct {
     /**
-     * Progress Percentage: bits 0 to 7, raw 0 to 255. In percent.
-     * @note Erratum ACP-065 (certain): JPG progress has no unit.
+     * Progress Percentage: bits 0 to 7, raw 0 to 255, in %.
+     * @note Erratum ACP-065 (certain): JPG progress has its unit in words only.
      */
     uint8_t progress_percentage;
     /** Conversion Result: bits 8 to 15. */

@@ -641,8 +641,9 @@ static inline const icd_link_t *cubeacp_link(void)
      * Assumed checksum_covers_fill: Not said. The checksum comes with the length of the block, which does not count the
      * fill. Assumed index_counter: Which counter goes with the index file is not said. Assumed poll_interval_ms: No
      * time is given. Assumed ready_timeout_ms: No time is given. Assumed silence_ms: How a burst ends is not said.
-     * Packets follow one another in rapid succession. Assumed rounds: Nothing is said about giving up. Assumed can:
-     * Download over CAN is not described. The packets are requested one by one as on I2C.
+     * Packets follow one another in rapid succession. Assumed rounds: Nothing is said about giving up. Assumed i2c:
+     * That the reads are headed by the id of the frame with the packet's format is not said. Assumed can: Download over
+     * CAN is not described. The packets are requested one by one as on I2C.
      */
     static const icd_download_form_t download = {
         {112, -1, 8u, 4u, download_load_places, NULL},  /* Load File Download Block */

@@ -26,11 +26,20 @@ typedef struct {
     float moment_of_inertia_iyy;
     /** Moment Of Inertia - Izz: bits 64 to 95, 32-bit float, in kg.m^2. */
     float moment_of_inertia_izz;
-    /** Product Of Inertia - Ixy: bits 96 to 127, 32-bit float, in kg.m^2. */
+    /**
+     * Product Of Inertia - Ixy: bits 96 to 127, 32-bit float, in kg.m^2.
+     * @note Erratum ACP-201 (open): Products of inertia: the sign is not given.
+     */
     float product_of_inertia_ixy;
-    /** Product Of Inertia - Ixz: bits 128 to 159, 32-bit float, in kg.m^2. */
+    /**
+     * Product Of Inertia - Ixz: bits 128 to 159, 32-bit float, in kg.m^2.
+     * @note Erratum ACP-201 (open): Products of inertia: the sign is not given.
+     */
     float product_of_inertia_ixz;
-    /** Product Of Inertia - Iyz: bits 160 to 191, 32-bit float, in kg.m^2. */
+    /**
+     * Product Of Inertia - Iyz: bits 160 to 191, 32-bit float, in kg.m^2.
+     * @note Erratum ACP-201 (open): Products of inertia: the sign is not given.
+     */
     float product_of_inertia_iyz;
 } cubeacp_moment_of_inertia_matrix_t;
 

@@ -91,9 +91,15 @@ typedef struct {
      * @note Erratum ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
      */
     uint16_t star_tracker_delay_time;
-    /** Star Tracker Centroid X: bits 160 to 191, 32-bit float. In pixels. */
+    /**
+     * Star Tracker Centroid X: bits 160 to 191, 32-bit float, in pixels.
+     * @note Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
+     */
     float star_tracker_centroid_x;
-    /** Star Tracker Centroid Y: bits 192 to 223, 32-bit float. In pixels. */
+    /**
+     * Star Tracker Centroid Y: bits 192 to 223, 32-bit float, in pixels.
+     * @note Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
+     */
     float star_tracker_centroid_y;
     /** Star Tracker Focal Length: bits 224 to 255, 32-bit float, in mm. */
     float star_tracker_focal_length;

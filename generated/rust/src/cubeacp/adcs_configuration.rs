@@ -207,11 +207,11 @@ pub struct AdcsConfiguration {
     ///
     /// Erratum ACP-149 (open): Boresight ends at 655 pixels.
     pub cam2_boresight_y: u16,
-    /// Nadir Max Deviation Percentage (bits 528 to 535): 0 to 255.
+    /// Nadir Max Deviation Percentage (bits 528 to 535): 0 to 255 %.
     ///
-    /// Largest deviation of an edge, in percent of the measured angular radius.
+    /// Largest deviation of an edge, of the measured angular radius.
     ///
-    /// Erratum ACP-151 (certain): Deviation percentage has no unit.
+    /// Erratum ACP-151 (certain): Deviation percentage has its unit in words only.
     pub nadir_max_deviation_percentage: u8,
     /// Nadir Max Bad Edges (bits 536 to 543): 0 to 255.
     ///
@@ -523,13 +523,13 @@ pub struct AdcsConfiguration {
     ///
     /// Erratum ACP-140 (certain): milliseconds is ms.
     pub star_tracker_delay_time: u16,
-    /// Star Tracker Centroid X (bits 1840 to 1871): 32-bit float.
+    /// Star Tracker Centroid X (bits 1840 to 1871): 32-bit float, in pixels.
     ///
-    /// In pixels.
+    /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
     pub star_tracker_centroid_x: f32,
-    /// Star Tracker Centroid Y (bits 1872 to 1903): 32-bit float.
+    /// Star Tracker Centroid Y (bits 1872 to 1903): 32-bit float, in pixels.
     ///
-    /// In pixels.
+    /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
     pub star_tracker_centroid_y: f32,
     /// Star Tracker Focal Length (bits 1904 to 1935): 32-bit float, in mm.
     pub star_tracker_focal_length: f32,
@@ -671,14 +671,20 @@ pub struct AdcsConfiguration {
     /// Product Of Inertia - Ixy (bits 2680 to 2711): 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    ///
+    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_ixy: f32,
     /// Product Of Inertia - Ixz (bits 2712 to 2743): 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    ///
+    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_ixz: f32,
     /// Product Of Inertia - Iyz (bits 2744 to 2775): 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    ///
+    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_iyz: f32,
     /// Magnetometer Rate Filter System Noise (bits 2776 to 2807): 32-bit float.
     pub magnetometer_rate_filter_system_noise: f32,

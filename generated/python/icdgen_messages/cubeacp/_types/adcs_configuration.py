@@ -644,6 +644,7 @@ class AdcsConfiguration(_base.Message):
             528,
             8,
             "uint",
+            unit="%",
         ),
         _base.FieldInfo("nadir_max_bad_edges", "Nadir Max Bad Edges", 536, 8, "uint"),
         _base.FieldInfo(
@@ -1121,10 +1122,20 @@ class AdcsConfiguration(_base.Message):
             unit="ms",
         ),
         _base.FieldInfo(
-            "star_tracker_centroid_x", "Star Tracker Centroid X", 1840, 32, "float"
+            "star_tracker_centroid_x",
+            "Star Tracker Centroid X",
+            1840,
+            32,
+            "float",
+            unit="pixels",
         ),
         _base.FieldInfo(
-            "star_tracker_centroid_y", "Star Tracker Centroid Y", 1872, 32, "float"
+            "star_tracker_centroid_y",
+            "Star Tracker Centroid Y",
+            1872,
+            32,
+            "float",
+            unit="pixels",
         ),
         _base.FieldInfo(
             "star_tracker_focal_length",
@@ -1796,11 +1807,11 @@ class AdcsConfiguration(_base.Message):
     Erratum ACP-149: Boresight ends at 655 pixels.
     """
     nadir_max_deviation_percentage: int
-    """Nadir Max Deviation Percentage: bits 528 to 535, 0 to 255.
+    """Nadir Max Deviation Percentage: bits 528 to 535, 0 to 255, in %.
 
-    Largest deviation of an edge, in percent of the measured angular radius.
+    Largest deviation of an edge, of the measured angular radius.
 
-    Erratum ACP-151: Deviation percentage has no unit.
+    Erratum ACP-151: Deviation percentage has its unit in words only.
     """
     nadir_max_bad_edges: int
     """Nadir Max Bad Edges: bits 536 to 543, 0 to 255.
@@ -2159,14 +2170,14 @@ class AdcsConfiguration(_base.Message):
     Erratum ACP-140: milliseconds is ms.
     """
     star_tracker_centroid_x: float
-    """Star Tracker Centroid X: bits 1840 to 1871, 32-bit float.
+    """Star Tracker Centroid X: bits 1840 to 1871, 32-bit float, in pixels.
 
-    In pixels.
+    Erratum ACP-202: Image centre of the star tracker has its unit in words only.
     """
     star_tracker_centroid_y: float
-    """Star Tracker Centroid Y: bits 1872 to 1903, 32-bit float.
+    """Star Tracker Centroid Y: bits 1872 to 1903, 32-bit float, in pixels.
 
-    In pixels.
+    Erratum ACP-202: Image centre of the star tracker has its unit in words only.
     """
     star_tracker_focal_length: float
     """Star Tracker Focal Length: bits 1904 to 1935, 32-bit float, in mm."""
@@ -2343,16 +2354,22 @@ class AdcsConfiguration(_base.Message):
     """Product Of Inertia - Ixy: bits 2680 to 2711, 32-bit float, in kg.m^2.
 
     Erratum ACP-006: Moments of inertia: kg.m² and kg.m^2.
+
+    Erratum ACP-201: Products of inertia: the sign is not given.
     """
     product_of_inertia_ixz: float
     """Product Of Inertia - Ixz: bits 2712 to 2743, 32-bit float, in kg.m^2.
 
     Erratum ACP-006: Moments of inertia: kg.m² and kg.m^2.
+
+    Erratum ACP-201: Products of inertia: the sign is not given.
     """
     product_of_inertia_iyz: float
     """Product Of Inertia - Iyz: bits 2744 to 2775, 32-bit float, in kg.m^2.
 
     Erratum ACP-006: Moments of inertia: kg.m² and kg.m^2.
+
+    Erratum ACP-201: Products of inertia: the sign is not given.
     """
     magnetometer_rate_filter_system_noise: float
     """Magnetometer Rate Filter System Noise: bits 2776 to 2807, 32-bit float."""
