@@ -30,7 +30,7 @@ def plain(text: str) -> str:
 
 @lru_cache(maxsize=8192)
 def prose(text: str) -> str:
-    """`plain` text for a documentation comment: only its backticks are markup, and nothing is a command or HTML, to Doxygen or clang."""
+    """`plain` text for a documentation comment: only backticks are markup, nothing is a command or HTML to Doxygen or clang."""
     text = plain(text)
     return text if text.replace(" ", "").isalnum() else _MARKUP.sub(r"\\\g<0>", text)
 
