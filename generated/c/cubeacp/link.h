@@ -338,8 +338,8 @@ static inline const icd_link_t *cubeacp_link(void)
         {ICD_REASON_CHECKSUM, 4u},
     };
     /**
-     * Assumed escaped_in: That the id is escaped like the data is not said. It matters for telecommand 31 only, and for
-     * the id in its acknowledge.
+     * Assumed escaped_in: By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of
+     * 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in its acknowledge.
      */
     static const icd_framing_t framing = {
         0x1fu, /* escape */
@@ -406,8 +406,8 @@ static inline const icd_link_t *cubeacp_link(void)
     };
     /**
      * Assumed covers_id: Whether the id counts among the bytes of a command is not said. The extra byte of a frame can
-     * cover the frame only. Assumed telecommand: Checksums on CAN are not sent. In an extended message the receiver
-     * could not tell the checksum from the fill.
+     * cover the frame only. Assumed telecommand: The checksum is offered for commands in general, CAN included. None is
+     * sent there by choice, for in an extended message the receiver could not tell the checksum from the fill.
      */
     static const icd_checksum_form_t checksum = {
         {8u, true, true, true, 0x12u, 0x0u, 0x0u, 0xffu, crc8_table}, /* CRC */
@@ -545,8 +545,8 @@ static inline const icd_link_t *cubeacp_link(void)
         6u,       /* frames */
     };
     /**
-     * Assumed framed: Start, end and escapes of these messages are not described. They are taken to be those of every
-     * other message.
+     * Assumed framed: Section 5.2 has start, end and escapes for all that goes over the UART, and makes no exception
+     * for these messages.
      */
     static const icd_log_message_form_t log_message = {
         255u,    /* id */
@@ -656,50 +656,6 @@ static inline const icd_link_t *cubeacp_link(void)
         32u,                                            /* rounds */
         false,                                          /* the checksum covers the fill */
     };
-    static const icd_place_t upload_initiate_places[] = {
-        {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
-        {ICD_ROLE_BLOCK_SIZE, 8u, 8u},  /* BlockSize */
-    };
-    static const icd_place_t upload_initiated_places[] = {
-        {ICD_ROLE_BUSY, 0u, 1u}, /* Busy */
-    };
-    static const icd_place_t upload_packet_places[] = {
-        {ICD_ROLE_NUMBER, 0u, 16u},  /* Packet Number */
-        {ICD_ROLE_BYTES, 16u, 160u}, /* File Bytes */
-    };
-    static const icd_place_t upload_checksum_places[] = {
-        {ICD_ROLE_CHECKSUM, 0u, 16u}, /* Checksum */
-    };
-    static const icd_place_t upload_finalize_places[] = {
-        {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
-        {ICD_ROLE_OFFSET, 8u, 32u},     /* Offset */
-        {ICD_ROLE_LENGTH, 40u, 16u},    /* Block Length */
-    };
-    static const icd_place_t upload_finalized_places[] = {
-        {ICD_ROLE_BUSY, 0u, 1u},  /* Busy */
-        {ICD_ROLE_ERROR, 1u, 1u}, /* Error */
-    };
-    /**
-     * Assumed poll_interval_ms: No time is given. Assumed rounds: Nothing is said about giving up. Assumed
-     * checksum_covers_fill: Not said. The node learns the length of the block only when the block is committed, after
-     * the checksum. Assumed finalize: The procedure ends with the checksum and does not name the telecommand that
-     * commits the block. Assumed finalize_timeout_ms: No time is given.
-     */
-    static const icd_upload_form_t upload = {
-        {114, -1, 2u, 2u, upload_initiate_places, NULL},  /* Initiate File Upload */
-        {-1, 244, 1u, 1u, upload_initiated_places, NULL}, /* Initialize Upload Complete */
-        {117, -1, 0u, 0u, NULL, NULL},                    /* Reset Upload Block */
-        {115, -1, 22u, 2u, upload_packet_places, NULL},   /* File Upload Packet */
-        {-1, 246, 2u, 1u, upload_checksum_places, NULL},  /* Block Checksum */
-        {116, -1, 7u, 3u, upload_finalize_places, NULL},  /* Finalize Upload Block */
-        {-1, 245, 1u, 2u, upload_finalized_places, NULL}, /* Upload Block Complete */
-        0u,                                               /* block_size */
-        50u,                                              /* poll_interval_ms */
-        8000u,                                            /* erase_timeout_ms */
-        5000u,                                            /* finalize_timeout_ms */
-        32u,                                              /* rounds */
-        true,                                             /* the checksum covers the fill */
-    };
     static const icd_place_t erase_request_places[] = {
         {ICD_ROLE_TYPE, 0u, 8u},    /* File Type */
         {ICD_ROLE_COUNTER, 8u, 8u}, /* File Counter */
@@ -770,9 +726,11 @@ static inline const icd_link_t *cubeacp_link(void)
         &files,
         &list,            /* list */
         &download,        /* download */
-        &upload,          /* upload */
+        NULL,             /* upload */
         &erase,           /* erase */
         &format,          /* format */
+        NULL,             /* program copy */
+        NULL,             /* program information */
         &identification,  /* identification */
     };
     /* clang-format on */

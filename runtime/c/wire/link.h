@@ -43,6 +43,8 @@ typedef struct {
     const icd_upload_form_t *upload;
     const icd_erase_form_t *erase;
     const icd_erase_form_t *format;
+    const icd_operation_form_t *program_copy;
+    const icd_operation_form_t *program_information;
     const icd_step_t *identification;
 } icd_link_t;
 
@@ -132,6 +134,12 @@ static inline void icdgen_put(
         below += link->little ? count : 0u;
         at += count;
     }
+}
+
+/* Whether a number is one of those that are allowed, of which NULL stands for all. */
+static inline bool icdgen_allowed(const uint8_t *allowed, size_t count, uint8_t number)
+{
+    return allowed == NULL || memchr(allowed, number, count) != NULL;
 }
 
 /** Who the node is. */

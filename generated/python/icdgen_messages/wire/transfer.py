@@ -5,19 +5,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from .._errors import RangeError
 from .client import Request
 from .crc import crc16
-from .errors import need
+from .errors import TooLongError, need
 from .events import Done, Refused
 from .files import HoleMap
-from .procedures import Ended, Procedure, Values, Wait
+from .procedures import Ended, Procedure, Values, Wait, one_of
 from .times import dos_time_unpack
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
     from .events import Outcome
-    from .link import Bus, Link
+    from .link import Bus, Link, Step
     from .procedures import Steps, Wanted
     from .times import DosTime
 
@@ -36,7 +37,21 @@ class FileEntry(NamedTuple):
         return dos_time_unpack(link, self.time)
 
 
-class FileList(Procedure):
+class FileProcedure(Procedure):
+    """What the procedures of file transfer share. Raises `UnsupportedError`."""
+
+    def __init__(self, link: Link) -> None:
+        super().__init__(link)
+        self._files = need(link.files, "file_transfer")
+
+    def _step(self, name: str) -> Step:
+        return need(self._files.steps.get(name), f"file_transfer.{name}")
+
+    def _number(self, name: str) -> int:
+        return need(self._files.numbers.get(name), f"file_transfer.{name}")
+
+
+class FileList(FileProcedure):
     """Finds the files of the node, which are in ``entries``."""
 
     def __init__(self, link: Link) -> None:
@@ -48,15 +63,11 @@ class FileList(Procedure):
         yield from self._order("list.reset")
         timeout, interval = self._number("list.timeout_ms"), "list.poll_interval_ms"
         while True:
-            values, frame = yield from self._poll(
-                "list.information", "busy", False, interval, timeout
-            )
+            values, frame = yield from self._poll("list.information", "busy", False, interval, timeout)
             if not any(frame):
                 return
             if frame != last:
-                known = {
-                    role: values[role] for role in FileEntry._fields if role in values
-                }
+                known = {role: values[role] for role in FileEntry._fields if role in values}
                 self.entries.append(FileEntry(**{r: int(v) for r, v in known.items()}))
                 repeated = 0
             elif repeated > self.link.settings.retries:
@@ -69,7 +80,7 @@ class FileList(Procedure):
                 raise Ended("refused")
 
 
-class Download(Procedure):
+class Download(FileProcedure):
     """Gets a file, block by block.
 
     ``size`` None: as much as there is, which the index file needs. ``block``: bytes of
@@ -91,9 +102,7 @@ class Download(Procedure):
         """Offset and data of what was delivered."""
         self._bus = bus
         self._file = {"type": type, "counter": counter}
-        self._block_bytes = min(
-            block or self._files.block_bytes, self._files.block_bytes
-        )
+        self._block_bytes = min(block or self._files.block_bytes, self._files.block_bytes)
         self._offset = 0
         self._got: dict[int, bytes] = {}
         self._count = 0  # packets of the block
@@ -160,9 +169,7 @@ class Download(Procedure):
         yield from self._order("download.load", place)
         interval = "download.poll_interval_ms"
         timeout = self._number("download.ready_timeout_ms")
-        ready, _ = yield from self._poll(
-            "download.ready", "ready", True, interval, timeout
-        )
+        ready, _ = yield from self._poll("download.ready", "ready", True, interval, timeout)
         if ready["error"]:
             raise Ended("parameter")
         return ready
@@ -192,9 +199,7 @@ class Download(Procedure):
 
     def _fetch(self, packets: int) -> Steps:
         """Requests so many packets one by one."""
-        id = need(
-            self._files.packet_ids.get(self._bus), f"file_transfer.download.{self._bus}"
-        )
+        id = need(self._files.packet_ids.get(self._bus), f"file_transfer.download.{self._bus}")
         for _ in range(packets):
             outcome = yield from self._ask(Request("telemetry", id, repeat=True))
             if isinstance(outcome, Done):
@@ -207,27 +212,32 @@ class Download(Procedure):
         first = self._files.first_packet
         received = [first + position for position in self._got]
         pieces = HoleMap(self.link, self._count, received).messages()
-        for id, piece in zip(
-            form.telecommands, pieces[: _maps(self.link, self._count)]
-        ):
+        for id, piece in zip(form.telecommands, pieces[: _maps(self.link, self._count)]):
             message = self.link.TELECOMMANDS[id]()
             setattr(message, form.attribute, piece)
             data = message.to_bytes()
             yield from self._must(Request("telecommand", id, data, repeat=True))
 
 
-class Upload(Procedure):
-    """Sends a file, block by block. ``sent``: bytes that are committed."""
+class Upload(FileProcedure):
+    """Sends a file, block by block. ``sent``: bytes that are committed.
 
-    def __init__(
-        self, link: Link, destination: int, data: bytes, block: int | None = None
-    ) -> None:
+    Raises `RangeError` for a destination that is not supported, `TooLongError` if it
+    holds less, and `UnsupportedError`.
+    """
+
+    def __init__(self, link: Link, destination: int, data: bytes, block: int | None = None) -> None:
         super().__init__(link)
+        self._step("upload.initiate")
+        known = self._files.destinations
+        if known and destination not in known:
+            raise RangeError("destination", one_of(known), destination)
+        most = self._files.numbers.get("upload.destination_bytes")
+        if most is not None and len(data) > most:
+            raise TooLongError(most, len(data))
         self.sent = 0
         self._destination, self._data = destination, data
-        self._block_bytes = min(
-            block or self._files.block_bytes, self._files.block_bytes
-        )
+        self._block_bytes = min(block or self._files.block_bytes, self._files.block_bytes)
 
     @property
     def progress(self) -> tuple[int, int | None]:
@@ -294,31 +304,25 @@ class Upload(Procedure):
         yield from self._order("upload.finalize", values)
         interval = "upload.poll_interval_ms"
         timeout = self._number("upload.finalize_timeout_ms")
-        told, _ = yield from self._poll(
-            "upload.finalized", "busy", False, interval, timeout
-        )
+        told, _ = yield from self._poll("upload.finalized", "busy", False, interval, timeout)
         return not told["error"]
 
 
-class Erase(Procedure):
+class Erase(FileProcedure):
     """Deletes a file, or all files: then it is done when the node is no longer busy."""
 
-    def __init__(
-        self, link: Link, type: int = 0, counter: int = 0, all: bool = False
-    ) -> None:
+    def __init__(self, link: Link, type: int = 0, counter: int = 0, all: bool = False) -> None:
         super().__init__(link)
         self._values = {"type": type, "counter": counter, "all": all}
 
     def _run(self) -> Steps:
         yield from self._order("erase.request", self._values)
         if self._values["all"]:
-            interval, timeout = "erase.poll_interval_ms", self._number(
-                "erase.timeout_ms"
-            )
+            interval, timeout = "erase.poll_interval_ms", self._number("erase.timeout_ms")
             yield from self._poll("erase.progress", "busy", False, interval, timeout)
 
 
-class Format(Procedure):
+class Format(FileProcedure):
     """Formats the medium of the node."""
 
     def _run(self) -> Steps:

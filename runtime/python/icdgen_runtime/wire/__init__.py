@@ -55,6 +55,8 @@ if TYPE_CHECKING:
     from .logs import LogReader as LogReader
     from .logs import LogWriter as LogWriter
     from .procedures import Procedure as Procedure
+    from .programs import ProgramCopy as ProgramCopy
+    from .programs import ProgramInformation as ProgramInformation
     from .session import Session as Session
     from .times import DosTime as DosTime
     from .times import dos_time_pack as dos_time_pack
@@ -100,6 +102,7 @@ _HOMES = {
     "link": ("Link", "Settings"),
     "logs": ("LogEntry", "LogFrame", "LogMessage", "LogReader", "LogWriter"),
     "procedures": ("Procedure",),
+    "programs": ("ProgramCopy", "ProgramInformation"),
     "session": ("Session",),
     "times": ("DosTime", "dos_time_pack", "dos_time_unpack"),
     "transfer": ("Download", "Erase", "FileEntry", "FileList", "Format", "Upload"),

@@ -32,6 +32,8 @@ def step_bytes(all_facts: Iterable[Facts]) -> int:
     sizes = [1]
     for known in all_facts:
         sizes += [step.message.length for step in (known.files.steps.values() if known.files else ())]
+        operations = [one for one in (known.program_copy, known.program_information) if one]
+        sizes += [step.message.length for one in operations for step in (one.request, one.progress)]
         sizes += [message.length for message in (known.hole_map.messages if known.hole_map else ())]
     return max(sizes)
 
@@ -108,6 +110,8 @@ class LinkTables(BusTables, LogTables, FileTables):
             (self.upload(files) if files else "NULL", "upload"),
             (self.erase(files, "erase") if files else "NULL", "erase"),
             (self.erase(files, "format") if files else "NULL", "format"),
+            (self.operation("program_copy", known.program_copy), "program copy"),
+            (self.operation("program_information", known.program_information), "program information"),
             (self.identification(), "identification"),
         ]
         self.add("link", "icd_link_t", [row_of(value, text) for value, text in parts], self.section_notes("client"))

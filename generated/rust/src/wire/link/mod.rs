@@ -13,7 +13,7 @@ pub use self::can::{Can, CanPart, CanTypes, Extended};
 pub use self::logs::{IndexForm, LogBit, LogFile, LogMask, LogMessage, Span, TimeForm, TimePart};
 pub use self::steps::{Piece, Place, Role, Step};
 pub use self::transfer::{
-    DownloadForm, ErasureForm, Files, HoleMapForm, ListForm, MapMessage, UploadForm,
+    DownloadForm, ErasureForm, Files, HoleMapForm, ListForm, MapMessage, OperationForm, UploadForm,
 };
 
 pub(crate) use self::steps::get;
@@ -71,6 +71,10 @@ pub struct Link {
     pub index: Option<IndexForm>,
     /// File transfer.
     pub files: Option<Files>,
+    /// How a stored program is copied to where it can run.
+    pub program_copy: Option<OperationForm>,
+    /// How size and checksum of a stored program are read.
+    pub program_information: Option<OperationForm>,
     /// The frame that identifies the node.
     pub identification: Option<Step>,
     /// How long the bootloader waits before it starts the program.
