@@ -114,11 +114,11 @@ class _Flow:
         index = 0
         waiting = list(ruled)
         while index < len(loose) or waiting:
-            if waiting and (index >= len(loose) or waiting[0].top < loose[index].middle):
+            if waiting and (index >= len(loose) or waiting[0].top <= loose[index].middle):
                 made.append(self.ruled(page, waiting.pop(0)))
                 self.open = None
                 continue
-            limit = waiting[0].top if waiting else page.height
+            limit = waiting[0].top if waiting else float("inf")
             upto = index
             while upto < len(loose) and loose[upto].middle < limit:
                 upto += 1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from icdgen.importer.document import Document, Heading, Spot, Table, Trouble
+from icdgen.importer.document import Document, Heading, Table, Trouble
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import lists, messages
 from icdgen.importer.understand.model import ReadEnum, ReadList, ReadLog, ReadMessage, Thing
@@ -53,7 +53,7 @@ def survey(document: Document, profile: Profile) -> Survey:
             last = block.number
         titles = tuple(s.text for s in sections)
         what, thing = classify(block, profile, made.troubles, titles)
-        if what == UNKNOWN and block.number is None:
+        if what == UNKNOWN and block.number is None and not _is_grid(block):
             continue  # a figure, a listing, a box: nobody called it a table
         made.found.append(Found(block, what, thing, run, titles))
         if what == UNKNOWN:
@@ -83,6 +83,12 @@ def classify(
     return "loggable frames", lists.log(table, troubles)
 
 
+def _is_grid(table: Table) -> bool:
+    """Whether something without a caption is a table for all that: two rows or more of two cells or more."""
+    rows = [row for row in (*table.head, *table.rows) if sum(bool(cell) for cell in row.cells) > 1]
+    return len(rows) + (table.header is not None) > 1
+
+
 def _by_section(sections: tuple[str, ...], profile: Profile) -> str:
     for title in reversed(sections):
         words = folded(title)
@@ -99,8 +105,9 @@ def _not_understood(table: Table) -> Trouble:
     cells = [cell for cell in rows[0].cells if cell] if rows else []
     begins = f"; it begins with `{' | '.join(cells)[:100]}`" if cells else ""
     return Trouble(
-        "IMP030", f"{table.title}: none of the tables that icdgen knows{begins}", Spot(table.page, table.line, table.number),
+        "IMP030", f"{table.title}: none of the tables that icdgen knows{begins}", table.spot,
         "if it describes a message or an enumeration add its headings to the profile, else name it under `background:`",
+        "note" if table.number is None else "warning",
     )  # fmt: skip
 
 
