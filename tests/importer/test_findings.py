@@ -11,7 +11,6 @@ from reportlab.pdfgen.canvas import Canvas
 from icdgen.importer import findings
 from icdgen.importer.document import CERTAIN
 from tests.conftest import ROOT
-from tests.importer.conftest import imported
 from tests.importer.test_command import TEXT, icdgen
 from tests.importer.test_text import ENUM, MESSAGE, found, read
 
@@ -80,7 +79,9 @@ def test_equal_findings_of_one_place_are_counted_and_not_merged(tmp_path):
     text = MESSAGE.replace("\t24\t1\t", "\t24\t1\t\tWORD\t\n\t25\t1\t") + ENUM
     twice = text.replace("\t0\t16\tPressure", "\t\t16\tPressure\tINT\tPressure\n\t\t16\tPressure")
     result, _ = read(tmp_path, twice)
-    assert found(result, "IMP023") == 2 * ["table 7: Pump State Telemetry Format, field `Pressure`: the offset is empty"]
+    assert found(result, "IMP023") == 2 * [
+        "table 7: Pump State Telemetry Format, field `Pressure`: the offset is empty"
+    ]
 
 
 def test_a_message_that_is_left_out_is_not_called_certain(tmp_path):
@@ -119,7 +120,9 @@ def test_a_row_without_offset_does_not_vanish_in_the_row_above(tmp_path):
 
 
 def test_a_column_that_nobody_knows_is_named_with_what_it_holds(tmp_path):
-    text = MESSAGE.replace("Data Type\tDescription", "Data Type\tDescription\tGain").replace("Valve open\n", "Valve open\t2.5\n")
+    text = MESSAGE.replace("Data Type\tDescription", "Data Type\tDescription\tGain").replace(
+        "Valve open\n", "Valve open\t2.5\n"
+    )
     result, _ = read(tmp_path, text + ENUM)
     assert "the column `Gain` has no role, its cells were left out: `2.5`" in found(result, "IMP027")[0]
 
@@ -127,15 +130,3 @@ def test_a_column_that_nobody_knows_is_named_with_what_it_holds(tmp_path):
 def test_a_table_without_a_caption_is_not_passed_over(tmp_path):
     result, _ = read(tmp_path, MESSAGE + ENUM + "\nSome prose.\n\nStep\tShade\nfirst\tred\nsecond\tblue\n")
     assert "it begins with `Step | Shade`" in found(result, "IMP030")[0]
-
-
-def test_a_page_full_of_lines_is_read_in_a_moment(tmp_path):
-    canvas = Canvas(str(tmp_path / "drawing.pdf"), invariant=1)
-    for i in range(3000):
-        x, y = 50 + i * 7 % 480, 60 + i * 13 % 700
-        canvas.line(x, y, x + 6 * (i % 2), y + 6 * (1 - i % 2))
-    canvas.drawString(72, 810, "Characteristics")
-    canvas.showPage()
-    canvas.save()
-    with pytest.raises(Exception, match="no message"):
-        imported(tmp_path / "drawing.pdf")

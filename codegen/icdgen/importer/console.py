@@ -60,8 +60,8 @@ def summary(result: Result) -> list[str]:
         f"{severities[s]} {s}{'s' if severities[s] != 1 else ''}" for s in ("error", "warning", "note") if severities[s]
     )
     return [
-        f"{pages}{len(result.survey.found):,} tables: " + ", ".join(parts),
-        "read: " + ", ".join(f"{sure[level]} {level}" for level in (CERTAIN, LIKELY, DOUBTFUL) if sure[level]),
+        f"{pages}{len(result.survey.found):,} tables" + (": " if parts else "") + ", ".join(parts),
+        "read: " + (", ".join(f"{sure[one]} {one}" for one in (CERTAIN, LIKELY, DOUBTFUL) if sure[one]) or "none"),
         f"findings: {found or 'none'}",
     ]
 

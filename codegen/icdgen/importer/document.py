@@ -42,7 +42,9 @@ class Spot(NamedTuple):
     page: int | None = None
     line: int | None = None
     table: int | None = None
-    order: int | None = None  # which table of the document it is, counted from 0: numbers may be missing, or occur twice
+    order: int | None = (
+        None  # which table of the document it is, counted from 0: numbers may be missing, or occur twice
+    )
 
 
 @dataclass(slots=True)
@@ -97,7 +99,7 @@ class Table:
 
 @dataclass(slots=True)
 class Heading:
-    """A numbered section heading."""
+    """A section heading; ``number`` is empty where it has none."""
 
     number: str
     text: str

@@ -38,7 +38,9 @@ class Result:
     @property
     def troubles(self) -> list[Trouble]:
         """All findings in the order of the manual."""
-        return sorted(self.survey.troubles, key=lambda t: (t.spot.page or 0, t.spot.line or 0, t.spot.order or 0, t.code))
+        return sorted(
+            self.survey.troubles, key=lambda t: (t.spot.page or 0, t.spot.line or 0, t.spot.order or 0, t.code)
+        )
 
     @property
     def failed(self) -> bool:

@@ -49,6 +49,7 @@ class Mark:
     size: float
     style: str
     number: str = ""
+    strong: bool = False  # reads like a heading without a number
 
 
 Item = Piece | Mark
@@ -158,7 +159,8 @@ class _Flow:
         heading = _HEADING.match(line.text)
         if heading and self.stands_out(line) and len(line.text) < 120:
             kind, number, text = "heading", heading["number"], heading["text"]
-        return 1, Mark(kind, text, _box(page, [line]), line.size, line.style, number)
+        strong = kind == "text" and self.stands_out(line) and len(text) < 80 and not text.endswith((".", ":", ",", ";"))
+        return 1, Mark(kind, text, _box(page, [line]), line.size, line.style, number, strong)
 
     def stands_out(self, line: Line) -> bool:
         return line.size > self.body.size + 0.6 or line.style != self.body.style

@@ -46,7 +46,9 @@ def entries(table: Table, troubles: list[Trouble], stands_alone: StandsAlone | N
         elif header.kind == "list" and (title := _group(row, header, made, last_page)):
             group = title
         elif made:
-            _tear(made[-1], row, header, spot, table, troubles, same_page=row.page is not None and row.page == last_page)
+            _tear(
+                made[-1], row, header, spot, table, troubles, same_page=row.page is not None and row.page == last_page
+            )
         else:
             table.doubts.append("a row before the first one has no key")
             text = " | ".join(c for c in row.cells if c)
