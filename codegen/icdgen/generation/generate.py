@@ -49,7 +49,7 @@ def run(job: Job) -> Outcome:
     if not outcome.loaded.ok:
         return outcome
     outcome.inputs = outcome.loaded.inputs | job.configs
-    renderers = [Renderer(backend.name, job.templates) for backend in chosen]
+    renderers = [Renderer.of(backend, job.templates) for backend in chosen]
     for plan, looked_at in parallel.results(
         [partial(_plan, job, outcome.loaded.icd, *both) for both in zip(chosen, renderers, strict=True)]
     ):
