@@ -9,7 +9,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from icdgen import cache, fingerprints, shipped
+from icdgen import fingerprints, shipped
 from icdgen.errors import UserError
 
 if TYPE_CHECKING:
@@ -33,7 +33,6 @@ class Renderer:
         self.looked_at: dict[Path, str] = {}
         self._environment = jinja2.Environment(
             loader=_loader(self._own, templates or shipped.templates() / backend, self.looked_at),
-            bytecode_cache=_bytecode(),
             undefined=jinja2.StrictUndefined,
             autoescape=lambda template: template is not None and template.endswith(".html.j2"),
             trim_blocks=True,
@@ -108,19 +107,3 @@ def _loader(own: list[Path], shipped: Path, looked_at: dict[Path, str]):
             return super().get_source(environment, template)
 
     return Loader([*own, shipped])
-
-
-def _bytecode():
-    """Compiled templates, remembered under the tool that compiled them."""
-    import jinja2
-
-    class Cache(jinja2.BytecodeCache):
-        def load_bytecode(self, bucket) -> None:
-            data = cache.recall("templates", cache.key("template", bucket.key))
-            if data is not None:
-                bucket.bytecode_from_string(data)
-
-        def dump_bytecode(self, bucket) -> None:
-            cache.seal("templates", cache.key("template", bucket.key), bucket.bytecode_to_string())
-
-    return Cache()

@@ -78,7 +78,9 @@ def get(name: str) -> Backend:
     if name not in found:
         known = ", ".join(sorted({*_BUILT_IN, *found}))
         raise UnknownBackend(f"there is no backend `{name}`; there are: {known}")
-    return found[name].load()()
+    from icdgen.backends.plug_in import PlugIn
+
+    return PlugIn(found[name])
 
 
 def _load(target: str) -> Backend:

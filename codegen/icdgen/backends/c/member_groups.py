@@ -1,20 +1,20 @@
-"""Runs of members that are read and written together: flags that share a byte, and rows of words of one size."""
+"""Groups of members that are read and written together: flags that share a byte, and rows of words of one size."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
 
-from icdgen import layout
 from icdgen.backends.c.bits import is_word, order
-from icdgen.backends.c.storage import Storage
-from icdgen.icd.model import Field, Node
+from icdgen.describe import FieldDescription
+from icdgen.icd.model import Node
 
 LONG_ENOUGH = 8
 """From this many words on, a row is moved as one."""
 
 
-class Flags(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Flags:
     """``count`` members of the struct from ``first`` on are bits of ``byte``, from bit ``shift`` up (falling: down to it)."""
 
     first: int
@@ -23,16 +23,14 @@ class Flags(NamedTuple):
     shift: int
     falling: bool
 
-    def arguments(self, names: Sequence[str]) -> tuple[str, ...]:
-        return tuple(names[self.first : self.first + self.count])
-
     @property
     def macro(self) -> str:
         """The end of the macro's name."""
         return f"{self.count}_FLAGS{'_FALLING' if self.falling else ''}"
 
 
-class Row(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Row:
     """``count`` members of the struct from ``first`` on are words of ``bits`` bits, in the frame from ``byte`` on."""
 
     first: int
@@ -46,23 +44,23 @@ class Row(NamedTuple):
         return self.count * self.bits // 8
 
 
-def runs(fields: Sequence[Field], storages: Sequence[Storage], node: Node) -> dict[int, Flags | Row]:
-    """The runs of a message by the index of their first member; none overlap."""
+def member_groups(fields: Sequence[FieldDescription]) -> dict[int, Flags | Row]:
+    """The groups of a message by the index of their first member; none overlap."""
     found: dict[int, Flags | Row] = {}
-    positions = [_position(field, node) for field in fields]
+    positions = [_position(field) for field in fields]
     index = 0
     while index < len(fields):
-        run = _flags(positions, index) or _row(fields, storages, index)
-        if run is not None:
-            found[index] = run
-        index += run.count if run else 1
+        group = _flags(positions, index) or _row(fields, index)
+        if group is not None:
+            found[index] = group
+        index += group.count if group else 1
     return found
 
 
-def _position(field: Field, node: Node) -> tuple[int, int] | None:
-    if field.type != "bool":
+def _position(field: FieldDescription) -> tuple[int, int] | None:
+    if field.field.type != "bool":
         return None
-    (piece,) = layout.pieces(field, node)
+    (piece,) = field.pieces
     return piece.byte, piece.shift
 
 
@@ -80,16 +78,15 @@ def _flags(positions: Sequence[tuple[int, int] | None], first: int) -> Flags | N
     return None
 
 
-def _row(fields: Sequence[Field], storages: Sequence[Storage], first: int) -> Row | None:
-    bits, at = fields[first].bits, fields[first].at
-    index = first
-    while index < len(fields):
-        field = fields[index]
-        if not is_word(field) or field.bits != bits or field.at != at or storages[index].bits != bits:
+def _row(fields: Sequence[FieldDescription], first: int) -> Row | None:
+    bits, start = fields[first].field.bits, fields[first].field.at
+    count = 0
+    for field in fields[first:]:
+        one = field.field
+        if not is_word(field) or one.bits != bits or one.at != start + count * bits or field.storage.bits != bits:
             break
-        index, at = index + 1, at + bits
-    count = index - first
-    return Row(first, count, fields[first].at // 8, bits) if count >= LONG_ENOUGH else None
+        count += 1
+    return Row(first, count, start // 8, bits) if count >= LONG_ENOUGH else None
 
 
 def row_macro(node: Node) -> str:
