@@ -15,7 +15,7 @@ from icdgen.icd.model import Icd
 _SUPPORT = ("_base", "_codec", "_columns", "_enumeration", "_errors", "_floats", "_lazy", "testee")
 _WIRE = (
     "__init__", "_testee", "_testee_link", "_testee_scripts", "can", "client", "crc", "errors", "events", "files", "i2c",
-    "identity", "link", "logs", "procedures", "session", "times", "transfer", "uart",
+    "identity", "link", "logs", "ports", "procedures", "session", "times", "transfer", "uart",
 )  # fmt: skip
 
 
