@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from icdgen.checked import load_checked
+from icdgen.model_cache import load_checked
 from icdgen.protocol import facts
 
 ROOT = Path(__file__).parent.parent

@@ -15,15 +15,15 @@ def main() -> None:
 
 
 def _main() -> None:
-    from icdgen import memo
+    from icdgen import cache
 
     arguments = sys.argv[1:]
     try:
-        name = memo.key("run", os.getcwd(), *arguments)
-        note = memo.holds("runs", name)
+        name = cache.key("run", os.getcwd(), *arguments)
+        note = cache.recall("runs", name)
     except OSError:
         name, note = "", None
-    if note is not None and _said(note):
+    if note is not None and _said(note.decode("utf-8", "surrogateescape")):
         sys.exit(0)
     import gc
 

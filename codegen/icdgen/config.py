@@ -11,7 +11,7 @@ import os
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from icdgen import memo
+from icdgen import fingerprints
 from icdgen.errors import UserError
 
 NAME = "icdgen.toml"
@@ -26,7 +26,7 @@ class Config:
     lang: list[str] = field(default_factory=list)
     out: Path | None = None
     templates: Path | None = None
-    looked_at: dict[Path, str] = field(default_factory=dict)  # `memo.fingerprint` as of just before it was read
+    looked_at: dict[Path, str] = field(default_factory=dict)  # fingerprints as of just before it was read
 
 
 def find(start: Path) -> Config:
@@ -34,7 +34,7 @@ def find(start: Path) -> Config:
     looked_at = {}
     for folder in (start, *start.parents):
         path = folder / NAME
-        looked_at[path] = memo.fingerprint(str(path))
+        looked_at[path] = fingerprints.of_path(str(path))
         if os.path.isfile(path):
             config = _read(path)
             config.looked_at = looked_at

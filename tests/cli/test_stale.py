@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from icdgen import __main__, checked, memo
+from icdgen import __main__, cache, fingerprints, model_cache
 from icdgen.icd import load as loading
 from tests.conftest import DEMO
 
@@ -30,14 +30,14 @@ def test_a_template_behind_a_link(run, demo, tmp_path):
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "own").mkdir()
     (tmp_path / "own" / "c").symlink_to("../elsewhere")
-    template = tmp_path / "elsewhere" / "icdgen.h.j2"
+    template = tmp_path / "elsewhere" / "node.h.j2"
     for text in ("one\n", "two\n"):
         template.write_text(text)
         run("--lang", "c", "--out", "out", "--templates", "own", demo)
-        assert (tmp_path / "out" / "icdgen.h").read_text() == text
+        assert (tmp_path / "out" / "demo.h").read_text() == text
     template.unlink()
     run("--lang", "c", "--out", "out", "--templates", "own", demo)
-    assert (tmp_path / "out" / "icdgen.h").read_text() != "two\n"
+    assert (tmp_path / "out" / "demo.h").read_text() != "two\n"
 
 
 def test_an_included_file_by_a_second_path_that_leads_elsewhere(run, tmp_path):
@@ -66,7 +66,7 @@ def test_an_icd_that_changes_while_it_is_worked_on(run, demo, tmp_path, monkeypa
     run("--lang", "c", "--out", "out", demo)
     monkeypatch.undo()
     monkeypatch.chdir(tmp_path)
-    assert checked.load_checked([demo]).icd.nodes[0].messages[0].fields[0].name == "Changed Meanwhile"
+    assert model_cache.load_checked([demo]).icd.nodes[0].messages[0].fields[0].name == "Changed Meanwhile"
 
 
 def test_an_erratum_of_a_renamed_node_counts(run, demo, tmp_path):
@@ -87,9 +87,9 @@ def test_an_erratum_of_a_renamed_node_counts(run, demo, tmp_path):
 def test_any_flipped_byte_of_the_cache_is_noticed(run, demo, tmp_path):
     run("--lang", "c", "--out", "out", demo)
     good = {p: p.read_bytes() for p in (tmp_path / "out").rglob("*") if p.is_file()}
-    cache = [path for top, _, names in os.walk(memo.folder()) for path in (os.path.join(top, name) for name in names)]
-    assert {os.path.basename(os.path.dirname(path)) for path in cache} == {"inputs", "models", "runs", "templates"}
-    for path in cache:
+    kept = [path for top, _, names in os.walk(cache.folder()) for path in (os.path.join(top, name) for name in names)]
+    assert {os.path.basename(os.path.dirname(path)) for path in kept} == {"models", "runs"}
+    for path in kept:
         with open(path, "r+b") as file:
             data = bytearray(file.read())
             data[len(data) * 2 // 3] ^= 0x55
@@ -103,14 +103,14 @@ def test_any_flipped_byte_of_the_cache_is_noticed(run, demo, tmp_path):
 
 def test_what_cannot_be_read_twice_is_not_remembered(tmp_path):
     os.mkfifo(tmp_path / "fifo")
-    assert memo.fingerprint(str(tmp_path / "fifo")) == memo.UNKNOWN
-    memo.remember("runs", "k", "done", {str(tmp_path / "fifo"): memo.UNKNOWN})
-    assert memo.holds("runs", "k") is None
+    assert fingerprints.of_path(str(tmp_path / "fifo")) == fingerprints.UNKNOWN
+    cache.remember("runs", "k", b"done", {str(tmp_path / "fifo"): fingerprints.UNKNOWN})
+    assert cache.recall("runs", "k") is None
 
 
 def test_the_cache_does_not_grow_for_ever(monkeypatch):
-    monkeypatch.setattr(memo, "MOST", 3)
+    monkeypatch.setattr(cache, "MOST", 3)
     for number in range(9):
-        memo.remember("runs", str(number), "done", {})
-    assert len(os.listdir(os.path.join(memo.folder(), "runs"))) == 3
-    assert memo.holds("runs", "8") == "done"
+        cache.remember("runs", str(number), b"done", {})
+    assert len(os.listdir(os.path.join(cache.folder(), "runs"))) == 3
+    assert cache.recall("runs", "8") == b"done"

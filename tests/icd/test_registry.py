@@ -89,9 +89,9 @@ def test_the_model_holds_what_is_right_in_a_wrong_icd(tmp_path):
 
 
 def test_shipped_icds_have_no_finding():
-    from icdgen import places
+    from icdgen import shipped
 
-    assert load([places.icds()]).findings == []
+    assert load([shipped.icds()]).findings == []
 
 
 def test_an_icd_that_cannot_be_read_is_not_checked_further(tmp_path):

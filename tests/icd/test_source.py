@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from icdgen.diagnostics import Findings, Place
 from icdgen.icd import source
-from icdgen.icd.tree import Map, Seq
+from icdgen.icd.located import Map, Seq
 
 TEXT = """\
 # a comment

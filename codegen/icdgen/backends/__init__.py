@@ -10,8 +10,8 @@ from importlib import import_module
 from pathlib import PurePosixPath
 from typing import NamedTuple, Protocol
 
+from icdgen.icd.located import Map
 from icdgen.icd.model import Icd
-from icdgen.icd.tree import Map
 
 GROUP = "icdgen.backends"
 
@@ -69,7 +69,9 @@ def get(name: str) -> Backend:
     if name not in found:
         known = ", ".join(sorted({*_BUILT_IN, *found}))
         raise UnknownBackend(f"there is no backend `{name}`; there are: {known}")
-    return found[name].load()()
+    from icdgen.backends.plug_in import PlugIn
+
+    return PlugIn(found[name])
 
 
 def _load(target: str) -> Backend:

@@ -6,20 +6,23 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any, TypeVar
 
 import click
 
-from icdgen import config, places
+from icdgen import config, shipped
 from icdgen.diagnostics import Finding
 from icdgen.errors import UserError
 from icdgen.icd.loaded import Loaded
 from icdgen.reports.excerpt import printable
 
+Command = TypeVar("Command", bound=Callable[..., Any])
+
 
 class _Path(click.Path):
     """A path; an empty one, such as an unset variable gives, is not the current folder."""
 
-    def convert(self, value, param, ctx):
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         if value == "":
             self.fail("the path is empty", param, ctx)
         return super().convert(value, param, ctx)
@@ -33,12 +36,12 @@ def say(text: str, err: bool = False) -> None:
     click.echo("\n".join(printable(line) for line in text.split("\n")), err=err)
 
 
-def icd_arguments(command: Callable) -> Callable:
+def icd_arguments(command: Command) -> Command:
     """``[ICD]...``: files or folders; without them what ``icdgen.toml`` names, else the shipped ones."""
     return click.argument("icds", nargs=-1, metavar="[ICD]...", type=PATH)(command)
 
 
-def icd_option(command: Callable) -> Callable:
+def icd_option(command: Command) -> Command:
     """``--icd FILE`` (repeatable), for commands whose arguments are something else."""
     text = "ICD file or folder (default: those of icdgen.toml, else those shipped)."
     return click.option("--icd", "icds", multiple=True, type=PATH, help=text)(command)
@@ -50,7 +53,7 @@ def chosen(icds: tuple[Path, ...]) -> tuple[list[Path], config.Config]:
         found = config.find(Path.cwd())
     except FileNotFoundError:
         raise UserError("the current folder is no longer there", "change to another one") from None
-    paths = list(icds) or found.icds or [places.icds()]
+    paths = list(icds) or found.icds or [shipped.icds()]
     return [_short(path) for path in paths], found
 
 
@@ -61,7 +64,7 @@ def _short(path: Path) -> Path:
 
 def load_or_exit(icds: tuple[Path, ...]) -> Loaded:
     """The checked ICDs; prints what is wrong and exits with 1 if anything is."""
-    from icdgen.checked import load_checked
+    from icdgen.model_cache import load_checked
 
     loaded = load_checked(chosen(icds)[0])
     if not loaded.ok:

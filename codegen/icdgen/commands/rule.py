@@ -9,15 +9,17 @@ from icdgen.errors import UserError
 
 @click.command()
 @click.argument("code", required=False)
-def rule(code) -> None:
+def rule(code: str | None) -> None:
     """Explain a rule with examples; without CODE, list all rules: of ICDs (ICD...) and of their changes (DIF...)."""
     from icdgen.icd import rules
 
     if code is None:
         from icdgen.diff.compare import RULES
 
-        for one in (*rules.ALL.values(), *RULES.values()):
-            click.echo(f"{one.code}  {one.title}")
+        titles = [(one.code, one.title) for one in rules.ALL.values()]
+        titles += [(one.code, one.title) for one in RULES.values()]
+        for found, title in titles:
+            click.echo(f"{found}  {title}")
         return
     code = code.upper()
     if code in rules.ALL:

@@ -10,8 +10,8 @@ from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.change import Change, Where
 from icdgen.diff.compare import RULES
 from icdgen.icd import schema, source
+from icdgen.icd.located import Map
 from icdgen.icd.rules.wording import close_to, quote
-from icdgen.icd.tree import Map
 
 NAME = ".icdgen-accepted.yaml"
 STALE = "DIF901"

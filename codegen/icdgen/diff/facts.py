@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from icdgen.diagnostics import Place
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
-from icdgen.icd.tree import Map, Seq
 
 WORDS = frozenset(("source", "summary", "printed_constant"))  # keys that say something about the manual, not the device
 NAMES = ("name", "value")  # what tells the rows of a list apart

@@ -7,8 +7,8 @@ from functools import cached_property
 
 from icdgen.diagnostics import Place
 from icdgen.diff.change import Where
+from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
-from icdgen.icd.tree import Map
 from icdgen.layout import byte_range, pieces
 
 # What a key of an ICD is called in the output of ``show``.

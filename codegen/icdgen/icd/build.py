@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from fractions import Fraction
+from typing import Any, TypeVar
 
-from icdgen.icd import formula, model
+from icdgen.icd import division, formula, model
 from icdgen.icd.errata import Applied
-from icdgen.icd.tree import Map
+from icdgen.icd.located import Map
 from icdgen.icd.units import STANDARD, Unit
+
+T = TypeVar("T")
 
 
 class Scope:
@@ -57,7 +61,7 @@ class Builder:
             includes=includes,
             vocabulary=tuple(dict.fromkeys((*self.scope.vocabulary, *words))),
             units=units,
-            protocol=plain(protocol) if isinstance(protocol, Map) else {},
+            protocol=plain_mapping(protocol) if isinstance(protocol, Map) else {},
             loggable=tuple(self.each("loggable", self.loggable)),
             missing=tuple(self.each("missing", self.missing)),
             errata=tuple(self.applied.entries),
@@ -66,7 +70,7 @@ class Builder:
             source=self.tree,
         )
 
-    def each(self, key: str, make: Callable, owner: Map | None = None) -> Iterable:
+    def each(self, key: str, make: Callable[[Map], T], owner: Map | None = None) -> Iterable[T]:
         items = (self.tree if owner is None else owner).get(key)
         for item in items if isinstance(items, list) else ():
             if isinstance(item, Map) and id(item) not in self.broken:
@@ -103,7 +107,7 @@ class Builder:
             name=item["name"],
             kind=item["kind"],
             length=item["length"],
-            fields=tuple(self.each("fields", self.field, item)),
+            fields=tuple(field for fields in self.each("fields", self.fields, item) for field in fields),
             id=item.get("id"),
             set_id=item.get("set_id"),
             get_id=item.get("get_id"),
@@ -121,23 +125,39 @@ class Builder:
             source=item,
         )
 
+    def fields(self, item: Map) -> tuple[model.Field, ...]:
+        """The field, or the parts that it is divided into."""
+        parts = division.parts_of(item) if "bitfields" in item else []
+        orders = self.tree["node"]["byte_order"], self.tree["node"]["bit_order"]
+        if not parts or any(id(p) in self.broken for p in parts) or any(division.obstacles(item, *orders)):
+            return (self.field(item),)
+        errata = self.applied.about(item)
+        return tuple(
+            replace(
+                self.field(part),
+                at=division.place(item, part, *orders),
+                summary=division.described(item, part),
+                errata=errata,
+            )
+            for part in parts
+        )
+
     def field(self, item: Map) -> model.Field:
         get = item.get
-        kind = item["type"]
+        kind = get("type", "uint")  # which parts of a field need not say
         return model.Field(
             name=item["name"],
             at=item["at"],
             bits=item["bits"],
             type=kind,
             identifier=get("identifier"),
-            enum=self.scope.enums.get(get("enum")) if kind == "enum" else None,
-            unit=self.scope.units.get(get("unit")),
+            enum=self.scope.enums.get(get("enum", "")) if kind == "enum" else None,
+            unit=self.scope.units.get(get("unit", "")),
             formula=get("formula", ""),
             scale=scale(get("formula")) if kind in ("uint", "int") else None,
             const=get("const"),
             special=tuple(self.each("special", lambda s: model.Special(s["value"], s["meaning"]), item)),
             limits=limits(item),
-            bitfields=tuple(self.each("bitfields", bitfield, item)) if "bitfields" in item else (),
             summary=get("summary", ""),
             errata=self.applied.about(item),
             source=item,
@@ -172,8 +192,9 @@ def exact(number: int | float) -> Fraction:
     return Fraction(number) if isinstance(number, int) else Fraction(repr(number))
 
 
-def bitfield(item: Map) -> model.BitField:
-    return model.BitField(item["at"], item["bits"], item["name"], item.get("summary", ""))
+def plain_mapping(value: Map) -> dict[str, Any]:
+    """A mapping without positions, at any depth."""
+    return {key: plain(item) for key, item in value.items()}
 
 
 def plain(value: object) -> object:

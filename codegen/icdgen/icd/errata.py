@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Set
 
 from icdgen.diagnostics import Finding, Place
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Erratum
-from icdgen.icd.tree import Map, Seq
 
 _AGAIN = "look at the manual again, then update or remove the entry"
 STALE, NOWHERE, DOUBLE_ID, OTHER_NODE = "ICD080", "ICD081", "ICD082", "ICD083"

@@ -6,13 +6,13 @@ import hashlib
 import os
 from pathlib import Path
 
-from icdgen import memo
+from icdgen import fingerprints
 from icdgen.diagnostics import Finding, Findings, Place, in_order
 from icdgen.icd import errata, source
 from icdgen.icd.build import Builder, Scope
 from icdgen.icd.loaded import Loaded
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Icd, Node
-from icdgen.icd.tree import Map
 
 INCLUDE = "ICD004"
 
@@ -48,7 +48,7 @@ class _Loader:
 
     def folder(self, path: Path) -> list[Path]:
         """The ICDs of a folder."""
-        self.inputs[path] = memo.fingerprint(str(path))
+        self.inputs[path] = fingerprints.of_path(str(path))
         files = sorted(path.glob("*.yaml"))
         if not files:
             self.findings.append(
@@ -80,7 +80,7 @@ class _Loader:
         self.findings += applied.findings
         self.applied.append(applied)
         digest = hashlib.sha256(self.contents[path])
-        digest.update(self.contents[beside] if overlay is not None else b"")
+        digest.update(self.contents[beside] if beside is not None and overlay is not None else b"")
         for one in included:
             digest.update(one.digest.encode())
         names = tuple(dict.fromkeys(n.name for n in included))
@@ -93,7 +93,7 @@ class _Loader:
     def read(self, path: Path, document: str) -> Map | None:
         """The tree of a file, its structure checked; None if it is not YAML at all."""
         name = str(path)
-        self.inputs[path] = memo.UNKNOWN
+        self.inputs[path] = fingerprints.UNKNOWN
         try:
             data = self.contents[path] = source.contents(path, name)
             self.inputs[path] = hashlib.sha256(data).hexdigest()
@@ -132,14 +132,16 @@ class _Loader:
         if overlay is None:
             return None
         if _is_absent(overlay):
-            self.inputs[overlay] = memo.ABSENT
+            self.inputs[overlay] = fingerprints.ABSENT
             return None
         return self.read(overlay, "errata")
 
     def include(self, tree: Map, path: Path, stack: tuple[Path, ...]) -> list[Node]:
-        nodes = []
+        nodes: list[Node] = []
         items = tree.get("include")
-        for index, item in enumerate(items if isinstance(items, list) else ()):
+        if not isinstance(items, Seq):
+            return nodes
+        for index, item in enumerate(items):
             if not isinstance(item, str):
                 continue
             place = items.items_at[index]

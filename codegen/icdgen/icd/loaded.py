@@ -15,9 +15,7 @@ class Loaded:
 
     icd: Icd
     findings: list[Finding]
-    inputs: dict[
-        Path, str
-    ]  # every file and folder read, or looked for and absent -> `memo.fingerprint` of what was read
+    inputs: dict[Path, str]  # each file and folder read, or looked for and absent -> its fingerprint when read
     texts: dict[str, str] = field(default_factory=dict)  # file name as in findings -> its text, for excerpts
 
     @property

@@ -1,16 +1,17 @@
 """The model of an ICD: what every backend, the codec, the vectors and the diff are made from.
 
-All objects are immutable. Positions are kept as ``source``, the mapping that the object was read from (None where a
-model was made in memory or came from the cache).
+All objects are immutable. Positions are kept as ``source``, the mapping that the object was read from (an empty one
+where a model was made in memory or came from the cache).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Any
 
 from icdgen.icd.formula import Scale
-from icdgen.icd.tree import Map
+from icdgen.icd.located import Map, unread
 from icdgen.icd.units import Unit
 
 TELECOMMAND, TELEMETRY, CONFIGURATION = "telecommand", "telemetry", "configuration"
@@ -20,17 +21,8 @@ CAN_DATA_BYTES = 8  # of a packet
 CAN_PACKETS = 256  # of an extended message
 
 
-class _Value:
-    """Pickles as a call of its class: several times faster than what ``slots=True`` comes with."""
-
-    __slots__ = ()
-
-    def __reduce__(self) -> tuple:
-        return type(self), tuple(getattr(self, name) for name in self.__slots__)
-
-
 @dataclass(frozen=True, slots=True)
-class Erratum(_Value):
+class Erratum:
     """One decision about a fault of the manual. ``changes`` is False for a note."""
 
     id: str
@@ -45,7 +37,7 @@ class Erratum(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Member(_Value):
+class Member:
     """One value of an enumeration."""
 
     value: int
@@ -53,11 +45,11 @@ class Member(_Value):
     identifier: str | None = None  # words to build identifiers from, if not the name's
     summary: str = ""
     errata: tuple[Erratum, ...] = ()
-    source: Map | None = field(default=None, compare=False, repr=False)
+    source: Map = field(default_factory=unread, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
-class Enum(_Value):
+class Enum:
     """An enumeration; members in the order of the manual."""
 
     name: str
@@ -67,11 +59,11 @@ class Enum(_Value):
     table: int | None = None
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
-    source: Map | None = field(default=None, compare=False, repr=False)
+    source: Map = field(default_factory=unread, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
-class Special(_Value):
+class Special:
     """A raw value with a meaning of its own, such as 0xFFFF for 'no time-out'."""
 
     value: int
@@ -79,7 +71,7 @@ class Special(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Limits(_Value):
+class Limits:
     """Bounds of the physical value (of the raw value where there is no scale); None where there is none."""
 
     min: Fraction | None = None
@@ -89,17 +81,7 @@ class Limits(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class BitField(_Value):
-    """A part of a field that the manual describes only in words; ``at`` counts within the field's value."""
-
-    at: int
-    bits: int
-    name: str
-    summary: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Field(_Value):
+class Field:
     """A field of a message: ``bits`` bits at bit ``at`` of the frame."""
 
     name: str
@@ -114,10 +96,9 @@ class Field(_Value):
     const: int | None = None
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
-    bitfields: tuple[BitField, ...] = ()
     summary: str = ""
     errata: tuple[Erratum, ...] = ()
-    source: Map | None = field(default=None, compare=False, repr=False)
+    source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property
     def signed(self) -> bool:
@@ -135,7 +116,7 @@ class Field(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Part(_Value):
+class Part:
     """A frame that a composite frame repeats from bit ``at``."""
 
     message: str
@@ -143,7 +124,7 @@ class Part(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Message(_Value):
+class Message:
     """A telecommand, a telemetry frame or a configuration message (one layout, two ids)."""
 
     name: str
@@ -164,7 +145,7 @@ class Message(_Value):
     contains: tuple[Part, ...] = ()
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
-    source: Map | None = field(default=None, compare=False, repr=False)
+    source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property
     def telecommand_id(self) -> int | None:
@@ -183,18 +164,18 @@ class Message(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Loggable(_Value):
+class Loggable:
     """One bit of the log mask (bit 0: least significant bit of the first byte) and the frame it selects."""
 
     bit: int
     id: int
     name: str = ""
     errata: tuple[Erratum, ...] = ()
-    source: Map | None = field(default=None, compare=False, repr=False)
+    source: Map = field(default_factory=unread, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
-class Missing(_Value):
+class Missing:
     """A message that the manual mentions and does not describe."""
 
     kind: str
@@ -204,7 +185,7 @@ class Missing(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Node(_Value):
+class Node:
     """One ICD file, errata applied. Messages of included nodes are not repeated here: see `Icd.messages_of`."""
 
     name: str
@@ -220,17 +201,17 @@ class Node(_Value):
     includes: tuple[str, ...] = ()  # names of the nodes it includes
     vocabulary: tuple[str, ...] = ()  # its own and what it includes
     units: tuple[Unit, ...] = ()  # units that this file declares
-    protocol: dict = field(default_factory=dict, hash=False)
+    protocol: dict[str, Any] = field(default_factory=dict, hash=False)
     loggable: tuple[Loggable, ...] = ()
     missing: tuple[Missing, ...] = ()
     errata: tuple[Erratum, ...] = ()  # all entries of its overlay, in order
     digest: str = ""  # SHA-256 over the file, its overlay and what it includes
     file: str = ""
-    source: Map | None = field(default=None, compare=False, repr=False)
+    source: Map = field(default_factory=unread, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
-class Icd(_Value):
+class Icd:
     """A set of nodes; a node stands after those that it includes."""
 
     nodes: tuple[Node, ...]
@@ -244,7 +225,8 @@ class Icd(_Value):
 
     def included(self, node: Node) -> tuple[Node, ...]:
         """All nodes that ``node`` includes, directly or not, each once, in the order of the set."""
-        names, queue = set(), list(node.includes)
+        queue = list(node.includes)
+        names: set[str] = set()
         while queue:
             name = queue.pop()
             if name not in names:
@@ -256,9 +238,9 @@ class Icd(_Value):
         """All messages that the node speaks: those of included nodes first, then its own."""
         return tuple(m for n in (*self.included(node), node) for m in n.messages)
 
-    def protocol_of(self, node: Node) -> dict:
+    def protocol_of(self, node: Node) -> dict[str, Any]:
         """The protocol facts that hold for the node: its own over those of what it includes."""
-        merged: dict = {}
+        merged: dict[str, Any] = {}
         for one in (*self.included(node), node):
             merged.update(one.protocol)
         return merged

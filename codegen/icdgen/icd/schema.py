@@ -6,9 +6,10 @@ import difflib
 import json
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from icdgen.diagnostics import Finding, Place
-from icdgen.icd.tree import Map, Seq
+from icdgen.icd.located import Map, Seq
 
 PATH = Path(__file__).with_name("schema.json")
 CODE = "ICD010"
@@ -40,21 +41,23 @@ def check(tree: Map, document: str) -> tuple[list[Finding], set[int]]:
 
 
 @cache
-def _schema() -> dict:
-    return json.loads(PATH.read_text(encoding="utf-8"))
+def _schema() -> dict[str, Any]:
+    schema: dict[str, Any] = json.loads(PATH.read_text(encoding="utf-8"))
+    return schema
 
 
 @cache
-def _validator(document: str):
+def _validator(document: str) -> Any:
     import jsonschema_rs
 
     schema = {"$schema": _schema()["$schema"], "$ref": f"#/$defs/{document}", "$defs": _schema()["$defs"]}
     return jsonschema_rs.validator_for(schema)
 
 
-def _locate(tree: Map, path: list) -> tuple[Map, Map, Place]:
+def _locate(tree: Map, path: list[Any]) -> tuple[Map, Map, Place]:
     """The innermost mapping around the value the path leads to, the same or the value itself, and the value's place."""
-    node, holder, owner, place = tree, tree, tree, tree.place
+    node: Any = tree
+    holder, owner, place = tree, tree, tree.place
     for step in path:
         holder = owner
         place = node.items_at[step] if isinstance(node, Seq) else node.at(step)
@@ -64,7 +67,7 @@ def _locate(tree: Map, path: list) -> tuple[Map, Map, Place]:
     return holder, owner, place
 
 
-def _explain(error, tree: Map, path: list, owner: Map, place: Place) -> list[Finding]:
+def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -> list[Finding]:
     kind = error.kind
     name = kind.name
     what = f"`{path[-1]}`" if path and isinstance(path[-1], str) else "this"
@@ -111,9 +114,9 @@ def _unknown_key(key: str, known: list[str], place: Place) -> Finding:
     return Finding(CODE, f"unknown key `{key[:60]}`", place, help)
 
 
-def _rule_at(path: list) -> dict:
+def _rule_at(path: list[Any]) -> dict[str, Any]:
     """The sub-schema that failed: the path without its last keyword, references followed."""
-    node = _schema()
+    node: Any = _schema()
     for step in path[:-1]:
         if isinstance(node, dict) and step not in node and "$ref" in node:
             node = _follow(node)
@@ -126,15 +129,16 @@ def _rule_at(path: list) -> dict:
     return node if isinstance(node, dict) else {}
 
 
-def _follow(node: dict) -> dict:
-    return _schema()["$defs"][node["$ref"].rsplit("/", 1)[1]]
+def _follow(node: dict[str, Any]) -> dict[str, Any]:
+    found: dict[str, Any] = _schema()["$defs"][node["$ref"].rsplit("/", 1)[1]]
+    return found
 
 
-def _about(rule: dict, key: str) -> str:
+def _about(rule: dict[str, Any], key: str) -> str:
     shape = rule.get("properties", {}).get(key, {})
     if "$ref" in shape:
         shape = _follow(shape)
-    return shape.get("description", "")
+    return str(shape.get("description", ""))
 
 
 def _describe(value: object) -> str:

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any, Protocol, cast
 
 from icdgen.diagnostics import Finding, Findings, Place
-from icdgen.icd.tree import Map, Seq
+from icdgen.icd.located import Map, Seq
 
 MAX_BYTES = 4_000_000
 MAX_DEPTH = 40
@@ -69,9 +70,35 @@ def parse(data: bytes, name: str) -> Map:
     elif not findings and not isinstance(tree, Map):
         findings = [Finding("ICD001", "the file is not a mapping of keys to values", Place(name),
                             "an ICD begins with `icdgen: 1`, an overlay with `errata: 1`")]  # fmt: skip
-    if findings:
+    if findings or not isinstance(tree, Map):
         raise Findings(findings)
     return tree
+
+
+class Mark(Protocol):
+    """A place in the text; all count from 0."""
+
+    index: int
+    line: int
+    column: int
+
+
+class Event(Protocol):
+    """A YAML event: what all have, and what scalars and openings of containers have beside it."""
+
+    start_mark: Mark
+    end_mark: Mark
+    anchor: str | None
+    tag: str | None
+    value: str
+    style: str | None
+    flow_style: bool | None
+
+
+class EventParser(Protocol):
+    """What gives the events of a text one by one."""
+
+    def get_event(self) -> Any: ...  # an `Event`; of which class tells what it is
 
 
 class _Builder:
@@ -90,8 +117,8 @@ class _Builder:
             place = _after(self.name, self.text[: self.text.index("\0")])
             return None, [Finding("ICD001", "the file holds a NUL character", place, "remove it")]
         root: list[object] = []
-        stack: list[list] = []  # [container, pending key, place of pending key]
-        parser = _parser(self.text)
+        stack: list[list[Any]] = []  # [container, pending key, place of pending key]
+        parser = event_parser(self.text)
         try:
             while True:
                 event = parser.get_event()
@@ -128,7 +155,7 @@ class _Builder:
             return None, self.findings
         return (root[0] if root else None), self.findings
 
-    def put(self, stack: list[list], root: list[object], value: object, event) -> None:
+    def put(self, stack: list[list[Any]], root: list[object], value: object, event: Event) -> None:
         if not stack:
             root.append(value)
             return
@@ -156,7 +183,7 @@ class _Builder:
             container.values_at[key] = self.place(event)
             top[2] = None
 
-    def scalar(self, event) -> object:
+    def scalar(self, event: Event) -> object:
         text = event.value
         if event.anchor is not None:
             self.refuse_alias(event)
@@ -178,7 +205,7 @@ class _Builder:
             return value
         return text
 
-    def plain(self, text: str, event) -> object:
+    def plain(self, text: str, event: Event) -> object:
         """The value of an unquoted scalar; ``self`` if YAML readers disagree about it."""
         if text in _WORDS:
             return _WORDS[text]
@@ -194,14 +221,14 @@ class _Builder:
             return self
         return text
 
-    def check_tag(self, event) -> None:
+    def check_tag(self, event: Event) -> None:
         if event.tag is not None and event.tag != "!":
             self.add("ICD003", f"the tag `{event.tag}` is not part of the format", event, "remove the tag")
 
-    def refuse_alias(self, event) -> None:
+    def refuse_alias(self, event: Event) -> None:
         self.add("ICD001", "anchors and aliases are not part of the format", event, "write the value out")
 
-    def place(self, event) -> Place:
+    def place(self, event: Event) -> Place:
         start, end = event.start_mark, event.end_mark
         length = end.column - start.column if end.line == start.line else 1
         return Place(self.name, start.line + 1, start.column + 1, length if length > 0 else 1)
@@ -211,7 +238,7 @@ class _Builder:
         found = _UNPRINTABLE.search(self.text)
         return _after(self.name, self.text[: found.start()]) if found else Place(self.name)
 
-    def add(self, code: str, message: str, event, help: str) -> None:
+    def add(self, code: str, message: str, event: Event, help: str) -> None:
         self.findings.append(Finding(code, message, self.place(event), help))
 
 
@@ -220,10 +247,10 @@ def _after(name: str, before: str) -> Place:
     return Place(name, before.count("\n") + 1, len(before) - before.rfind("\n"))
 
 
-def _parser(text: str):
+def event_parser(text: str) -> EventParser:
     """libyaml's event parser (ten times faster) where PyYAML was built with it."""
     try:
-        from yaml.cyaml import CParser
+        from yaml.cyaml import CParser  # type: ignore[attr-defined]
     except ImportError:
         from yaml.parser import Parser
         from yaml.reader import Reader
@@ -235,5 +262,5 @@ def _parser(text: str):
                 Scanner.__init__(self)
                 Parser.__init__(self)
 
-        return PythonParser(text)
-    return CParser(text)
+        return cast(EventParser, PythonParser(text))
+    return cast(EventParser, CParser(text))

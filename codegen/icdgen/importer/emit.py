@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from icdgen.icd import source
 from icdgen.icd.fmt import format_text, kinds, write
-from icdgen.icd.fmt.tree import Branch, Child, Text
+from icdgen.icd.fmt.commented import Branch, Child, Text
 from icdgen.importer.trees import Spelled
 
 SCHEMA_LINE = "# yaml-language-server: $schema=https://raw.githubusercontent.com/icdgen/icdgen/main/codegen/icdgen/icd/schema.json"

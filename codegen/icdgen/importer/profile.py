@@ -10,7 +10,7 @@ from pathlib import Path
 from icdgen.diagnostics import Finding, Findings
 from icdgen.icd import source
 from icdgen.icd.build import plain as without_places
-from icdgen.icd.tree import Map
+from icdgen.icd.located import Map
 from icdgen.importer.words import folded
 
 DEFAULT = Path(__file__).with_name("profile.yaml")
@@ -133,7 +133,7 @@ def _pattern(text: str, stand_ins: dict[str, str]) -> str:
 
 def find(name: str | None) -> Path | None:
     """The profile of this name: a file, or one that is shipped beside the ICDs. Raises `UserError` if there is none."""
-    from icdgen import places
+    from icdgen import shipped
     from icdgen.errors import UserError
 
     if name is None:
@@ -141,7 +141,7 @@ def find(name: str | None) -> Path | None:
     path = Path(name)
     if path.exists() or path.suffix or len(path.parts) > 1:
         return path
-    folder = places.icds() / "profiles"
+    folder = shipped.icds() / "profiles"
     shipped = folder / f"{name}.yaml"
     if shipped.is_file():
         return shipped

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from icdgen.icd import source
 from icdgen.icd.fmt import read, scalars
-from icdgen.icd.fmt.tree import Branch, Child, Text
+from icdgen.icd.fmt.commented import Branch, Child, Text
 from icdgen.importer import emit
 
 # What people add to the manual's facts.

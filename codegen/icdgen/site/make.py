@@ -7,9 +7,9 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from icdgen.backends.html import HtmlBackend
-from icdgen.checked import load_checked
 from icdgen.diagnostics import Finding
 from icdgen.generation.write import Plan, apply, plan
+from icdgen.model_cache import load_checked
 from icdgen.render import Renderer
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ class Site:
     findings: list[Finding]
     texts: dict[str, str]
     files: dict[str, str] = field(default_factory=dict)
-    inputs: dict[Path, str] = field(default_factory=dict)  # what decides the site -> its `memo.fingerprint` when read
+    inputs: dict[Path, str] = field(default_factory=dict)  # what decides the site -> its fingerprint when read
 
 
 def make(icds: list[Path], previous: str | None = None, templates: Path | None = None) -> Site:

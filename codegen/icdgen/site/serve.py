@@ -11,7 +11,7 @@ from pathlib import Path
 from threading import Lock
 from urllib.parse import unquote, urlsplit
 
-from icdgen import memo, reports
+from icdgen import fingerprints, reports
 from icdgen.errors import UserError
 from icdgen.site.make import Site, make
 
@@ -41,7 +41,7 @@ class Source:
 
     @staticmethod
     def _is_stale(site: Site) -> bool:
-        return any(memo.fingerprint(os.fspath(path)) != seen for path, seen in site.inputs.items())
+        return any(fingerprints.of_path(os.fspath(path)) != seen for path, seen in site.inputs.items())
 
 
 def handler(source: Source) -> type[BaseHTTPRequestHandler]:

@@ -12,7 +12,7 @@ from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError
 from icdgen.icd import model, source
 from icdgen.icd.formula import Scale
-from icdgen.icd.tree import Map, Seq
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.units import STANDARD, Unit
 
 _MOST = 64_000_000  # bytes
@@ -196,9 +196,6 @@ class _Reader:
             const=get("const"), special=tuple(model.Special(s["value"], s["meaning"]) for s in get("special", ())),
             limits=model.Limits(**{key: Fraction(value) for key, value in item["limits"].items()})
             if "limits" in item else None,
-            bitfields=tuple(
-                model.BitField(b["offset"], b["bits"], b["name"], b.get("summary", "")) for b in get("bitfields", ())
-            ),
             summary=get("summary", ""), errata=self.about(item), source=item,
         )  # fmt: skip
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from icdgen import __version__, places
+from icdgen import __version__, shipped
 from icdgen.diff.accepted import about_stale
 from icdgen.diff.change import ABOUT, LAYERS, TEXT, Change
 from icdgen.diff.pairs import FieldPair, MessagePair
@@ -54,7 +54,7 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
     import jinja2
 
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(places.templates() / "diff"),
+        loader=jinja2.FileSystemLoader(shipped.templates() / "diff"),
         autoescape=True,
         finalize=lambda value: printable(value) if type(value) is str else value,
         undefined=jinja2.StrictUndefined,

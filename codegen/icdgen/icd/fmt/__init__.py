@@ -6,6 +6,7 @@ from collections import Counter
 
 from icdgen.errors import UserError
 from icdgen.icd import source
+from icdgen.icd.located import Map
 
 
 def format_text(text: str, name: str) -> str:
@@ -25,7 +26,7 @@ def format_text(text: str, name: str) -> str:
     return result
 
 
-def _verify(text: str, values: source.Map, result: str, name: str) -> None:
+def _verify(text: str, values: Map, result: str, name: str) -> None:
     """A formatter that loses something is worse than none, so every change is read back."""
     from icdgen.icd.fmt.read import comments
 

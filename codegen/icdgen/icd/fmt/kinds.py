@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import cache
+from typing import Any
 
 from icdgen.icd import schema
 
@@ -20,7 +21,7 @@ class Kind:
 
     __slots__ = ("_children", "_rule", "keys", "name")
 
-    def __init__(self, name: str, rule: dict) -> None:
+    def __init__(self, name: str, rule: dict[str, Any]) -> None:
         self.name, self._rule = name, rule
         self.keys = {key: index for index, key in enumerate(rule.get("properties", {}))}
         self._children: dict[tuple[str | None, bool], Kind] = {}
@@ -47,11 +48,12 @@ def root(document: str) -> Kind:
 
 
 @cache
-def _definitions() -> dict:
-    return json.loads(schema.PATH.read_text(encoding="utf-8"))["$defs"]
+def _definitions() -> dict[str, Any]:
+    definitions: dict[str, Any] = json.loads(schema.PATH.read_text(encoding="utf-8"))["$defs"]
+    return definitions
 
 
-def _follow(name: str, rule: dict) -> tuple[str, dict]:
+def _follow(name: str, rule: dict[str, Any]) -> tuple[str, dict[str, Any]]:
     while "$ref" in rule:
         name = rule["$ref"].rsplit("/", 1)[1]
         rule = _definitions()[name]

@@ -6,7 +6,9 @@ import re
 from collections.abc import Iterator
 
 from icdgen.icd import source
-from icdgen.icd.fmt.tree import Branch, Child, Text
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
+from icdgen.icd.located import Map, Seq
+from icdgen.icd.source import Event
 
 SCHEMA_LINE = "# yaml-language-server:"
 _BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
@@ -14,7 +16,7 @@ _BLOCK = ("|", ">")
 _BEFORE_COMMENT = " \t\ufeff,[]{}\n\r\x85\u2028\u2029"
 
 
-def read(text: str, values: source.Map) -> Branch:
+def read(text: str, values: Map) -> Branch:
     """The tree of ``text``. ``values`` is what `source.parse` made of the same text: it has accepted it."""
     return _Reader(text, values).read()
 
@@ -23,27 +25,28 @@ def comments(text: str) -> list[str]:
     """Every comment of a text that `source.parse` accepts, found without building a tree."""
     from yaml import events
 
-    found, reached = [], 0
-    parser = source._parser(text)
+    found: list[str] = []
+    reached = 0
+    parser = source.event_parser(text)
     while True:
         event = parser.get_event()
-        start = event.start_mark.index
+        kind, start = type(event), event.start_mark.index
         found += [text[at:end] for at, end in _comments_in(text, reached, start)]
         reached = max(reached, start)
-        if type(event) is events.ScalarEvent:
+        if kind is events.ScalarEvent:
             found += _header_comment(text, event) if event.style in _BLOCK else []
             reached = max(reached, event.end_mark.index)
-        elif type(event) is events.StreamEndEvent:
+        elif kind is events.StreamEndEvent:
             return [comment.rstrip() for comment in found]
 
 
 class _Reader:
     """One pass over the events, with the comments of the gap before each event dealt out to the tree."""
 
-    def __init__(self, text: str, values: source.Map) -> None:
+    def __init__(self, text: str, values: Map) -> None:
         self.text = text
         self.values = _scalars(values)
-        self.root: Branch | None = None
+        self.root = Branch(True, False, 0)
         self.stack: list[Branch] = []
         self.pending: list[str] = []  # comments that wait for the element they stand above
         self.reached = 0  # everything before this index is done with
@@ -61,7 +64,7 @@ class _Reader:
             events.MappingEndEvent: self.close,
             events.SequenceEndEvent: self.close,
         }
-        parser = source._parser(self.text)
+        parser = source.event_parser(self.text)
         while True:
             event = parser.get_event()
             kind = type(event)
@@ -77,9 +80,9 @@ class _Reader:
 
     # Elements
 
-    def scalar(self, event) -> None:
+    def scalar(self, event: Event) -> None:
         top = self.stack[-1]
-        key = top.mapping and (not top.children or top.children[-1].value is not None)
+        key = top.mapping and (not top.children or top.children[-1].value is not NOTHING)
         value = event.value if key else next(self.values)
         if key and not event.style:
             value = None  # what a plain key means is for the writer to find out
@@ -96,13 +99,13 @@ class _Reader:
         self.reached = max(self.reached, end)
         self.last, self.last_end = child, end
 
-    def open_mapping(self, event) -> None:
+    def open_mapping(self, event: Event) -> None:
         self.open(event, True)
 
-    def open_sequence(self, event) -> None:
+    def open_sequence(self, event: Event) -> None:
         self.open(event, False)
 
-    def open(self, event, mapping: bool) -> None:
+    def open(self, event: Event, mapping: bool) -> None:
         branch = Branch(mapping, bool(event.flow_style), event.start_mark.column)
         if not self.stack:
             self.root = branch
@@ -113,7 +116,7 @@ class _Reader:
         if branch.flow:
             self.last, self.last_end = None, event.end_mark.index
 
-    def close(self, event) -> None:
+    def close(self, event: Event) -> None:
         branch = self.stack.pop()
         if not branch.flow:
             return
@@ -131,7 +134,7 @@ class _Reader:
             if isinstance(value, Text) or value.flow:
                 child.before += self.take()
         else:
-            child = Child(None, value)
+            child = Child(NOTHING, value)
             self.begin(child)
         return child
 
@@ -159,7 +162,7 @@ class _Reader:
 
     # Comments
 
-    def gap(self, event, closing: bool) -> None:
+    def gap(self, event: Event, closing: bool) -> None:
         """Deals out the comments between ``reached`` and the event."""
         closing = closing and not self.stack[-1].flow
         behind = self.reached
@@ -169,7 +172,7 @@ class _Reader:
             breaks = self.breaks(behind, start)
             target = self.pending
             if breaks == 0 and behind == self.reached and self.follows_something(start):
-                target = self.last.trailing
+                target = self.last.trailing if self.last else target
             elif breaks and closing and not self.pending:
                 column = start - _line_start(self.text, behind, start)
                 holder = self.holder(column if limit is None else min(column, limit), event.start_mark.column)
@@ -209,7 +212,7 @@ def _comments_in(text: str, at: int, end: int) -> Iterator[tuple[int, int]]:
         at = stop
 
 
-def _header_comment(text: str, event) -> list[str]:
+def _header_comment(text: str, event: Event) -> list[str]:
     """The comment behind the ``|`` or ``>`` of a block scalar."""
     at = event.start_mark.index
     header = text[at : _line_end(text, at)]
@@ -237,10 +240,10 @@ def _paragraphs(lines: list[str]) -> list[str]:
 
 def _scalars(value: object) -> Iterator[object]:
     """The scalar values of a tree in the order of the file."""
-    if isinstance(value, source.Map):
+    if isinstance(value, Map):
         for item in value.values():
             yield from _scalars(item)
-    elif isinstance(value, source.Seq):
+    elif isinstance(value, Seq):
         for item in value:
             yield from _scalars(item)
     else:

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 from icdgen.diagnostics import Findings
 from icdgen.icd import source
-from icdgen.icd.fmt.tree import Text
+from icdgen.icd.fmt.commented import Text
 
 WIDTH = 120
 BLOCK_HEADERS = frozenset({"|", "|-", ">"})

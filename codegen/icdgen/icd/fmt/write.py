@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from icdgen.icd.fmt import scalars
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
 from icdgen.icd.fmt.kinds import BLOCKS, INLINE, ROWS, Kind
 from icdgen.icd.fmt.read import SCHEMA_LINE
 from icdgen.icd.fmt.rows import aligned
 from icdgen.icd.fmt.scalars import WIDTH
-from icdgen.icd.fmt.tree import Branch, Child, Text
 
 LONGEST_ROW = 160  # of a table whose rows may also be written in block style
 MOST_ENTRIES = 6  # of a mapping that the schema does not know and that is written on one line
@@ -32,7 +32,7 @@ def _sections(lines: list[str], root: Branch, kind: Kind) -> None:
     """The top level: a blank line before and after each section in block style; the first belongs to the head."""
     sections = after_section = 0
     for child in ordered(root, kind):
-        is_section = isinstance(child.value, Branch) and _is_block(child, kind)
+        is_section = isinstance(child.value, Branch) and _is_block(child, child.value, kind)
         if sections and (is_section or after_section):
             lines.append("")
         after_section = is_section and sections
@@ -40,10 +40,10 @@ def _sections(lines: list[str], root: Branch, kind: Kind) -> None:
         _entry(lines, child, kind, 0)
 
 
-def _is_block(child: Child, kind: Kind) -> bool:
+def _is_block(child: Child, value: Branch, kind: Kind) -> bool:
     column = len(scalars.key(child.key, False)) + 2
-    inner = kind.child(scalars.name(child.key), child.value.mapping)
-    return _one_line(child.value, inner, column) is None and _wrapped(child.value, column) is None
+    inner = kind.child(scalars.name(child.key), value.mapping)
+    return _one_line(value, inner, column) is None and _wrapped(value, column) is None
 
 
 def ordered(branch: Branch, kind: Kind) -> list[Child]:
@@ -114,7 +114,8 @@ def _items(lines: list[str], branch: Branch, kind: Kind, indent: int) -> None:
     if rows is not None:
         for child, row in zip(branch.children, rows, strict=True):
             trailing = "  " + child.trailing[-1] if child.trailing else ""
-            _comments(lines, [*child.before, *child.trailing[:-1], *child.value.comments()], indent)
+            inside = child.value.comments() if isinstance(child.value, Branch) else []
+            _comments(lines, [*child.before, *child.trailing[:-1], *inside], indent)
             lines.append(f"{dash} {row}{trailing}")
         return
     for number, child in enumerate(branch.children):
@@ -126,8 +127,8 @@ def _items(lines: list[str], branch: Branch, kind: Kind, indent: int) -> None:
 
 def _rows(branch: Branch, kind: Kind, indent: int) -> list[str] | None:
     """The aligned rows of a table; None if the sequence is none or its rows are better read in block style."""
-    items = [child.value for child in branch.children]
-    if not all(isinstance(item, Branch) and item.mapping and item.children for item in items):
+    items = [c.value for c in branch.children if isinstance(c.value, Branch) and c.value.mapping and c.value.children]
+    if len(items) < len(branch.children):
         return None
     inner = kind.child(None, True)
     if inner.name in BLOCKS:
@@ -183,9 +184,10 @@ def _inline(branch: Branch, kind: Kind) -> bool:
 
 def _wrapped(branch: Branch, column: int) -> list[str] | None:
     """A list of short scalars over several lines, hanging from its bracket."""
-    if branch.mapping or branch.commented() or not all(isinstance(c.value, Text) for c in branch.children):
+    texts = [child.value for child in branch.children if isinstance(child.value, Text)]
+    if branch.mapping or branch.commented() or len(texts) < len(branch.children):
         return None
-    items = [scalars.flow(child.value) for child in branch.children]
+    items = [scalars.flow(text) for text in texts]
     if any(len(item) > SHORT_ITEM for item in items):
         return None
     lines = ["["]
@@ -221,4 +223,4 @@ def _cells(branch: Branch, kind: Kind) -> dict[str, str]:
 def _kind(kind: Kind, child: Child) -> Kind:
     if isinstance(child.value, Text):
         return kind
-    return kind.child(scalars.name(child.key) if child.key else None, child.value.mapping)
+    return kind.child(None if child.key is NOTHING else scalars.name(child.key), child.value.mapping)

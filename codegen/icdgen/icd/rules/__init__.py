@@ -36,7 +36,7 @@ from icdgen.icd.rules.rule import REGISTERED, Rule
 from icdgen.icd.rules.wording import close_to
 
 ALL: dict[str, Rule] = dict(sorted(REGISTERED.items()))
-_RUN = sorted((r for r in ALL.values() if r.check), key=lambda r: r.last)
+_RUN = sorted(ALL.values(), key=lambda r: r.last)
 
 
 class UnknownRule(LookupError):
@@ -54,7 +54,7 @@ def check(icd: Icd, applied: Iterable[Applied] = (), complete: bool = True) -> l
     for rule in _RUN:
         if rule.whole and not complete:
             continue
-        for fault in rule.check(context):
+        for fault in rule.check(context) if rule.check else ():
             context.raised.append((rule.code, fault))
             if (rule.code, id(fault.owner)) not in accepted:
                 findings.append(Finding(rule.code, fault.message, fault.place, fault.help, rule.severity))

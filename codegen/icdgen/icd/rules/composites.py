@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diagnostics import Place
+from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Message, Node, Part
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import close_to, line_of, listing, quote
-from icdgen.icd.tree import Map
 
 _KEYS = ("bits", "type", "enum", "unit", "formula")
 
@@ -94,7 +94,9 @@ def _differences(field: Field, twin: Field, frame: Message) -> Iterator[Fault]:
 def list_agrees(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
         listed = message.source.get("listed")
-        for key, value in listed.items() if isinstance(listed, Map) else ():
+        if not isinstance(listed, Map):
+            continue
+        for key, value in listed.items():
             held = message.source.get(key)
             if held != value:
                 what = f"the {key.replace('_', ' ')} {quote(value)}"

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import Any
 
 from icdgen.icd.errata import Applied
+from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.icd.rules.rule import Fault
-from icdgen.icd.tree import Map
 
 # Keys of a field that only few fields have.
 RARE = ("enum", "unit", "formula", "formula_for", "const", "special", "min", "max", "above", "below", "bitfields")
@@ -36,7 +37,7 @@ class Context:
             for key in row[0].source:
                 if key in having:
                     having[key].append(row)
-        self.declared: list | None = None  # what backends declare; see `declarations`
+        self.declared: list[Any] | None = None  # what backends declare; see `declarations`
         self._scopes: dict[int, tuple[Node, ...]] = {}
 
     def scope(self, node: Node) -> tuple[Node, ...]:
@@ -52,9 +53,9 @@ class Context:
         """All messages that the node speaks."""
         return [m for n in self.scope(node) for m in n.messages]
 
-    def protocol_of(self, node: Node) -> dict:
+    def protocol_of(self, node: Node) -> dict[str, Any]:
         """The protocol facts that hold for the node: its own over those of what it includes."""
-        merged: dict = {}
+        merged: dict[str, Any] = {}
         for one in self.scope(node):
             merged.update(one.protocol if isinstance(one.protocol, dict) else {})
         return merged

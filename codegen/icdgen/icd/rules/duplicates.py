@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Iterator
+from typing import TypeVar
 
+from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Message, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import line_of, quote
-from icdgen.icd.tree import Map
 from icdgen.icd.units import STANDARD
 
+T = TypeVar("T")
 
-def _twice(items: Iterable, key: Callable[[object], Hashable]) -> Iterator[tuple]:
+
+def _twice(items: Iterable[T], key: Callable[[T], Hashable]) -> Iterator[tuple[T, T]]:
     """(first, later) for every item whose key was there before."""
-    seen: dict = {}
+    seen: dict[Hashable, T] = {}
     for item in items:
         value = key(item)
         if value in seen:
@@ -23,7 +26,7 @@ def _twice(items: Iterable, key: Callable[[object], Hashable]) -> Iterator[tuple
             seen[value] = item
 
 
-def in_scope(ctx: Context, node: Node, items: Callable[[Node], Iterable]) -> list[tuple[Node, object]]:
+def in_scope(ctx: Context, node: Node, items: Callable[[Node], Iterable[T]]) -> list[tuple[Node, T]]:
     """Items of the node and of what it includes, with the node that declares them."""
     return [(n, item) for n in ctx.scope(node) for item in items(n)]
 

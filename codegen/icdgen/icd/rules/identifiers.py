@@ -7,11 +7,11 @@ from collections.abc import Iterator
 
 from icdgen.backends import Identifier
 from icdgen.diagnostics import Place
+from icdgen.icd.located import Map
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.declarations import TWINS, declared
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import line_of, listing, quote
-from icdgen.icd.tree import Map
 
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
@@ -37,7 +37,7 @@ class _Clashes:
     """Joins what several languages say of the same things into one finding."""
 
     def __init__(self) -> None:
-        self.found: dict[tuple, tuple[Identifier, Identifier | None, dict[str, list[str]]]] = {}
+        self.found: dict[tuple[int, ...], tuple[Identifier, Identifier | None, dict[str, list[str]]]] = {}
 
     def add(self, language: str, one: Identifier, other: Identifier | None = None) -> None:
         """``other`` is what ``one`` clashes with. The first of several names that a language makes of it is kept."""
@@ -78,6 +78,8 @@ def no_clash(ctx: Context) -> Iterator[Fault]:
             if not (reported and reported & {id(first.source), id(one.source)}):
                 found.add(language, one, first)
     for one, other, texts in found:
+        if other is None:
+            continue
         if other.source is not None and (one.source is None or _place(ctx, other) > _place(ctx, one)):
             one, other = other, one
         place = _place(ctx, one)

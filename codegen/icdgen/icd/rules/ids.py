@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from icdgen.icd.located import Map
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.duplicates import is_news, together
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import line_of, listing, quote
-from icdgen.icd.tree import Map
 
 # kind -> the keys of its ids and the direction each belongs to
 KEYS = {
@@ -60,10 +60,17 @@ def ids_in_range(ctx: Context) -> Iterator[Fault]:
         for use in (u for n in ctx.scope(node) for u in _uses(n)):
             first, last = ranges.get(use.direction, BYTE)
             if not first <= use.id <= last:
-                other = next((d for d, (a, b) in ranges.items() if a <= use.id <= b), None)
-                help = f"{use.id} is a {other} id" if other else f"correct `{use.key}`"
+                help = _remedy(use, ranges)
                 message = f"{use.direction} ids go from {first} to {last}: {use.id} is not one of them"
                 yield Fault(use.source, use.source.at(use.key), message, help)
+
+
+def _remedy(use: Use, ranges: dict[str, tuple[int, int]]) -> str:
+    if not ranges:
+        return f"correct `{use.key}`: an id is one byte, longer ones cannot be described"
+    other = next((d for d, (first, last) in ranges.items() if first <= use.id <= last), None)
+    wrong = f"{use.id} is a {other} id: correct `{use.key}` or `kind`" if other else f"correct `{use.key}`"
+    return f"{wrong}, or the range in `protocol: message_id`"
 
 
 @rule("ICD059")

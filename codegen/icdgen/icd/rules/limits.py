@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import NamedTuple
 
-from icdgen.icd.model import Field
+from icdgen.icd.model import Field, Limits
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.values import NUMBERS
@@ -38,7 +38,7 @@ class Bounds(NamedTuple):
 
 def bounds(field: Field) -> Bounds:
     """The narrowest interval that the limits of the field describe."""
-    limits = field.limits
+    limits = field.limits or Limits()
     lows = ((v, is_open) for v, is_open in ((limits.min, False), (limits.above, True)) if v is not None)
     highs = ((v, is_closed) for v, is_closed in ((limits.max, True), (limits.below, False)) if v is not None)
     low, above = max(lows, default=(None, False))

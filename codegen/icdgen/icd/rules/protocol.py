@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TypeGuard
 
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import line_of, quote
-from icdgen.icd.tree import Map, Seq
 
 CHECKED = b"123456789"  # what the check value of a CRC is computed over, by convention
 MAX_WIDTH = 64
@@ -58,7 +59,7 @@ def _forms_agree(address: Map, key: str, bit: int) -> Iterator[Fault]:
         yield Fault(address, address.at("binary"), message, f"{_hex(eight)} is 0b{eight:08b}")
 
 
-def _is_byte(value: object) -> bool:
+def _is_byte(value: object) -> TypeGuard[int]:
     return isinstance(value, int) and 0 <= value <= 255
 
 
@@ -75,10 +76,11 @@ def _hex(value: int | None) -> str:
 def crc_checks(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         for section in sections(node):
-            width, polynomial, wanted = (section.get(k) for k in ("width", "polynomial", "check"))
-            init, xor_out = (section.get(k, 0) for k in ("init", "xor_out"))
-            if not all(isinstance(v, int) for v in (width, polynomial, wanted, init, xor_out)):
+            values = [section.get(k) for k in ("width", "polynomial", "check")]
+            numbers = [v for v in (*values, section.get("init", 0), section.get("xor_out", 0)) if isinstance(v, int)]
+            if len(numbers) != 5:
                 continue
+            width, polynomial, wanted, init, xor_out = numbers
             if not 1 <= width <= MAX_WIDTH:
                 continue
             if any(_is_wide(section.get(key), width) for key in ("polynomial", "init", "xor_out", "check")):

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import ceil
 
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.ids import KEYS
 from icdgen.icd.rules.protocol_sizes import numbers, section_of
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import count, listing, quote
-from icdgen.icd.tree import Map, Seq
 
 BYTE = 255
 CRC_WIDTHS = (8, 32)  # that generated code computes
@@ -103,7 +103,7 @@ def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
 
 def _widths(can: Map) -> dict[str, int]:
     rows = [row for row in mappings(can.get("identifier")) if isinstance(row.get("bits"), int)]
-    return {row.get("role", row.get("name")): row["bits"] for row in rows}
+    return {str(row.get("role", row.get("name"))): row["bits"] for row in rows}
 
 
 def _fits(owner: Map, key: str, bits: int | None, what: str) -> Iterator[Fault]:
@@ -158,7 +158,9 @@ def _checksums(node: Node) -> Iterator[Fault]:
                 yield Fault(crc, crc.at(key), f"`{key}` does not fit {width} bits", f"correct `{key}` or `width`")
         for direction in ("telecommand", "telemetry"):
             form = crc.get(direction)
-            extra = form.get("extra_bytes") if isinstance(form, Map) else None
+            if not isinstance(form, Map):
+                continue
+            extra = form.get("extra_bytes")
             if isinstance(extra, int) and extra * 8 < width:
                 message = f"a CRC of {width} bits does not fit {count(extra, 'byte')}"
                 yield Fault(form, form.at("extra_bytes"), message, "correct `extra_bytes` or `width`")
@@ -187,7 +189,7 @@ def identifier_is_whole(ctx: Context) -> Iterator[Fault]:
             continue
         roles: set[str] = set()
         for row in mappings(parts):
-            role = row.get("role", row.get("name"))
+            role = str(row.get("role", row.get("name")))
             if role in ROLES and role in roles:
                 yield Fault(
                     row, row.at("role" if "role" in row else "name"), f"a second {role}", "each role stands once"
@@ -211,7 +213,7 @@ def times_are_whole(ctx: Context) -> Iterator[Fault]:
             yield Fault(time, time.at("bits"), message, "correct `bits`, or leave the section out")
         named: set[str] = set()
         for row in mappings(time["parts"]):
-            name = row.get("name")
+            name = str(row.get("name"))
             if name in named:
                 yield Fault(row, row.at("name"), f"a second {name}", "each part stands once")
             named.add(name)

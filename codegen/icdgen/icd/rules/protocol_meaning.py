@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import CAN_DATA_BYTES, TELECOMMAND, TELEMETRY, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.ids import KEYS
@@ -11,7 +12,6 @@ from icdgen.icd.rules.protocol_limits import in_force
 from icdgen.icd.rules.protocol_sizes import numbers, section_of
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import count, line_of, listing, quote
-from icdgen.icd.tree import Map, Seq
 
 ACKNOWLEDGE_ROLES = ("id", "error")
 # what is sent in each direction with data -> the keys of its message types, and those of messages of several packets

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TypeVar
 
 from icdgen.diagnostics import Place
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import close_to, quote
-from icdgen.icd.tree import Map, Seq
+
+T = TypeVar("T")
 
 MESSAGES = ("message", "packet", "id_of", "stop_request", "set_by", "names")  # keys that name messages
 FIELDS = ("id", "until", "until_clear", "error", "parameter")  # keys that, beside `message`, name fields of it
@@ -36,7 +39,9 @@ def named_things_exist(ctx: Context) -> Iterator[Fault]:
             for name, keys in MEMBERS:
                 enum = section.get(name)
                 known = enums.get(enum) if isinstance(enum, str) else None
-                for key in keys if known is not None else ():
+                if known is None:
+                    continue
+                for key in keys:
                     for value, place in _values(section, key, int):
                         if value not in known:
                             message = f"the enumeration {quote(enum)} has no member {value}"
@@ -70,12 +75,14 @@ def message_types_exist(ctx: Context) -> Iterator[Fault]:
         can = protocol.get("can") if isinstance(protocol, Map) else None
         types = can.get("message_types") if isinstance(can, Map) else None
         values = types.get("values") if isinstance(types, Map) else None
-        if not isinstance(values, Seq):
+        if not isinstance(can, Map) or not isinstance(values, Seq):
             continue
         known = {row["name"] for row in values if isinstance(row, Map) and isinstance(row.get("name"), str)}
         for direction in ("telecommand", "telemetry"):
             section = can.get(direction)
-            for key in TYPES if isinstance(section, Map) else ():
+            if not isinstance(section, Map):
+                continue
+            for key in TYPES:
                 name = section.get(key)
                 if isinstance(name, str) and name not in known:
                     yield Fault(
@@ -88,7 +95,7 @@ def _verbatim(name: str, known: set[str]) -> str:
     return f"did you mean {quote(close)}?" if close else "names are the manual's, to the letter"
 
 
-def _values(section: Map, key: str, kind: type) -> Iterator[tuple[object, Place]]:
+def _values(section: Map, key: str, kind: type[T]) -> Iterator[tuple[T, Place]]:
     """The value of a key, or each of its values, with its place."""
     value = section.get(key)
     if isinstance(value, Seq):

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import count as counted
-from icdgen.icd.tree import Map, Seq
 
 CAN_IDENTIFIER_BITS = 29  # of an extended CAN frame
 
@@ -56,7 +56,7 @@ def sizes_agree(ctx: Context) -> Iterator[Fault]:
         if can is not None:
             yield from _identifier(can)
         extended = section_of(node, "can", "extended")
-        if extended is not None:
+        if can is not None and extended is not None:
             yield from _product(extended, "max_bytes", "max_packets", "data_bytes")
             yield from _packets_left(can, extended)
         files = section_of(node, "file_transfer")
@@ -80,8 +80,9 @@ def _identifier(can: Map) -> Iterator[Fault]:
     if not isinstance(parts, Seq):
         return
     widths = [part.get("bits") for part in parts if isinstance(part, Map)]
-    if all(isinstance(width, int) for width in widths) and sum(widths) != CAN_IDENTIFIER_BITS:
-        message = f"the parts of the identifier have {sum(widths)} bits in all, not {CAN_IDENTIFIER_BITS}"
+    known = [width for width in widths if isinstance(width, int)]
+    if len(known) == len(widths) and sum(known) != CAN_IDENTIFIER_BITS:
+        message = f"the parts of the identifier have {sum(known)} bits in all, not {CAN_IDENTIFIER_BITS}"
         yield Fault(can, can.at("identifier"), message, "correct `bits` of a part")
 
 
@@ -113,7 +114,9 @@ def assumptions_are_about_something(ctx: Context) -> Iterator[Fault]:
     owners += [message.source for message, _ in ctx.messages]
     for owner in owners:
         assumptions = owner.get("assumptions")
-        for key in assumptions if isinstance(assumptions, Map) else ():
+        if not isinstance(assumptions, Map):
+            continue
+        for key in assumptions:
             if key == "assumptions" or key not in owner:
                 message = f"`{key}` is said to be assumed, but there is no such key beside it"
                 yield Fault(owner, assumptions.keys_at[key], message, "name a key of this section")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from icdgen.diagnostics import Place
-from icdgen.icd.tree import Map
+from icdgen.icd.located import Map
 
 if TYPE_CHECKING:
     from icdgen.icd.rules.context import Context
@@ -53,11 +53,11 @@ class Rule:
 REGISTERED: dict[str, Rule] = {}
 
 
-def rule(code: str, **properties: object) -> Callable[[Check], Check]:
+def rule(code: str, *, severity: str = "error", whole: bool = False, last: bool = False) -> Callable[[Check], Check]:
     """Registers the decorated function under ``code``; its module's name is the theme."""
 
     def register(check: Check) -> Check:
-        add(Rule(code, check.__module__.rpartition(".")[2], check, **properties))
+        add(Rule(code, check.__module__.rpartition(".")[2], check, severity, whole, last))
         return check
 
     return register

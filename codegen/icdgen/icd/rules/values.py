@@ -17,7 +17,7 @@ def member_fits(ctx: Context) -> Iterator[Fault]:
     largest = {id(e): max(e.members, key=lambda m: m.value, default=None) for n in ctx.icd.nodes for e in n.enums}
     for field, _, _ in ctx.having["enum"]:
         top = largest.get(id(field.enum)) if field.enum else None
-        if top is not None and top.value > field.raw_max:
+        if field.enum and top is not None and top.value > field.raw_max:
             unfit = sum(m.value > field.raw_max for m in field.enum.members)
             others = f" (nor do {unfit - 1} others)" if unfit > 2 else " (nor does another)" if unfit == 2 else ""
             member = f"{quote(top.name)} = {top.value} of {quote(field.enum.name)}"
@@ -54,12 +54,12 @@ def special_fits(ctx: Context) -> Iterator[Fault]:
             seen.add(value)
 
 
-def _misfit(field: Field, value: int) -> tuple[str, str] | None:
+def _misfit(field: Field, value: int | None) -> tuple[str, str] | None:
     """What keeps the field from holding the raw value, and what to do; None if it fits."""
     if field.type not in NUMBERS:
         what = f"of {quote(field.name)} has no meaning for type `{field.type}`"
         return what, "only uint, int and enum fields have it"
-    if field.raw_min <= value <= field.raw_max:
+    if value is None or field.raw_min <= value <= field.raw_max:
         return None
     shown = str(value) if abs(value) < 1 << 64 else f"of {value.bit_length()} bits"
     what = f"{shown} does not fit {quote(field.name)}"

@@ -1,0 +1,76 @@
+"""What a file holds, in 64 digits: by these we know whether an input, an output or the tool itself is still what it was.
+
+This module is on the path of every start: it imports next to nothing.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+import sys
+from hashlib import sha256
+
+ABSENT = "-"
+UNKNOWN = "?"  # what can't be read, or not twice; never equal to anything
+
+
+def of_path(path: str) -> str:
+    """SHA-256 of a file, of a folder's list of names, or `ABSENT`, or `UNKNOWN`."""
+    try:
+        mode = os.stat(path).st_mode
+        if stat.S_ISREG(mode):
+            with open(path, "rb") as file:
+                return sha256(file.read()).hexdigest()
+        if stat.S_ISDIR(mode):
+            return sha256("\0".join(sorted(os.listdir(path))).encode("utf-8", "surrogateescape")).hexdigest()
+    except (FileNotFoundError, NotADirectoryError):
+        return ABSENT
+    except OSError:
+        return UNKNOWN
+    return UNKNOWN
+
+
+_known: list[str] = []  # the digest of the tool, once it is needed
+
+
+def of_tool() -> str:
+    """Digest of everything that decides what the tool does: its own files, its templates and runtimes, the interpreter, jinja2.
+
+    As of when it is first asked for: what changes later is not what runs.
+    """
+    if not _known:
+        _known.append(_digest())
+    return _known[0]
+
+
+def _digest() -> str:
+    package = os.path.dirname(os.path.abspath(__file__))
+    data = os.path.join(package, "data")
+    root = data if os.path.isdir(data) else os.path.dirname(os.path.dirname(package))
+    digest = sha256(sys.version.encode())
+    for top in (package, os.path.join(root, "templates"), os.path.join(root, "runtime")):
+        for path in sorted(_files(top, data)):
+            digest.update(f"\0{path}\0{of_path(path)}".encode("utf-8", "surrogateescape"))
+    for place in sys.path:
+        try:
+            status = os.stat(os.path.join(place, "jinja2", "__init__.py"))
+        except OSError:
+            continue
+        digest.update(f"{status.st_size} {status.st_mtime_ns}".encode())
+        break
+    return digest.hexdigest()
+
+
+def _files(top: str, without: str) -> list[str]:
+    """Every file below a folder, whatever it is called; not what Python and other tools leave there."""
+    found = []
+    try:
+        with os.scandir(top) as entries:
+            for entry in entries:
+                if not entry.is_dir():
+                    found.append(entry.path)
+                elif entry.name != "__pycache__" and entry.name[0] != "." and entry.path != without:
+                    found += _files(entry.path, without)
+    except FileNotFoundError:  # not every folder of sources is there
+        return []
+    return found

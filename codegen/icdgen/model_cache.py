@@ -1,0 +1,29 @@
+"""Loads ICDs with all checks, or takes the model of an earlier run over the very same files."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from icdgen import cache
+from icdgen.icd.loaded import Loaded
+
+KIND = "models"
+
+
+def load_checked(paths: list[Path]) -> Loaded:
+    """Like `icdgen.icd.load.load`. A remembered model carries no positions and comes without texts."""
+    from icdgen.icd import model_json
+
+    name = cache.key("model", os.getcwd(), *(str(path) for path in paths))
+    data = cache.recall(KIND, name)
+    remembered = model_json.read(data) if data is not None else None
+    if remembered is not None:
+        return Loaded(remembered[0], [], remembered[1])
+    from icdgen.icd.load import load
+
+    loaded = load(paths)
+    if not loaded.findings:
+        files = {os.path.abspath(path): seen for path, seen in loaded.inputs.items()}
+        cache.remember(KIND, name, model_json.text(loaded.icd, loaded.inputs), files)
+    return loaded
