@@ -83,7 +83,7 @@ def scripts(draw) -> dict:
     bus = draw(st.sampled_from(["uart", "i2c", "can"]))
     heard = {"uart": from_uart(), "i2c": from_i2c(), "can": from_can()}[bus]
     rows, now = [], 0
-    for row in draw(st.lists(asked() | heard | heard | st.just({}), max_size=25)):
+    for row in draw(st.lists(asked() | heard | heard | st.just({}) | st.just({"cancel": True}), max_size=25)):
         now += draw(st.sampled_from([0, 1, 5, 10, 49, 60, 100, 150]))
         rows.append({"at": now, **row})
     return {"op": "client", "node": "cubeacp", "bus": bus, "crc": draw(st.booleans()), "address": OURS, "settings": QUICK,

@@ -71,6 +71,8 @@ def _client_step(tested: Client, row: Answer) -> Answer:
             events = tested.start(now, Request("telemetry", id))
         elif "receive" in row:
             events = _receive(tested, now, row["receive"])
+        elif flag(row, "cancel"):
+            tested.cancel()
         else:
             events = tested.tick(now)
     except BusyError:
