@@ -405,7 +405,8 @@ void hand_decode_206(cubeacp_adcs_configuration_t *restrict m, const uint8_t *re
     m->magnetometer_mode = b[375] >> 6;
     m->raw_magnetometer_selection = b[376] & 0x03;
     m->estimation_transition_on_rate_sensor_error = (b[376] & 0x04) != 0;
-    m->cam1_and_cam2_sampling_period = b[377];
+    m->cam1_period = b[377] & 0x0F;
+    m->cam2_period = b[377] >> 4;
     memcpy(&m->incl_coefficient, b + 378, 2);
     memcpy(&m->raan_coefficient, b + 380, 2);
     memcpy(&m->ecc_coefficient, b + 382, 2);
@@ -614,7 +615,7 @@ void hand_encode_206(const cubeacp_adcs_configuration_t *restrict m, uint8_t *re
                        m->nadir_sensor_terminator_test << 4 | m->automatic_magnetometer_recovery << 5 |
                        m->magnetometer_mode << 6);
     b[376] = (uint8_t)(m->raw_magnetometer_selection | m->estimation_transition_on_rate_sensor_error << 2);
-    b[377] = m->cam1_and_cam2_sampling_period;
+    b[377] = (uint8_t)(m->cam1_period | (m->cam2_period << 4));
     memcpy(b + 378, &m->incl_coefficient, 2);
     memcpy(b + 380, &m->raan_coefficient, 2);
     memcpy(b + 382, &m->ecc_coefficient, 2);

@@ -29,7 +29,10 @@ def test_the_generator_knows_no_device():
         names |= {data["node"]["name"], *data.get("vocabulary", [])} - {"common", "bootloader"}
     word = re.compile(rf"(?<![a-z])(?:{'|'.join(sorted(names | {'CubeSpace'}))})", re.IGNORECASE)
     files = [
-        p for top in ("codegen", "templates") for p in (ROOT / top).rglob("*") if p.is_file() and p.suffix != ".pyc"
+        p
+        for top in ("codegen", "templates", "runtime")
+        for p in (ROOT / top).rglob("*")
+        if p.is_file() and p.suffix != ".pyc"
     ]
     assert [f"{p.relative_to(ROOT)}: {m.group()}" for p in files if (m := word.search(p.read_text("utf-8")))] == []
 
@@ -43,14 +46,14 @@ def test_our_python_is_linted_and_formatted(command):
 def test_no_file_of_ours_outgrows_a_head():
     large = {
         str(p.relative_to(ROOT)): n
-        for top in ("codegen", "templates")
+        for top in ("codegen", "templates", "runtime")
         for p in (ROOT / top).rglob("*")
-        if p.suffix in (".py", ".j2") and (n := len(p.read_text("utf-8").splitlines())) > 450
+        if p.suffix in (".py", ".j2", ".h", ".rs") and (n := len(p.read_text("utf-8").splitlines())) > 450
     }
     assert large == {}
 
 
-def test_a_wheel_holds_templates_icds_and_schemas_and_works_alone(tmp_path):
+def test_a_wheel_holds_templates_runtimes_icds_and_schemas_and_works_alone(tmp_path):
     subprocess.run(
         [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", str(tmp_path), str(ROOT)],
         check=True,
@@ -65,3 +68,4 @@ def test_a_wheel_holds_templates_icds_and_schemas_and_works_alone(tmp_path):
     assert result.returncode == 0, result.stderr
     assert (tmp_path / "out" / "cubeacp.h").is_file()
     assert Path(site, "icdgen", "icd", "schema.json").is_file()
+    assert [path for path in site.rglob("*") if "testee" in path.name] == []

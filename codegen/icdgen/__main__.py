@@ -20,10 +20,10 @@ def _main() -> None:
     arguments = sys.argv[1:]
     try:
         name = cache.key("run", os.getcwd(), *arguments)
-        note = cache.holds("runs", name)
+        note = cache.recall("runs", name)
     except OSError:
         name, note = "", None
-    if note is not None and _said(note):
+    if note is not None and _said(note.decode("utf-8", "surrogateescape")):
         sys.exit(0)
     import gc
 

@@ -43,7 +43,8 @@ class _Commands(click.Group):
         if name not in _COMMANDS:
             return None
         module = import_module(f"icdgen.commands.{_COMMANDS[name]}")
-        return getattr(module, f"{name}_" if iskeyword(name) else name)
+        command: click.Command = getattr(module, f"{name}_" if iskeyword(name) else name)
+        return command
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         if args and args[0] not in (*_COMMANDS, "--help", "-h", "--version"):
@@ -68,7 +69,8 @@ class _Commands(click.Group):
 def icdgen(ctx: click.Context) -> None:
     """Code, golden vectors and documentation from validated device ICDs."""
     if ctx.invoked_subcommand is None:
-        ctx.invoke(icdgen.get_command(ctx, _DEFAULT))
+        if command := icdgen.get_command(ctx, _DEFAULT):
+            ctx.invoke(command)
 
 
 def main(arguments: list[str], run: str = "") -> None:

@@ -34,7 +34,7 @@ _known: list[str] = []  # the digest of the tool, once it is needed
 
 
 def of_tool() -> str:
-    """Digest of everything that decides what the tool does: its own files, its templates, the interpreter, jinja2.
+    """Digest of everything that decides what the tool does: its own files, its templates and runtimes, the interpreter, jinja2.
 
     As of when it is first asked for: what changes later is not what runs.
     """
@@ -48,11 +48,9 @@ def _digest() -> str:
     data = os.path.join(package, "data")
     root = data if os.path.isdir(data) else os.path.dirname(os.path.dirname(package))
     digest = sha256(sys.version.encode())
-    for top in (package, os.path.join(root, "templates")):
-        for path in sorted(_files(top)):
-            digest.update(path.encode("utf-8", "surrogateescape"))
-            with open(path, "rb") as file:
-                digest.update(file.read())
+    for top in (package, os.path.join(root, "templates"), os.path.join(root, "runtime")):
+        for path in sorted(_files(top, data)):
+            digest.update(f"\0{path}\0{of_path(path)}".encode("utf-8", "surrogateescape"))
     for place in sys.path:
         try:
             status = os.stat(os.path.join(place, "jinja2", "__init__.py"))
@@ -63,13 +61,16 @@ def _digest() -> str:
     return digest.hexdigest()
 
 
-def _files(top: str) -> list[str]:
+def _files(top: str, without: str) -> list[str]:
+    """Every file below a folder, whatever it is called; not what Python and other tools leave there."""
     found = []
-    with os.scandir(top) as entries:
-        for entry in entries:
-            if entry.is_dir():
-                if entry.name not in ("__pycache__", "data"):
-                    found += _files(entry.path)
-            elif entry.name.endswith((".py", ".json", ".j2", ".js", ".css")):
-                found.append(entry.path)
+    try:
+        with os.scandir(top) as entries:
+            for entry in entries:
+                if not entry.is_dir():
+                    found.append(entry.path)
+                elif entry.name != "__pycache__" and entry.name[0] != "." and entry.path != without:
+                    found += _files(entry.path, without)
+    except FileNotFoundError:  # not every folder of sources is there
+        return []
     return found

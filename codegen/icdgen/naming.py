@@ -33,7 +33,8 @@ def _split(chunk: str, vocabulary: list[str]) -> Iterable[str]:
             yield from (part.lower() for part in _HUMPS.split(text) if part)
         else:
             before, _, after = text.partition(word)
-            digits = _DIGITS.match(after).group()
+            found = _DIGITS.match(after)
+            digits = found.group() if found else ""
             rest += [(after[len(digits) :], False), (word + digits, True), (before, False)]
 
 

@@ -1,28 +1,38 @@
-"""Templates -> text. Values come finished from the backends: a template holds loops, not decisions about bits."""
+"""Templates -> text, and the runtime's sources as they are.
+
+Values come finished from the backends: a template holds loops, not decisions about bits.
+"""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from icdgen import cache, fingerprints, shipped
+from icdgen import fingerprints, shipped
 from icdgen.errors import UserError
+
+if TYPE_CHECKING:
+    from icdgen.backends import Backend
 
 
 class Renderer:
-    """Renders the templates of one backend; those in ``override`` (``--templates DIR``) win over the shipped ones.
+    """Renders the templates of one backend and hands out its runtime; files in ``override`` (``--templates DIR``) win.
 
+    ``templates`` and ``runtime`` are the folders of both, where they are not ours.
     ``looked_at`` tells of every file below ``override`` that was read or looked for, with its fingerprint as of just before.
     """
 
-    def __init__(self, backend: str, override: Path | None = None) -> None:
+    def __init__(
+        self, backend: str, override: Path | None = None, templates: Path | None = None, runtime: Path | None = None
+    ) -> None:
         import jinja2
 
-        own = [override / backend, override] if override else []
+        self._own = [override / backend, override] if override else []
+        self._runtime = runtime or shipped.runtimes() / backend
         self.looked_at: dict[Path, str] = {}
         self._environment = jinja2.Environment(
-            loader=_loader(own, shipped.templates() / backend, self.looked_at),
-            bytecode_cache=_bytecode(),
+            loader=_loader(self._own, templates or shipped.templates() / backend, self.looked_at),
             undefined=jinja2.StrictUndefined,
             autoescape=lambda template: template is not None and template.endswith(".html.j2"),
             trim_blocks=True,
@@ -30,6 +40,12 @@ class Renderer:
             keep_trailing_newline=True,
             auto_reload=False,
         )
+
+    @classmethod
+    def of(cls, backend: Backend, override: Path | None = None) -> Renderer:
+        """The renderer of a backend, which may say where its templates and its runtime lie."""
+        folders = (getattr(backend, "templates", None), getattr(backend, "runtime", None))
+        return cls(backend.name, override, *folders)
 
     def __call__(self, template: str, **values: object) -> str:
         """The text of ``template`` (its file name, such as ``message.h.j2``). Raises `UserError` for a bad template."""
@@ -48,6 +64,24 @@ class Renderer:
             raise UserError(
                 f"{_where(error, template)}: {type(error).__name__}: {error}", "mend the template"
             ) from error
+
+    def runtime_files(self, folder: str = ".") -> list[str]:
+        """The files of the backend's runtime below ``folder``, as paths within the runtime."""
+        found = (path for path in (self._runtime / folder).rglob("*") if path.is_file() and path.suffix != ".pyc")
+        return sorted(path.relative_to(self._runtime).as_posix() for path in found)
+
+    def source(self, file: str) -> str:
+        """The text of a file of the runtime. Raises `UserError` if the user's own in its place cannot be read."""
+        for folder in self._own:
+            path = folder / file
+            self.looked_at[path] = fingerprints.of_path(os.fspath(path))
+            try:
+                return path.read_text(encoding="utf-8")
+            except (FileNotFoundError, NotADirectoryError):
+                continue
+            except (OSError, UnicodeDecodeError) as error:
+                raise UserError(f"{path}: {error}", "mend the file") from None
+        return (self._runtime / file).read_text(encoding="utf-8")
 
 
 def _where(error: Exception, template: str) -> str:
@@ -73,19 +107,3 @@ def _loader(own: list[Path], shipped: Path, looked_at: dict[Path, str]):
             return super().get_source(environment, template)
 
     return Loader([*own, shipped])
-
-
-def _bytecode():
-    """Compiled templates, remembered under the tool that compiled them."""
-    import jinja2
-
-    class Cache(jinja2.BytecodeCache):
-        def load_bytecode(self, bucket) -> None:
-            data = cache.recall("templates", cache.key("template", bucket.key))
-            if data is not None:
-                bucket.bytecode_from_string(data)
-
-        def dump_bytecode(self, bucket) -> None:
-            cache.seal("templates", cache.key("template", bucket.key), bucket.bytecode_to_string())
-
-    return Cache()

@@ -1,4 +1,4 @@
-"""Where the shipped templates and ICDs lie: in the wheel under ``icdgen/data``, in a checkout at its top."""
+"""Where the shipped templates, runtimes and ICDs lie: in the wheel under ``icdgen/data``, in a checkout at its top."""
 
 from __future__ import annotations
 
@@ -17,6 +17,11 @@ def _root() -> Path:
 def templates() -> Path:
     """Folder of the shipped templates, one folder a backend."""
     return _root() / "templates"
+
+
+def runtimes() -> Path:
+    """Folder of what generated code runs on, one folder a backend."""
+    return _root() / "runtime"
 
 
 def icds() -> Path:

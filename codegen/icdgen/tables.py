@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import unicodedata
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple, TextIO
+from typing import Literal, NamedTuple, TextIO
 
 GAP = 2  # spaces between columns
 NARROWEST = 8  # a column is not wrapped to less
@@ -85,7 +85,7 @@ def _wrapped(columns: Sequence[Column], cells: Sequence[Sequence[str]], least: S
 
     table = Table(box=None, padding=(0, GAP, 0, 0), pad_edge=False, header_style="", show_edge=False)
     for column, size in zip(columns, least, strict=True):
-        justify = "right" if column.right else "left"
+        justify: Literal["right", "left"] = "right" if column.right else "left"
         table.add_column(Text(column.title), justify=justify, no_wrap=column.fixed, overflow="fold", min_width=size)
     for row in cells:
         table.add_row(*(Text(cell) for cell in row))

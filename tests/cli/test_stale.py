@@ -30,14 +30,14 @@ def test_a_template_behind_a_link(run, demo, tmp_path):
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "own").mkdir()
     (tmp_path / "own" / "c").symlink_to("../elsewhere")
-    template = tmp_path / "elsewhere" / "icdgen.h.j2"
+    template = tmp_path / "elsewhere" / "node.h.j2"
     for text in ("one\n", "two\n"):
         template.write_text(text)
         run("--lang", "c", "--out", "out", "--templates", "own", demo)
-        assert (tmp_path / "out" / "icdgen.h").read_text() == text
+        assert (tmp_path / "out" / "demo.h").read_text() == text
     template.unlink()
     run("--lang", "c", "--out", "out", "--templates", "own", demo)
-    assert (tmp_path / "out" / "icdgen.h").read_text() != "two\n"
+    assert (tmp_path / "out" / "demo.h").read_text() != "two\n"
 
 
 def test_an_included_file_by_a_second_path_that_leads_elsewhere(run, tmp_path):
@@ -88,7 +88,7 @@ def test_any_flipped_byte_of_the_cache_is_noticed(run, demo, tmp_path):
     run("--lang", "c", "--out", "out", demo)
     good = {p: p.read_bytes() for p in (tmp_path / "out").rglob("*") if p.is_file()}
     kept = [path for top, _, names in os.walk(cache.folder()) for path in (os.path.join(top, name) for name in names)]
-    assert {os.path.basename(os.path.dirname(path)) for path in kept} == {"inputs", "models", "runs", "templates"}
+    assert {os.path.basename(os.path.dirname(path)) for path in kept} == {"models", "runs"}
     for path in kept:
         with open(path, "r+b") as file:
             data = bytearray(file.read())
@@ -104,13 +104,13 @@ def test_any_flipped_byte_of_the_cache_is_noticed(run, demo, tmp_path):
 def test_what_cannot_be_read_twice_is_not_remembered(tmp_path):
     os.mkfifo(tmp_path / "fifo")
     assert fingerprints.of_path(str(tmp_path / "fifo")) == fingerprints.UNKNOWN
-    cache.remember("runs", "k", "done", {str(tmp_path / "fifo"): fingerprints.UNKNOWN})
-    assert cache.holds("runs", "k") is None
+    cache.remember("runs", "k", b"done", {str(tmp_path / "fifo"): fingerprints.UNKNOWN})
+    assert cache.recall("runs", "k") is None
 
 
 def test_the_cache_does_not_grow_for_ever(monkeypatch):
     monkeypatch.setattr(cache, "MOST", 3)
     for number in range(9):
-        cache.remember("runs", str(number), "done", {})
+        cache.remember("runs", str(number), b"done", {})
     assert len(os.listdir(os.path.join(cache.folder(), "runs"))) == 3
-    assert cache.holds("runs", "8") == "done"
+    assert cache.recall("runs", "8") == b"done"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from hypothesis import strategies as st
 
@@ -59,9 +60,14 @@ def icds(draw) -> dict[str, dict]:
 @st.composite
 def _icd(draw, name: str, names: Names, first_id: int) -> dict:
     enums = [draw(_enum(Names(draw, set()), f"E{name}{number}")) for number in range(draw(st.integers(1, 3)))]
+    orders = {
+        "byte_order": draw(st.sampled_from(("little", "big"))),
+        "bit_order": draw(st.sampled_from(("lsb0", "msb0"))),
+    }
+    straight = tuple(orders.values()) in (("little", "lsb0"), ("big", "msb0"))
     messages = []
     for number in range(draw(st.integers(1, 5))):
-        fields, length = draw(_fields(enums if number else enums + enums))
+        fields, length = draw(_fields(enums if number else enums + enums, straight))
         message = {**names.one("message"), "kind": draw(st.sampled_from(("telecommand", "telemetry", "configuration")))}
         if message["kind"] == "configuration":
             message |= {"set_id": first_id + number, "get_id": first_id + 20 - number}
@@ -72,10 +78,7 @@ def _icd(draw, name: str, names: Names, first_id: int) -> dict:
             message["fields"] = fields
         messages.append(message)
     messages.append(_uses_all(names.one("message"), enums, first_id + 59))
-    node = {
-        "name": name, "title": draw(st.sampled_from(("Plain", 'Odd "*/ {{ \\'))),
-        "byte_order": draw(st.sampled_from(("little", "big"))), "bit_order": draw(st.sampled_from(("lsb0", "msb0"))),
-    }  # fmt: skip
+    node = {"name": name, "title": draw(st.sampled_from(("Plain", 'Odd "*/ {{ \\'))), **orders}
     return {"icdgen": 1, "node": node, "enums": enums, "messages": messages}
 
 
@@ -104,8 +107,8 @@ def _enum(draw, names: Names, name: str) -> dict:
 
 
 @st.composite
-def _fields(draw, enums: list[dict]) -> tuple[list[dict], int]:
-    """Fields one after another with gaps of reserved bits, and the bytes that hold them."""
+def _fields(draw, enums: list[dict], straight: bool) -> tuple[list[dict], int]:
+    """Fields one after another with gaps of reserved bits, and their bytes; ``straight``: a value is one run of bits."""
     fields: list[dict] = []
     names = Names(draw, set())
     at = 0
@@ -115,9 +118,26 @@ def _fields(draw, enums: list[dict]) -> tuple[list[dict], int]:
         if field["type"] == "bytes":
             at = (at + 7) // 8 * 8
         fields.append({"at": at, "bits": field.pop("bits"), **names.one("field"), **field})
+        is_plain = field.keys() == {"type"} and field["type"] == "uint"
+        if is_plain and (straight or at % 8 + fields[-1]["bits"] <= 8) and draw(st.booleans()):
+            fields[-1]["bitfields"] = draw(_division(names, fields[-1]["bits"]))
         at += fields[-1]["bits"]
     order = draw(st.permutations(fields)) if draw(st.booleans()) else fields
     return order, (at + 7) // 8
+
+
+@st.composite
+def _division(draw, names: Names, bits: int) -> list[dict]:
+    """Parts that make up a value, in any order."""
+    cuts = sorted(draw(st.sets(st.integers(0, bits), max_size=4)) | {0, bits})
+    parts = []
+    for start, end in pairwise(cuts):
+        kind = draw(st.sampled_from(("uint", "int", "bool") if end - start == 1 else ("uint", "int")))
+        part = {"at": start, "bits": end - start, **names.one("part"), "type": kind}
+        if kind != "bool" and draw(st.booleans()):
+            part |= {"unit": "deg", "formula": draw(_formula())}
+        parts.append(part)
+    return draw(st.permutations(parts))
 
 
 @st.composite

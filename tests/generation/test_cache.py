@@ -2,51 +2,53 @@
 
 from __future__ import annotations
 
+import pytest
+
 from icdgen import cache, fingerprints
 
 
 def test_a_record_holds_while_its_files_are_unchanged(tmp_path):
     path = tmp_path / "a"
     path.write_text("x")
-    cache.remember("runs", "k", "done", {str(path): fingerprints.of_path(str(path))})
-    assert cache.holds("runs", "k") == "done"
+    cache.remember("runs", "k", b"done", {str(path): fingerprints.of_path(str(path))})
+    assert cache.recall("runs", "k") == b"done"
 
 
 def test_a_changed_a_removed_and_a_new_file_end_it(tmp_path):
     path, absent = tmp_path / "a", tmp_path / "errata"
     path.write_text("x")
     record = {str(p): fingerprints.of_path(str(p)) for p in (path, absent)}
-    cache.remember("runs", "k", "done", record)
+    cache.remember("runs", "k", b"done", record)
     path.write_text("y")
-    assert cache.holds("runs", "k") is None
+    assert cache.recall("runs", "k") is None
     path.write_text("x")
-    assert cache.holds("runs", "k") == "done"
+    assert cache.recall("runs", "k") == b"done"
     absent.write_text("")
-    assert cache.holds("runs", "k") is None
+    assert cache.recall("runs", "k") is None
     absent.unlink()
     path.unlink()
-    assert cache.holds("runs", "k") is None
+    assert cache.recall("runs", "k") is None
 
 
 def test_a_folder_counts_by_the_names_in_it(tmp_path):
-    cache.remember("runs", "k", "done", {str(tmp_path): fingerprints.of_path(str(tmp_path))})
+    cache.remember("runs", "k", b"done", {str(tmp_path): fingerprints.of_path(str(tmp_path))})
     (tmp_path / "new.yaml").write_text("")
-    assert cache.holds("runs", "k") is None
+    assert cache.recall("runs", "k") is None
 
 
 def test_a_record_that_was_tampered_with_does_not_hold(tmp_path, monkeypatch):
     monkeypatch.setenv("ICDGEN_CACHE", str(tmp_path))
-    cache.remember("runs", "k", "done", {})
+    cache.remember("runs", "k", b"done", {})
     record = tmp_path / "runs" / "k"
-    assert cache.holds("runs", "k") == "done"
+    assert cache.recall("runs", "k") == b"done"
     record.write_bytes(record.read_bytes().replace(b"done", b"gone"))
-    assert cache.holds("runs", "k") is None
+    assert cache.recall("runs", "k") is None
 
 
 def test_the_cache_can_be_switched_off(monkeypatch):
     monkeypatch.setenv("ICDGEN_CACHE", "off")
-    cache.remember("runs", "k", "done", {})
-    assert cache.holds("runs", "k") is None
+    cache.remember("runs", "k", b"done", {})
+    assert cache.recall("runs", "k") is None
 
 
 def test_the_tool_itself_is_part_of_every_key(monkeypatch):
@@ -58,5 +60,31 @@ def test_the_tool_itself_is_part_of_every_key(monkeypatch):
 def test_a_cache_that_cannot_be_written_is_no_error(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("ICDGEN_CACHE", str(tmp_path / "file" / "below"))
-    cache.remember("runs", "k", "done", {})
-    assert cache.holds("runs", "k") is None
+    cache.remember("runs", "k", b"done", {})
+    assert cache.recall("runs", "k") is None
+
+
+@pytest.mark.parametrize(
+    "name", ["templates/html/icon.svg", "templates/c/x.h", "runtime/c/deep/er.h", "codegen/icdgen/a.xyz"]
+)
+def test_every_file_that_output_is_made_of_is_part_of_the_tool(tmp_path, monkeypatch, name):
+    monkeypatch.setattr(fingerprints, "__file__", str(tmp_path / "codegen" / "icdgen" / "fingerprints.py"))
+    (tmp_path / "codegen" / "icdgen").mkdir(parents=True)
+    (tmp_path / "templates").mkdir()
+    path = tmp_path / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    seen = []
+    for text in ("one", "two", "one"):
+        path.write_text(text)
+        monkeypatch.setattr(fingerprints, "_known", [])
+        seen.append(fingerprints.of_tool())
+    assert seen[0] == seen[2] != seen[1]
+
+
+def test_what_python_leaves_behind_is_not_part_of_the_tool(tmp_path, monkeypatch):
+    monkeypatch.setattr(fingerprints, "__file__", str(tmp_path / "codegen" / "icdgen" / "fingerprints.py"))
+    (tmp_path / "codegen" / "icdgen").mkdir(parents=True)
+    before = fingerprints._digest()
+    (tmp_path / "codegen" / "icdgen" / "__pycache__").mkdir()
+    (tmp_path / "codegen" / "icdgen" / "__pycache__" / "a.pyc").write_text("")
+    assert fingerprints._digest() == before

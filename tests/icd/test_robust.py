@@ -45,7 +45,7 @@ messages:
     fields:
       - {at: 0, bits: 12, name: Angle, type: int, unit: deg, formula: raw*0.01, min: -10.5, below: 10}
       - {at: 12, bits: 4, name: Mode, type: enum, enum: Mode}
-      - {at: 16, bits: 8, name: Parts, type: uint, const: 5, bitfields: [{at: 0, bits: 4, name: Low}]}
+      - {at: 16, bits: 8, name: Parts, type: uint, const: 5}
       - {at: 24, bits: 8, name: Token, type: bytes}
   - name: All
     id: 131
@@ -61,7 +61,9 @@ messages:
     set_id: 2
     get_id: 132
     kind: configuration
-    length: 0
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Halves, type: uint, bitfields: [{at: 0, bits: 4, name: Low}, {at: 4, bits: 4, name: High, unit: s}]}
 loggable:
   - {bit: 0, id: 130, name: Status}
 missing:

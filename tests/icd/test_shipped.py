@@ -17,7 +17,7 @@ ICDS = ROOT / "icd"
 COUNTS = {
     "common": (14, 15, 12, 86),
     "bootloader": (5, 3, 0, 23),
-    "cubeacp": (16, 73, 26, 1119),
+    "cubeacp": (16, 73, 26, 1121),
     "cubemag": (0, 4, 0, 17),
     "cubewheel": (0, 3, 0, 4),
 }
@@ -48,9 +48,9 @@ def test_nothing_is_missing(icd):
     enums = [enum for node in icd.nodes for enum in node.enums]
     assert (len(messages), sum(len(m.ids) for m in messages)) == (171, 209)
     assert (len(fields), sum(f.scale is not None for f in fields), sum(f.unit is not None for f in fields)) == (
-        1249,
+        1251,
         346,
-        312,
+        324,
     )
     assert (len(enums), sum(len(e.members) for e in enums)) == (37, 233)
     assert len(icd.node("cubeacp").loggable) == 63

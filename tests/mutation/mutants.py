@@ -26,7 +26,7 @@ _OTHER_TYPES = {
     "bytes": ("uint", "int"),
 }
 _HEAD = ("title", "byte_order", "bit_order", "node_type", "interface_version")
-_NUMBER_KEYS = ("formula", "formula_for", "unit", "special", "min", "max", "above", "below", "bitfields", "const")
+_NUMBER_KEYS = ("formula", "formula_for", "unit", "special", "min", "max", "above", "below", "const")
 
 
 @dataclass(frozen=True)
@@ -84,6 +84,8 @@ class _Home:
             one = plain(message.source)
             one.pop("contains", None)
             one.pop("listed", None)
+            if message.fields:  # what the manual divides in words is its parts
+                one["fields"] = [{"type": "uint", **plain(field.source), "at": field.at} for field in message.fields]
             tree["messages"] = [one]
             used = {field.get("unit") for field in one.get("fields") or ()}
             tree["units"] = [unit for symbol, unit in self.units.items() if symbol in used]

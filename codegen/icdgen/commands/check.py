@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 
 import click
 
@@ -14,7 +15,7 @@ from icdgen.commands.common import chosen, icd_arguments, print_findings
 @click.option(
     "--format", "form", type=click.Choice(["text", "json", "github", "sarif"]), default="text", show_default=True
 )
-def check(icds, form) -> None:
+def check(icds: tuple[Path, ...], form: str) -> None:
     """Check ICDs and report every finding. Exit status: 0 clean, 1 findings."""
     from icdgen.icd.load import load
 

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import json
 import sys
-from typing import BinaryIO
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
 
 import click
 
 from icdgen.commands.common import icd_option, load_or_exit
 from icdgen.errors import UserError
+
+if TYPE_CHECKING:
+    from icdgen.values.frame import Frame
 
 _KIND = click.option(
     "--kind", type=click.Choice(["telecommand", "telemetry", "configuration"]), help="Where an id alone is ambiguous."
@@ -25,7 +29,7 @@ _FORMAT = click.option("--format", "form", type=click.Choice(["text", "json"]), 
 @icd_option
 @_KIND
 @_FORMAT
-def decode(node, message, frame, icds, kind, form) -> None:
+def decode(node: str, message: str, frame: str, icds: tuple[Path, ...], kind: str | None, form: str) -> None:
     """Decode a frame of NODE. MESSAGE is an id or a name; FRAME is hex in any usual spelling, - for standard input, or @FILE."""
     from icdgen import values
 
@@ -41,7 +45,15 @@ def decode(node, message, frame, icds, kind, form) -> None:
 @_KIND
 @_FORMAT
 @click.option("--raw", is_flag=True, help="Values are raw values, and are not held against limits.")
-def encode(node, message, assignments, icds, kind, form, raw) -> None:
+def encode(
+    node: str,
+    message: str,
+    assignments: tuple[str, ...],
+    icds: tuple[Path, ...],
+    kind: str | None,
+    form: str,
+    raw: bool,
+) -> None:
     """Encode a message of NODE from physical values: icdgen encode wheels "Set Speed" x=100 y=-100 z=0."""
     from icdgen import values
 
@@ -76,7 +88,7 @@ def _frame_in(file: BinaryIO, name: str) -> bytes:
     return data
 
 
-def _print(frame, form: str) -> None:
+def _print(frame: Frame, form: str) -> None:
     from icdgen import tables, values
 
     if form == "json":

@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any, TypeVar
 
 import click
 
@@ -15,11 +16,13 @@ from icdgen.errors import UserError
 from icdgen.icd.loaded import Loaded
 from icdgen.reports.excerpt import printable
 
+Command = TypeVar("Command", bound=Callable[..., Any])
+
 
 class _Path(click.Path):
     """A path; an empty one, such as an unset variable gives, is not the current folder."""
 
-    def convert(self, value, param, ctx):
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         if value == "":
             self.fail("the path is empty", param, ctx)
         return super().convert(value, param, ctx)
@@ -33,12 +36,12 @@ def say(text: str, err: bool = False) -> None:
     click.echo("\n".join(printable(line) for line in text.split("\n")), err=err)
 
 
-def icd_arguments(command: Callable) -> Callable:
+def icd_arguments(command: Command) -> Command:
     """``[ICD]...``: files or folders; without them what ``icdgen.toml`` names, else the shipped ones."""
     return click.argument("icds", nargs=-1, metavar="[ICD]...", type=PATH)(command)
 
 
-def icd_option(command: Callable) -> Callable:
+def icd_option(command: Command) -> Command:
     """``--icd FILE`` (repeatable), for commands whose arguments are something else."""
     text = "ICD file or folder (default: those of icdgen.toml, else those shipped)."
     return click.option("--icd", "icds", multiple=True, type=PATH, help=text)(command)

@@ -5,12 +5,17 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from icdgen.commands.common import PATH, chosen, print_findings
 from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
+
+if TYPE_CHECKING:
+    from icdgen.diff.accepted import Acceptance
+    from icdgen.diff.report import Report
 
 _FORMATS = ("text", "markdown", "json", "sarif", "github", "html")
 _LAYERS = ("wire", "meaning", "source", "text", "additions")
@@ -46,7 +51,16 @@ def _asked(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -
 )
 @click.option("--unchecked", is_flag=True, help="Compare although `icdgen check` finds fault with an ICD.")
 @click.option("--all", "everything", is_flag=True, help="Leave nothing out of the text report.")
-def diff(sides, form, out, asked, accepted, sources, unchecked, everything) -> None:
+def diff(
+    sides: tuple[str, ...],
+    form: str,
+    out: Path | None,
+    asked: tuple[str, ...],
+    accepted: Path | None,
+    sources: tuple[Path, ...],
+    unchecked: bool,
+    everything: bool,
+) -> None:
     """Say what changed from OLD to NEW: on the wire, in meaning, in generated names, in words only.
 
     A side is an ICD file or folder, a git revision (HEAD~1, or HEAD~1:icd/a.yaml), or the output of `icdgen show --format
@@ -74,7 +88,7 @@ def diff(sides, form, out, asked, accepted, sources, unchecked, everything) -> N
     sys.exit(1 if made.fails(asked) else 0)
 
 
-def _acceptances(path: Path | None) -> list:
+def _acceptances(path: Path | None) -> list[Acceptance]:
     from icdgen.diff import accepted
 
     found = path or accepted.find(Path.cwd())
@@ -92,7 +106,7 @@ def _acceptances(path: Path | None) -> list:
         sys.exit(2)
 
 
-def _write(made, form: str, out: Path | None, everything: bool) -> None:
+def _write(made: Report, form: str, out: Path | None, everything: bool) -> None:
     from icdgen import tables
     from icdgen.diff import reports
 

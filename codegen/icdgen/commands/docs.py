@@ -21,7 +21,7 @@ from icdgen.commands.common import PATH, chosen, icd_arguments, print_findings, 
 @click.option("--serve", is_flag=True, help="Write nothing; serve the site, made anew whenever an ICD changes.")
 @click.option("--port", type=click.IntRange(0, 65535), default=8000, show_default=True, help="For --serve; 0: any.")
 @click.option("--check", is_flag=True, help="Write nothing; exit 1 if the site is not current.")
-def docs(icds, out, previous, serve, port, check) -> None:
+def docs(icds: tuple[Path, ...], out: Path, previous: str | None, serve: bool, port: int, check: bool) -> None:
     """Make the documentation site of ICDs: static pages that open from the folder, without a server."""
     from icdgen import site
 

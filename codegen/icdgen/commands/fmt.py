@@ -18,7 +18,7 @@ from icdgen.errors import UserError
 @click.option(
     "--check", is_flag=True, help="Write nothing; exit 1 and name the files that are not in the canonical layout."
 )
-def fmt(icds, check) -> None:
+def fmt(icds: tuple[Path, ...], check: bool) -> None:
     """Write ICD files and errata overlays in the canonical layout; comments are kept."""
     from icdgen.generation.write import replace
     from icdgen.icd import source

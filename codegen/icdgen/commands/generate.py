@@ -24,16 +24,25 @@ from icdgen.generation.generate import Job, Outcome, remember, run
 @click.option("--templates", type=PATH, help="Folder of templates that replace shipped ones of the same name.")
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing on success.")
 @click.pass_obj
-def generate(obj, icds, languages, out, check, depfile, templates, quiet) -> None:
+def generate(
+    obj: dict[str, str],
+    icds: tuple[Path, ...],
+    languages: tuple[str, ...],
+    out: Path | None,
+    check: bool,
+    depfile: Path | None,
+    templates: Path | None,
+    quiet: bool,
+) -> None:
     """Generate code from ICDs: files or folders; without any, those of icdgen.toml, else those shipped."""
     paths, config = chosen(icds)
-    languages = list(languages) or config.lang
-    if not languages:
+    asked = list(languages) or config.lang
+    if not asked:
         raise UserError("say what to generate", "for instance `icdgen --lang c`; or set `lang` in icdgen.toml")
     if out is None:
         base = config.out or Path("generated")
-        out = base / languages[0] if len(set(languages)) == 1 else base
-    job = Job(languages, out, paths, templates or config.templates, depfile, check, config.looked_at)
+        out = base / asked[0] if len(set(asked)) == 1 else base
+    job = Job(asked, out, paths, templates or config.templates, depfile, check, config.looked_at)
     try:
         outcome = run(job)
     except backends.UnknownBackend as error:

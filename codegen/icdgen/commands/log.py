@@ -6,11 +6,15 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from icdgen.commands.common import PATH, icd_option, load_or_exit
 from icdgen.errors import UserError
+
+if TYPE_CHECKING:
+    from icdgen.logfile.source import Source
 
 _SUFFIXES = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "parquet", ".pq": "parquet"}
 
@@ -22,7 +26,9 @@ _SUFFIXES = {".csv": "csv", ".jsonl": "jsonl", ".ndjson": "jsonl", ".parquet": "
 @click.option("--format", "form", type=click.Choice(["csv", "jsonl", "parquet"]), help="Convert to this format.")
 @click.option("--head", type=click.IntRange(0), metavar="N", help="Only the first N entries.")
 @icd_option
-def log(file, name, out, form, head, icds) -> None:
+def log(
+    file: Path, name: str | None, out: Path | None, form: str | None, head: int | None, icds: tuple[Path, ...]
+) -> None:
     """List what a telemetry log holds, or convert it to CSV, JSON lines or Parquet.
 
     A row is an entry, a column a field: `frame__field_unit`, holding physical values and names of members. Without --out the
@@ -57,7 +63,7 @@ def _form_of(out: Path | None) -> str | None:
     return _SUFFIXES[out.suffix.lower()]
 
 
-def _convert(found, form: str, out: Path | None, head: int | None, done: Callable[[int], None]) -> None:
+def _convert(found: Source, form: str, out: Path | None, head: int | None, done: Callable[[int], None]) -> None:
     from icdgen.logfile import parquet, text
 
     if form == "parquet":

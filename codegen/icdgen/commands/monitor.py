@@ -6,11 +6,16 @@ import json
 import sys
 import time
 from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from icdgen.commands.common import icd_option, load_or_exit, say
 from icdgen.link.options import session_options
+
+if TYPE_CHECKING:
+    from icdgen.link.live import Monitor
 
 
 @click.command()
@@ -22,7 +27,16 @@ from icdgen.link.options import session_options
 @click.option("--count", type=click.IntRange(1), metavar="N", help="End after N rounds.")
 @click.option("--once", is_flag=True, help="Short for --count 1.")
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
-def monitor(node, messages, icds, every, count, once, form, **options) -> None:
+def monitor(
+    node: str,
+    messages: tuple[str, ...],
+    icds: tuple[Path, ...],
+    every: float,
+    count: int | None,
+    once: bool,
+    form: str,
+    **options: Any,
+) -> None:
     """Show live telemetry of NODE as a table: MESSAGEs by id or name, default the identification.
 
     Frames that the device sends of its own accord (logs) are shown as well. On a terminal the table stays in its place; in a
@@ -60,14 +74,14 @@ def monitor(node, messages, icds, every, count, once, form, **options) -> None:
     sys.exit(1 if watched.silent else 0)
 
 
-def _print(watched, number: int) -> None:
+def _print(watched: Monitor, number: int) -> None:
     if number > 1:
         say("")
     say(watched.text())
     sys.stdout.flush()
 
 
-def _print_json(watched) -> None:
+def _print_json(watched: Monitor) -> None:
     now = datetime.now(UTC).isoformat(timespec="milliseconds")[:-6] + "Z"
     for frame in watched.frames():
         click.echo(json.dumps({"time": now, **frame.to_json()}))

@@ -18,10 +18,11 @@ def rule(code: str | None) -> None:
     from icdgen.importer import findings
 
     if code is None:
-        for one in (*rules.ALL.values(), *RULES.values()):
-            click.echo(f"{one.code}  {one.title}")
-        for name, page in findings.pages().items():
-            click.echo(f"{name}  {page.title}")
+        titles = [(one.code, one.title) for one in rules.ALL.values()]
+        titles += [(one.code, one.title) for one in RULES.values()]
+        titles += [(name, page.title) for name, page in findings.pages().items()]
+        for found, title in titles:
+            click.echo(f"{found}  {title}")
         return
     code = code.upper()
     if code in rules.ALL:

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import json
 import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from icdgen.commands.common import icd_option, load_or_exit, say
 from icdgen.link.options import session_options
+
+if TYPE_CHECKING:
+    from icdgen.icd.model import Icd, Message, Node
 
 
 @click.command()
@@ -19,7 +24,9 @@ from icdgen.link.options import session_options
 @icd_option
 @click.option("--raw", is_flag=True, help="Values are raw values, and are not held against limits.")
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
-def send(node, message, assignments, icds, raw, form, **options) -> None:
+def send(
+    node: str, message: str, assignments: tuple[str, ...], icds: tuple[Path, ...], raw: bool, form: str, **options: Any
+) -> None:
     """Send one telecommand to NODE and wait for its acknowledge: icdgen send wheels "Set Speed" x=100 --port tcp://host:4000
 
     Exit status: 0 acknowledged (or sent, if it is never acknowledged), 1 refused or no answer, 2 misuse.
@@ -43,13 +50,13 @@ def send(node, message, assignments, icds, raw, form, **options) -> None:
     sys.exit(0 if ok else 1)
 
 
-def _done(message) -> str:
+def _done(message: Message) -> str:
     if message.expects_reset:
         return "sent; the device restarts instead of acknowledging"
     return "acknowledged" if message.acknowledge else "sent; it is never acknowledged"
 
 
-def _failed(icd, node, outcome: dict) -> str:
+def _failed(icd: Icd, node: Node, outcome: dict[str, Any]) -> str:
     if outcome["event"] == "timeout":
         tries = outcome["attempts"]
         return f"no answer{f' to {tries} attempts' if tries > 1 else ''}; whether it was executed is not known"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from pathlib import Path
 
 import click
 
@@ -18,7 +19,7 @@ from icdgen.commands.common import icd_option, load_or_exit
     "--kind", type=click.Choice(["telecommand", "telemetry", "configuration"]), help="Where an id alone is ambiguous."
 )
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
-def show(node, item, icds, kind, form) -> None:
+def show(node: str | None, item: str | None, icds: tuple[Path, ...], kind: str | None, form: str) -> None:
     """Show the nodes, the messages of NODE, or one ITEM of it: a message by id or name, an enumeration, an erratum.
 
     --format json prints everything, in a stable form for programs (schema: show.schema.json in the package).

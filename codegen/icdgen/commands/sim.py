@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
+from typing import Any
 
 import click
 
@@ -36,14 +38,16 @@ _PORT = click.IntRange(0, 65535)
 @click.option("--strict", is_flag=True, help="Refuse also values that are no member, or beyond a limit.")
 @click.option("--orders", is_flag=True, help="Take orders from standard input: set, fault, log, restart.")
 @icd_option
-def sim(name, pty, tcp, udp, host, icds, **options) -> None:
+def sim(
+    name: str, pty: bool, tcp: int | None, udp: int | None, host: str, icds: tuple[Path, ...], **options: Any
+) -> None:
     """A device made from its ICD, on a pseudo-terminal, a TCP or a UDP port.
 
     Prints where it listens, one line for each, and serves until it is interrupted or, with --orders, its input ends.
     """
     from icdgen.sim import run
 
-    ways: list[tuple] = [("pty",)] if pty else []
+    ways: list[tuple[Any, ...]] = [("pty",)] if pty else []
     ways += [(way, host, port) for way, port in (("tcp", tcp), ("udp", udp)) if port is not None]
     if not ways:
         raise UserError("it is not said where to listen", "--pty, --tcp PORT or --udp PORT")

@@ -263,11 +263,11 @@ def _stem(language: str, scope: str) -> str:
 
 def _types(cut: Icd) -> Types:
     """A function that tells the type of a field's raw value in a language."""
-    from icdgen.backends.c.names import Names as CNames
-    from icdgen.backends.c.storage import Storages
+    from icdgen.backends.c.types import type_of
     from icdgen.backends.python.names import class_name
     from icdgen.backends.rust.fields import raw_type
     from icdgen.backends.rust.names import Enums
+    from icdgen.describe import describe
 
     made: dict[str, object] = {}
 
@@ -281,6 +281,7 @@ def _types(cut: Icd) -> Types:
             return raw_type(field, home, enums) if field.type != "enum" or field.enum else f"u{field.bits}"
         if field.type == "bytes":
             return f"uint8_t[{field.bits // 8}]"
-        return made.setdefault("c", Storages(cut, CNames(cut))).of(field).type
+        described = describe(cut).message(message)
+        return next(type_of(one) for one in described.fields if one.field is field)
 
     return of

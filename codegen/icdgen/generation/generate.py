@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 
 from icdgen import backends, cache
 from icdgen.errors import UserError
-from icdgen.generation import manifest, parallel, write
+from icdgen.generation import manifest, write
 from icdgen.icd.loaded import Loaded
-from icdgen.icd.model import Icd
 from icdgen.model_cache import load_checked
 from icdgen.render import Renderer
 
@@ -49,24 +47,17 @@ def run(job: Job) -> Outcome:
     if not outcome.loaded.ok:
         return outcome
     outcome.inputs = outcome.loaded.inputs | job.configs
-    renderers = [Renderer(backend.name, job.templates) for backend in chosen]
-    for plan, looked_at in parallel.results(
-        [partial(_plan, job, outcome.loaded.icd, *both) for both in zip(chosen, renderers, strict=True)]
-    ):
-        outcome.plans.append(plan)
-        outcome.inputs |= looked_at
+    for backend in chosen:
+        render = Renderer.of(backend, job.templates)
+        out = job.out / backend.name if len(chosen) > 1 else job.out
+        outcome.plans.append(write.plan(out, backend.name, backend.files(outcome.loaded.icd, render)))
+        outcome.inputs |= render.looked_at
     if not job.check:
         for plan in outcome.plans:
             write.apply(plan)
         if job.depfile is not None:
             _write_depfile(job, outcome)
     return outcome
-
-
-def _plan(job: Job, icd: Icd, backend: backends.Backend, render: Renderer) -> tuple[write.Plan, dict[Path, str]]:
-    """What one backend would change, and which of the user's templates it looked at."""
-    out = job.out / backend.name if len(set(job.languages)) > 1 else job.out
-    return write.plan(out, backend.name, backend.files(icd, render)), render.looked_at
 
 
 def _depfile(outcome: Outcome) -> tuple[bytes, set[str]]:
@@ -107,4 +98,4 @@ def remember(name: str, note: str, job: Job, outcome: Outcome) -> None:
         files[os.path.abspath(manifest.path(plan.out, plan.language))] = manifest.digest(plan.manifest.encode())
     if job.depfile is not None and not job.check:
         files[os.path.abspath(job.depfile)] = manifest.digest(_depfile(outcome)[0])
-    cache.remember("runs", name, note, files)
+    cache.remember("runs", name, note.encode("utf-8", "surrogateescape"), files)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any, TypeVar
 
-from icdgen.icd import formula, model
+from icdgen.icd import division, formula, model
 from icdgen.icd.errata import Applied
 from icdgen.icd.located import Map
 from icdgen.icd.units import STANDARD, Unit
@@ -106,7 +107,7 @@ class Builder:
             name=item["name"],
             kind=item["kind"],
             length=item["length"],
-            fields=tuple(self.each("fields", self.field, item)),
+            fields=tuple(field for fields in self.each("fields", self.fields, item) for field in fields),
             id=item.get("id"),
             set_id=item.get("set_id"),
             get_id=item.get("get_id"),
@@ -124,9 +125,26 @@ class Builder:
             source=item,
         )
 
+    def fields(self, item: Map) -> tuple[model.Field, ...]:
+        """The field, or the parts that it is divided into."""
+        parts = division.parts_of(item) if "bitfields" in item else []
+        orders = self.tree["node"]["byte_order"], self.tree["node"]["bit_order"]
+        if not parts or any(id(p) in self.broken for p in parts) or any(division.obstacles(item, *orders)):
+            return (self.field(item),)
+        errata = self.applied.about(item)
+        return tuple(
+            replace(
+                self.field(part),
+                at=division.place(item, part, *orders),
+                summary=division.described(item, part),
+                errata=errata,
+            )
+            for part in parts
+        )
+
     def field(self, item: Map) -> model.Field:
         get = item.get
-        kind = item["type"]
+        kind = get("type", "uint")  # which parts of a field need not say
         return model.Field(
             name=item["name"],
             at=item["at"],
@@ -140,7 +158,6 @@ class Builder:
             const=get("const"),
             special=tuple(self.each("special", lambda s: model.Special(s["value"], s["meaning"]), item)),
             limits=limits(item),
-            bitfields=tuple(self.each("bitfields", bitfield, item)) if "bitfields" in item else (),
             summary=get("summary", ""),
             errata=self.applied.about(item),
             source=item,
@@ -173,10 +190,6 @@ def limits(item: Map) -> model.Limits | None:
 def exact(number: int | float) -> Fraction:
     """The number as it is written."""
     return Fraction(number) if isinstance(number, int) else Fraction(repr(number))
-
-
-def bitfield(item: Map) -> model.BitField:
-    return model.BitField(item["at"], item["bits"], item["name"], item.get("summary", ""))
 
 
 def plain_mapping(value: Map) -> dict[str, Any]:

@@ -21,17 +21,8 @@ CAN_DATA_BYTES = 8  # of a packet
 CAN_PACKETS = 256  # of an extended message
 
 
-class _Value:
-    """Pickles as a call of its class: several times faster than what ``slots=True`` comes with."""
-
-    __slots__: tuple[str, ...] = ()
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), tuple(getattr(self, name) for name in self.__slots__)
-
-
 @dataclass(frozen=True, slots=True)
-class Erratum(_Value):
+class Erratum:
     """One decision about a fault of the manual. ``changes`` is False for a note."""
 
     id: str
@@ -46,7 +37,7 @@ class Erratum(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Member(_Value):
+class Member:
     """One value of an enumeration."""
 
     value: int
@@ -58,7 +49,7 @@ class Member(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Enum(_Value):
+class Enum:
     """An enumeration; members in the order of the manual."""
 
     name: str
@@ -72,7 +63,7 @@ class Enum(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Special(_Value):
+class Special:
     """A raw value with a meaning of its own, such as 0xFFFF for 'no time-out'."""
 
     value: int
@@ -80,7 +71,7 @@ class Special(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Limits(_Value):
+class Limits:
     """Bounds of the physical value (of the raw value where there is no scale); None where there is none."""
 
     min: Fraction | None = None
@@ -90,17 +81,7 @@ class Limits(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class BitField(_Value):
-    """A part of a field that the manual describes only in words; ``at`` counts within the field's value."""
-
-    at: int
-    bits: int
-    name: str
-    summary: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Field(_Value):
+class Field:
     """A field of a message: ``bits`` bits at bit ``at`` of the frame."""
 
     name: str
@@ -115,7 +96,6 @@ class Field(_Value):
     const: int | None = None
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
-    bitfields: tuple[BitField, ...] = ()
     summary: str = ""
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
@@ -136,7 +116,7 @@ class Field(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Part(_Value):
+class Part:
     """A frame that a composite frame repeats from bit ``at``."""
 
     message: str
@@ -144,7 +124,7 @@ class Part(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Message(_Value):
+class Message:
     """A telecommand, a telemetry frame or a configuration message (one layout, two ids)."""
 
     name: str
@@ -184,7 +164,7 @@ class Message(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Loggable(_Value):
+class Loggable:
     """One bit of the log mask (bit 0: least significant bit of the first byte) and the frame it selects."""
 
     bit: int
@@ -195,7 +175,7 @@ class Loggable(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Missing(_Value):
+class Missing:
     """A message that the manual mentions and does not describe."""
 
     kind: str
@@ -205,7 +185,7 @@ class Missing(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Node(_Value):
+class Node:
     """One ICD file, errata applied. Messages of included nodes are not repeated here: see `Icd.messages_of`."""
 
     name: str
@@ -231,7 +211,7 @@ class Node(_Value):
 
 
 @dataclass(frozen=True, slots=True)
-class Icd(_Value):
+class Icd:
     """A set of nodes; a node stands after those that it includes."""
 
     nodes: tuple[Node, ...]

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from importlib import import_module
+from typing import Protocol
 
 from icdgen.diagnostics import Finding
 
-Report = Callable[[Iterable[Finding], Mapping[str, str], bool], str]
+
+class Report(Protocol):
+    """Findings in a format."""
+
+    def __call__(self, findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str: ...
+
 
 FORMATS = {
     "text": "icdgen.reports.text",
@@ -19,7 +25,8 @@ FORMATS = {
 
 def get(name: str) -> Report:
     """The function ``report`` of a format. Raises `KeyError` for a name that is not in `FORMATS`."""
-    return import_module(FORMATS[name]).report
+    report: Report = import_module(FORMATS[name]).report
+    return report
 
 
 def render(name: str, findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:

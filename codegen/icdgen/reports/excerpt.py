@@ -21,7 +21,8 @@ class Lines:
     """The lines of a text, split when first asked for."""
 
     def __init__(self, text: str) -> None:
-        self._text, self._lines = text.removeprefix("\ufeff"), None
+        self._text = text.removeprefix("\ufeff")
+        self._lines: list[str] | None = None
 
     def __getitem__(self, number: int) -> str | None:
         """Line ``number``, counted from 1; None if there is none."""

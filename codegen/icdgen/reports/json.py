@@ -20,7 +20,7 @@ def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool =
     return json.dumps(document, indent=2) + "\n"
 
 
-def _one(finding: Finding) -> dict:
+def _one(finding: Finding) -> dict[str, object]:
     place = finding.place
     return {
         "code": finding.code,

@@ -6,11 +6,33 @@ import json
 import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import PurePath
+from typing import Any, Protocol
 from urllib.parse import quote
 
 from icdgen import __version__
 from icdgen.diagnostics import Finding, Place
 from icdgen.icd import rules
+
+
+class Page(Protocol):
+    """What a rule's page must have to be described."""
+
+    @property
+    def why(self) -> str: ...
+
+
+class Explained(Protocol):
+    """What a rule must have to be described; both the rules of ICDs and those of the diff do."""
+
+    @property
+    def severity(self) -> str: ...
+
+    @property
+    def title(self) -> str: ...
+
+    @property
+    def page(self) -> Page: ...
+
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
@@ -20,7 +42,7 @@ def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool =
     return json.dumps(document(list(findings), _rule), indent=2) + "\n"
 
 
-def document(findings: list[Finding], about: Callable[[str], dict]) -> dict:
+def document(findings: list[Finding], about: Callable[[str], dict[str, Any]]) -> dict[str, Any]:
     """A tree for `json.dumps`. ``about`` describes a rule."""
     codes = sorted({f.code for f in findings})
     index = {code: number for number, code in enumerate(codes)}
@@ -33,12 +55,12 @@ def document(findings: list[Finding], about: Callable[[str], dict]) -> dict:
     return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
 
 
-def _rule(code: str) -> dict:
+def _rule(code: str) -> dict[str, Any]:
     rule = rules.ALL.get(code)
     return {"id": code} if rule is None else described(code, rule, rules.explain(code))
 
 
-def described(code: str, rule, text: str) -> dict:
+def described(code: str, rule: Explained, text: str) -> dict[str, Any]:
     """A rule that has a ``title``, a ``page`` and a ``severity``; ``text`` explains it."""
     return {
         "id": code,
@@ -49,7 +71,7 @@ def described(code: str, rule, text: str) -> dict:
     }
 
 
-def _result(finding: Finding, index: int) -> dict:
+def _result(finding: Finding, index: int) -> dict[str, Any]:
     text = finding.message + (f"\n{finding.help}" if finding.help else "")
     return {
         "ruleId": finding.code,
@@ -60,7 +82,7 @@ def _result(finding: Finding, index: int) -> dict:
     }
 
 
-def physical(place: Place) -> dict:
+def physical(place: Place) -> dict[str, Any]:
     """A stretch of a line."""
     region = {"startLine": place.line, "startColumn": place.column, "endColumn": place.column + place.length}
     return {"artifactLocation": {"uri": _uri(place.file)}, "region": region}

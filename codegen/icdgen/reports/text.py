@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from typing import Protocol
 
 from icdgen.diagnostics import Finding
 from icdgen.reports.excerpt import Lines, excerpt, printable, shown
@@ -18,10 +19,16 @@ COLOURS = {
 RESET = "\x1b[0m"
 
 
+class Paint(Protocol):
+    """Puts a text in the colour of its role."""
+
+    def __call__(self, role: str, text: str, after_blanks: bool = False) -> str: ...
+
+
 def report(findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:
     """The findings in the order given, and a line that counts them."""
     findings = list(findings)
-    paint = _painted if colour else _plain
+    paint: Paint = _painted if colour else _plain
     lines: dict[str, Lines] = {}
     parts = []
     for finding in findings:
@@ -42,7 +49,7 @@ def summary(findings: Iterable[Finding]) -> str:
     return f"{', '.join(said)} in {_count(len({f.place.file for f in findings}), 'file')}"
 
 
-def _one(finding: Finding, lines: Lines, paint) -> str:
+def _one(finding: Finding, lines: Lines, paint: Paint) -> str:
     place = paint("place", printable(str(finding.place)))
     kind = paint(finding.severity, f"{finding.severity}[{finding.code}]")
     text = f"{place}: {kind}: {shown(finding.message)}\n"

@@ -77,6 +77,5 @@ def bit_range(at: int, count: int) -> str:
 
 def _notes(field: Field) -> list[str]:
     notes = list(remarks(field))
-    notes += [f"{bit_range(part.at, part.bits)}: {part.name}" for part in field.bitfields]
     notes += [erratum.id for erratum in field.errata]
     return notes + ([field.summary] if field.summary else [])

@@ -79,7 +79,6 @@ def _field(field: Field) -> _Object:
         const=field.const,
         special=[{"value": s.value, "meaning": s.meaning} for s in field.special],
         limits=_limits(field.limits),
-        bitfields=[_present(name=b.name, offset=b.at, bits=b.bits, summary=b.summary) for b in field.bitfields],
         summary=field.summary,
         errata=_ids(field.errata),
     )

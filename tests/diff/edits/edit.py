@@ -112,13 +112,7 @@ def members_of(icd: Icd) -> list[tuple[Enum, int]]:
 
 def is_plain(field: Field) -> bool:
     """A number without anything that depends on its range."""
-    return (
-        field.type in ("uint", "int")
-        and field.const is None
-        and not field.special
-        and not field.limits
-        and not field.bitfields
-    )
+    return field.type in ("uint", "int") and field.const is None and not field.special and not field.limits
 
 
 def is_free(message: Message, name: str) -> bool:

@@ -8,7 +8,7 @@ from icdgen import layout
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
 from icdgen.icd.model import Enum, Erratum, Field, Member, Message, Node
-from icdgen.show.fields import bit_range, remarks
+from icdgen.show.fields import remarks
 
 
 @dataclass
@@ -85,8 +85,4 @@ def _row(key: int, field: Field, links: Links, anchor: str) -> FieldRow:
 
 
 def _notes(field: Field) -> list[str]:
-    notes = [note[:1].upper() + note[1:] for note in remarks(field, texts.number)]
-    for part in field.bitfields:
-        about = f". {part.summary}" if part.summary else ""
-        notes.append(f"{bit_range(part.at, part.bits).capitalize()}: {part.name}{about}")
-    return notes
+    return [note[:1].upper() + note[1:] for note in remarks(field, texts.number)]

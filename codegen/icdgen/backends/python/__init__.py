@@ -11,12 +11,7 @@ from icdgen.backends.python import links, messages, names, nodes, scopes
 from icdgen.backends.python.text import prose
 from icdgen.icd.model import Icd
 
-# What all nodes share.
-_SUPPORT = ("_base", "_codec", "_columns", "_enumeration", "_errors", "_floats", "_lazy", "testee")
-_WIRE = (
-    "__init__", "_testee", "_testee_link", "_testee_scripts", "can", "client", "crc", "errors", "events", "files", "i2c",
-    "identity", "link", "logs", "procedures", "session", "times", "transfer", "uart",
-)  # fmt: skip
+_RUNTIME = PurePosixPath("icdgen_runtime")  # the package that what all nodes share is developed as
 
 
 class PythonBackend:
@@ -43,10 +38,10 @@ class PythonBackend:
         yield PurePosixPath("README.md"), render("README.md.j2", **common, **listed)
         yield root / "__init__.py", render("package.py.j2", **common, **listed)
         yield root / "py.typed", ""
-        for name in _SUPPORT:
-            yield root / f"{name}.py", render(f"{name}.py.j2", **common)
-        for name in _WIRE:
-            yield root / names.WIRE / f"{name}.py", render(f"{names.WIRE}/{name}.py.j2", **common, **listed)
+        for name in render.runtime_files(str(_RUNTIME)):
+            path = PurePosixPath(name).relative_to(_RUNTIME)
+            if path != PurePosixPath("__init__.py"):
+                yield root / path, f"{header}\n{render.source(name)}"
         enums = messages.EnumNames(icd)
         for node in icd.nodes:
             folder = root / node.name

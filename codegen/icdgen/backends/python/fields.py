@@ -102,10 +102,6 @@ def _documentation(field: Field, physical: str) -> list[str]:
         paragraphs.append(limits)
     for special in field.special:
         paragraphs.append(f"{special.value}: {sentence(special.meaning)}")
-    for part in field.bitfields:
-        end = part.at + part.bits - 1
-        summary = f" {sentence(part.summary)}" if part.summary else ""
-        paragraphs.append(f"Its bits {part.at} to {end}: {sentence(part.name)}{summary}")
     for erratum in field.errata:
         paragraphs.append(f"Erratum {prose(erratum.id)}: {sentence(erratum.title)}")
     return paragraphs

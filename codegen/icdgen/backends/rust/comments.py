@@ -61,9 +61,6 @@ def field(field: Field) -> list[str]:
     more += (f"{special.value}: {sentence(prose(special.meaning))}" for special in field.special)
     if field.limits is not None:
         more.append(limits(field.limits, unit))
-    for part in field.bitfields:
-        about = f" ({prose(part.summary)})" if part.summary else ""
-        more.append(f"Bits {part.at} to {part.at + part.bits - 1} of it: {prose(part.name)}{about}.")
     return [head, " ".join(more), *errata(field.errata)]
 
 

@@ -13,28 +13,6 @@ from icdgen.icd.model import CONFIGURATION, Icd, Message
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Crc, Facts
 
-FILES = (
-    "bits",
-    "crc",
-    "error",
-    "event",
-    "i2c",
-    "identity",
-    "log",
-    "message",
-    "mod",
-    "request",
-    "session",
-    "time",
-    "uart",
-)
-FOLDERS = {
-    "can": ("joiner", "mod", "splitter", "transaction"),
-    "client": ("mod",),
-    "client/machine": ("input", "mod", "output"),
-    "files": ("download", "erase", "hole_map", "index", "list", "mod", "poll", "procedure", "upload"),
-    "link": ("can", "logs", "mod", "steps", "transfer"),
-}
 REASONS = {
     "none": "NoError",
     "unknown_id": "UnknownId",
@@ -42,11 +20,6 @@ REASONS = {
     "parameter": "Parameter",
     "checksum": "Checksum",
 }
-
-
-def modules() -> list[str]:
-    """The files of the wire layer that are the same for every ICD, below ``src/wire`` and without their ending."""
-    return [*FILES, *(f"{folder}/{name}" for folder, names in FOLDERS.items() for name in names)]
 
 
 class LinkRow(NamedTuple):

@@ -112,14 +112,3 @@ def limits_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     text = f"{quote(pair.new.name)} may be {now or 'anything'}, could be {was or 'anything'}"
     detail = "What was allowed still is." if is_wider(old, new) else "Values that were allowed no longer are."
     yield Found(text, BOUNDS, was, now, (detail,))
-
-
-@rule("DIF214", "field", severity="warning")
-def parts_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    old, new = ({(p.at, p.bits): p.name for p in field.bitfields} for field in (pair.old, pair.new))
-    for at, size in sorted(old.keys() | new.keys()):
-        was, now = old.get((at, size), ""), new.get((at, size), "")
-        if was != now:
-            bits = f"bit {at}" if size == 1 else f"bits {at} to {at + size - 1}"
-            text = f"{bits} of {quote(pair.new.name)} are {quote(now) if now else 'no part'}, were {quote(was) if was else 'none'}"
-            yield Found(text, ("bitfields",), was, now)

@@ -20,15 +20,6 @@ def summary_changed(pair: Pair, ctx: Context) -> Iterator[Found]:
         if old != new:
             verb = "is new" if not old else "is gone" if not new else "says otherwise"
             yield Found(f"the {key} of {quote(pair.new.name)} {verb}", (key,), old, new)
-    if isinstance(pair, FieldPair):
-        yield from _parts(pair)
-
-
-def _parts(pair: FieldPair) -> Iterator[Found]:
-    old, new = ({(p.at, p.bits, p.name): p.summary for p in field.bitfields} for field in (pair.old, pair.new))
-    for key in sorted(old.keys() & new.keys()):
-        if old[key] != new[key]:
-            yield Found(f"the summary of {quote(key[2])} says otherwise", ("bitfields",), old[key], new[key])
 
 
 @rule("DIF402", "message", "enum", "node", severity="note")

@@ -196,9 +196,6 @@ class _Reader:
             const=get("const"), special=tuple(model.Special(s["value"], s["meaning"]) for s in get("special", ())),
             limits=model.Limits(**{key: Fraction(value) for key, value in item["limits"].items()})
             if "limits" in item else None,
-            bitfields=tuple(
-                model.BitField(b["offset"], b["bits"], b["name"], b.get("summary", "")) for b in get("bitfields", ())
-            ),
             summary=get("summary", ""), errata=self.about(item), source=item,
         )  # fmt: skip
 

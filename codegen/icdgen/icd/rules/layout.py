@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.icd.division import obstacles
 from icdgen.icd.model import Field
-from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import Fault, rule
 from icdgen.icd.rules.wording import count, line_of, quote
 
@@ -102,20 +103,6 @@ def undescribed_end(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD025")
 def bitfields(ctx: Context) -> Iterator[Fault]:
-    for field, _, _ in ctx.having["bitfields"]:
-        if field.type not in ("uint", "int", "enum"):
-            message = f"`bitfields` divide a number, and {quote(field.name)} is `{field.type}`"
-            yield Fault(field.source, field.source.at("bitfields"), message, "make the parts fields of the message")
-            continue
-        taken: dict[int, str] = {}
-        for item in mappings(field.source["bitfields"]):
-            at, bits, name = item.get("at"), item.get("bits"), quote(item.get("name"))
-            if not (isinstance(at, int) and isinstance(bits, int)):
-                continue
-            if at + bits > field.bits:
-                message = f"{name} ends at bit {at + bits} of {quote(field.name)}, which has {count(field.bits, 'bit')}"
-                yield Fault(field.source, item.at("bits"), message, "`at` counts within the field")
-            clash = next((taken[bit] for bit in range(at, at + bits) if bit in taken), None)
-            if clash:
-                yield Fault(field.source, item.at("at"), f"{name} overlaps {clash}", "`at` counts within the field")
-            taken.update((bit, name) for bit in range(at, at + bits))
+    for field, _, node in ctx.having["bitfields"]:
+        for item, key, message, help in obstacles(field.source, node.byte_order, node.bit_order):
+            yield Fault(item, item.at(key), message, help)

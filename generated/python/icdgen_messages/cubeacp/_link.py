@@ -567,6 +567,8 @@ LINK = link.Link(
         },
         packet_ids={
             "uart": 119,
+            # Assumed: That the reads are headed by the id of the frame with the
+            #   packet's format is not said.
             "i2c": 241,
             # Assumed: Download over CAN is not described. The packets are requested
             #   one by one as on I2C.
@@ -745,6 +747,18 @@ LINK = link.Link(
         ),
         link.Assumption(
             section="file_transfer.download",
+            key="i2c",
+            value={
+                "packet": "File Download Buffer with File Contents",
+                "id_of": "File Download Buffer with File Contents",
+            },
+            why=(
+                "That the reads are headed by the id of the frame with the packet's "
+                "format is not said."
+            ),
+        ),
+        link.Assumption(
+            section="file_transfer.download",
             key="can",
             value={
                 "packet": "File Download Buffer with File Contents",
@@ -836,6 +850,16 @@ LINK = link.Link(
             key="timeout_ms",
             value=60000,
             why="No time is given.",
+        ),
+        link.Assumption(
+            section="boot",
+            key="attempts",
+            value=3,
+            why=(
+                "One attempt and two more are announced. But the status is raised "
+                "before each start, so it reads 3 Failed boot attempts before the "
+                "third, and at that value no start is said to follow."
+            ),
         ),
         link.Assumption(
             section="crc8",

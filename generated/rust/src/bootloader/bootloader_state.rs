@@ -6,7 +6,7 @@ use crate::support::{flags, put, take, Error};
 
 /// Bootloader State: telemetry 132, 6 bytes. Table 69.
 ///
-/// Up-time, SRAM state and error flags. The flags stay set until Clear Error Flags.
+/// Up-time, SRAM state and error flags. The error flags stay set until Clear Error Flags.
 ///
 /// Erratum BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
 ///
@@ -20,12 +20,8 @@ pub struct BootloaderState {
     /// Erratum BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds.
     pub uptime: u16,
     /// SRAM1 is enabled (bit 16).
-    ///
-    /// Erratum BOOT-014 (certain): Bootloader State: some of the latched error flags are states.
     pub sram1_is_enabled: bool,
     /// SRAM2 is enabled (bit 17).
-    ///
-    /// Erratum BOOT-014 (certain): Bootloader State: some of the latched error flags are states.
     pub sram2_is_enabled: bool,
     /// SRAM Latch-up Error occurred and could not be recovered (bit 18).
     ///

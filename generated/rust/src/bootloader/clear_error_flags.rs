@@ -6,7 +6,7 @@ use crate::support::Error;
 
 /// Clear Error Flags: telecommand 7, 0 bytes. Table 61.
 ///
-/// Clears the latched flags of Bootloader State.
+/// Clears the latched error flags of Bootloader State.
 ///
 /// Erratum BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
 ///

@@ -23,11 +23,11 @@ pub struct ProgramInformation {
     ///
     /// Still reading.
     pub busy: bool,
-    /// File Size (bits 16 to 47): 0 to 4294967295.
-    ///
-    /// In bytes.
+    /// File Size (bits 16 to 47): 0 to 4294967295 byte.
     ///
     /// Erratum BOOT-019 (open): Program Information: what the checksum covers.
+    ///
+    /// Erratum BOOT-021 (certain): Size of a program has its unit in words only.
     pub file_size: u32,
     /// Checksum (bits 48 to 63): 0 to 65535.
     ///

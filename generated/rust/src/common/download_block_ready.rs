@@ -23,7 +23,7 @@ pub struct DownloadBlockReady {
     pub parameter_error: bool,
     /// Block CRC16 Checksum (bits 8 to 23): 0 to 65535.
     pub block_crc16_checksum: u16,
-    /// Block Length (bits 24 to 39): 0 to 65535.
+    /// Block Length (bits 24 to 39): 0 to 65535 byte.
     ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
     pub block_length: u16,

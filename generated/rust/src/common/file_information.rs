@@ -34,7 +34,7 @@ pub struct FileInformation {
     ///
     /// Erratum COM-035 (open): File counter of 8 bits.
     pub file_ctr: u8,
-    /// File Size (bits 16 to 47): 0 to 4294967295.
+    /// File Size (bits 16 to 47): 0 to 4294967295 byte.
     ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
     pub file_size: u32,

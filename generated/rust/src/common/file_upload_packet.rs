@@ -11,6 +11,8 @@ use crate::support::{array, put, put_array, take, Error};
 /// Erratum COM-041 (open): File upload is listed as common but described for the bootloader only.
 ///
 /// Erratum COM-046 (likely): File Upload Packet is not acknowledged, against the rule.
+///
+/// Erratum COM-125 (certain): File Upload Packet: messages of 20 bytes, parameters of 22.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -18,13 +18,13 @@ use crate::support::{put, take, Coded, Error};
 pub struct FinalizeUploadBlock {
     /// Destination (bits 0 to 7).
     pub destination: Coded<enums::FileUploadDestination>,
-    /// Offset (bits 8 to 39): 0 to 4294967295.
+    /// Offset (bits 8 to 39): 0 to 4294967295 byte.
     ///
     /// Where in the file the block belongs.
     ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
     pub offset: u32,
-    /// Block Length (bits 40 to 55): 0 to 65535.
+    /// Block Length (bits 40 to 55): 0 to 65535 byte.
     ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
     pub block_length: u16,

@@ -15,6 +15,8 @@ use crate::support::{array, put_array, Error};
 /// Erratum COM-117 (likely): Hole map: bits beyond the last packet.
 ///
 /// Erratum COM-118 (likely): Hole map: order of the eight parts.
+///
+/// Erratum COM-124 (certain): The hole map is read with eight frames, one table is referred to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

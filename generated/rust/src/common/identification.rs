@@ -26,19 +26,19 @@ pub struct Identification {
     pub firmware_version_major: u8,
     /// Firmware version (Minor) (bits 24 to 31): 0 to 255.
     pub firmware_version_minor: u8,
-    /// Runtime (seconds) (bits 32 to 47): 0 to 65535.
+    /// Runtime (seconds) (bits 32 to 47): 0 to 65535 s.
     ///
     /// Since the processor started.
     ///
     /// Erratum COM-056 (open): Runtime wraps after 18 hours.
     ///
-    /// Erratum COM-057 (certain): Runtime has its units in the name only.
+    /// Erratum COM-057 (certain): Runtime has its unit in words only.
     pub runtime_seconds: u16,
-    /// Runtime (milliseconds) (bits 48 to 63): 0 to 65535.
+    /// Runtime (milliseconds) (bits 48 to 63): 0 to 65535 ms.
     ///
     /// Beyond the whole seconds.
     ///
-    /// Erratum COM-057 (certain): Runtime has its units in the name only.
+    /// Erratum COM-127 (certain): Milliseconds of the runtime have their unit in words only.
     pub runtime_milliseconds: u16,
 }
 

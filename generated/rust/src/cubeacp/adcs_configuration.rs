@@ -207,11 +207,11 @@ pub struct AdcsConfiguration {
     ///
     /// Erratum ACP-149 (open): Boresight ends at 655 pixels.
     pub cam2_boresight_y: u16,
-    /// Nadir Max Deviation Percentage (bits 528 to 535): 0 to 255.
+    /// Nadir Max Deviation Percentage (bits 528 to 535): 0 to 255 %.
     ///
-    /// Largest deviation of an edge, in percent of the measured angular radius.
+    /// Largest deviation of an edge, of the measured angular radius.
     ///
-    /// Erratum ACP-151 (certain): Deviation percentage has no unit.
+    /// Erratum ACP-151 (certain): Deviation percentage has its unit in words only.
     pub nadir_max_deviation_percentage: u8,
     /// Nadir Max Bad Edges (bits 536 to 543): 0 to 255.
     ///
@@ -523,13 +523,13 @@ pub struct AdcsConfiguration {
     ///
     /// Erratum ACP-140 (certain): milliseconds is ms.
     pub star_tracker_delay_time: u16,
-    /// Star Tracker Centroid X (bits 1840 to 1871): 32-bit float.
+    /// Star Tracker Centroid X (bits 1840 to 1871): 32-bit float, in pixels.
     ///
-    /// In pixels.
+    /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
     pub star_tracker_centroid_x: f32,
-    /// Star Tracker Centroid Y (bits 1872 to 1903): 32-bit float.
+    /// Star Tracker Centroid Y (bits 1872 to 1903): 32-bit float, in pixels.
     ///
-    /// In pixels.
+    /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
     pub star_tracker_centroid_y: f32,
     /// Star Tracker Focal Length (bits 1904 to 1935): 32-bit float, in mm.
     pub star_tracker_focal_length: f32,
@@ -671,14 +671,20 @@ pub struct AdcsConfiguration {
     /// Product Of Inertia - Ixy (bits 2680 to 2711): 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    ///
+    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_ixy: f32,
     /// Product Of Inertia - Ixz (bits 2712 to 2743): 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    ///
+    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_ixz: f32,
     /// Product Of Inertia - Iyz (bits 2744 to 2775): 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    ///
+    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_iyz: f32,
     /// Magnetometer Rate Filter System Noise (bits 2776 to 2807): 32-bit float.
     pub magnetometer_rate_filter_system_noise: f32,
@@ -732,13 +738,20 @@ pub struct AdcsConfiguration {
     ///
     /// From MEMS rate estimation to RKF on a rate sensor error.
     pub estimation_transition_on_rate_sensor_error: bool,
-    /// Cam1 and Cam2 Sampling Period (bits 3016 to 3023): 0 to 255 s.
+    /// Cam1 period (bits 3016 to 3019): 0 to 15 s.
     ///
-    /// A period of 0 stops the sampling of that camera. Bits 0 to 3 of it: Cam1 period. Bits 4 to 7
-    /// of it: Cam2 period.
+    /// Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
+    /// camera.
     ///
     /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
-    pub cam1_and_cam2_sampling_period: u8,
+    pub cam1_period: u8,
+    /// Cam2 period (bits 3020 to 3023): 0 to 15 s.
+    ///
+    /// Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
+    /// camera.
+    ///
+    /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    pub cam2_period: u8,
     /// Incl. coefficient (bits 3024 to 3039): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the inclination.
@@ -1070,7 +1083,8 @@ impl AdcsConfiguration {
             magnetometer_mode: Coded::from_raw(bytes[375] >> 6),
             raw_magnetometer_selection: Coded::from_raw(bytes[376] & 0x03),
             estimation_transition_on_rate_sensor_error: bytes[376] & 0x04 != 0,
-            cam1_and_cam2_sampling_period: bytes[377],
+            cam1_period: bytes[377] & 0x0f,
+            cam2_period: bytes[377] >> 4,
             incl_coefficient: u16::from_le_bytes(take!(bytes[378; 2])),
             raan_coefficient: u16::from_le_bytes(take!(bytes[380; 2])),
             ecc_coefficient: u16::from_le_bytes(take!(bytes[382; 2])),
@@ -1321,7 +1335,8 @@ impl AdcsConfiguration {
         bytes[376] |= self.raw_magnetometer_selection.raw() & 0x03;
         let value = self.estimation_transition_on_rate_sensor_error;
         bytes[376] |= u8::from(value) << 2;
-        bytes[377] = self.cam1_and_cam2_sampling_period;
+        bytes[377] |= self.cam1_period & 0x0f;
+        bytes[377] |= self.cam2_period << 4;
         put!(self.incl_coefficient.to_le_bytes() => bytes[378; 2]);
         put!(self.raan_coefficient.to_le_bytes() => bytes[380; 2]);
         put!(self.ecc_coefficient.to_le_bytes() => bytes[382; 2]);
@@ -1355,6 +1370,8 @@ impl AdcsConfiguration {
         MAGNETOMETER_MODE.fit(self.magnetometer_mode.raw())?;
         let value = self.raw_magnetometer_selection.raw();
         RAW_MAGNETOMETER_SELECTION.fit(value)?;
+        CAM1_PERIOD.fit(self.cam1_period)?;
+        CAM2_PERIOD.fit(self.cam2_period)?;
         Ok(self.to_bytes())
     }
 
@@ -2948,7 +2965,8 @@ impl Default for AdcsConfiguration {
             magnetometer_mode: Coded::from_raw(0),
             raw_magnetometer_selection: Coded::from_raw(0),
             estimation_transition_on_rate_sensor_error: false,
-            cam1_and_cam2_sampling_period: 0,
+            cam1_period: 0,
+            cam2_period: 0,
             incl_coefficient: 0,
             raan_coefficient: 0,
             ecc_coefficient: 0,
@@ -3543,6 +3561,24 @@ const RAW_MAGNETOMETER_SELECTION: Scale = Scale {
     field: "Magnetometer Selection for RAW MTM TLM",
     min: 0,
     max: 3,
+    factor: 1,
+    offset: 0,
+    divisor: 1,
+};
+
+const CAM1_PERIOD: Scale = Scale {
+    field: "Cam1 period",
+    min: 0,
+    max: 15,
+    factor: 1,
+    offset: 0,
+    divisor: 1,
+};
+
+const CAM2_PERIOD: Scale = Scale {
+    field: "Cam2 period",
+    min: 0,
+    max: 15,
     factor: 1,
     offset: 0,
     divisor: 1,

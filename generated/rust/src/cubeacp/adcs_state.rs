@@ -254,21 +254,21 @@ pub struct AdcsState {
     ///
     /// Erratum ACP-067 (open): Position and altitude do not reach equally far.
     pub altitude: u16,
-    /// ECEF Position X (bits 384 to 399): -32768 to 32767 m.
+    /// ECEF Position X (bits 384 to 399): -32768 to 32767.
     ///
-    /// Erratum ACP-098 (open): ECEF position: 16 bits in metres.
+    /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
     /// Erratum ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_x: i16,
-    /// ECEF Position Y (bits 400 to 415): -32768 to 32767 m.
+    /// ECEF Position Y (bits 400 to 415): -32768 to 32767.
     ///
-    /// Erratum ACP-098 (open): ECEF position: 16 bits in metres.
+    /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
     /// Erratum ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_y: i16,
-    /// ECEF Position Z (bits 416 to 431): -32768 to 32767 m.
+    /// ECEF Position Z (bits 416 to 431): -32768 to 32767.
     ///
-    /// Erratum ACP-098 (open): ECEF position: 16 bits in metres.
+    /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
     /// Erratum ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_z: i16,

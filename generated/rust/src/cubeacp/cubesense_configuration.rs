@@ -113,11 +113,11 @@ pub struct CubesenseConfiguration {
     ///
     /// Erratum ACP-149 (open): Boresight ends at 655 pixels.
     pub cam2_boresight_y: u16,
-    /// Nadir Max Deviation Percentage (bits 224 to 231): 0 to 255.
+    /// Nadir Max Deviation Percentage (bits 224 to 231): 0 to 255 %.
     ///
-    /// Largest deviation of an edge, in percent of the measured angular radius.
+    /// Largest deviation of an edge, of the measured angular radius.
     ///
-    /// Erratum ACP-151 (certain): Deviation percentage has no unit.
+    /// Erratum ACP-151 (certain): Deviation percentage has its unit in words only.
     pub nadir_max_deviation_percentage: u8,
     /// Nadir Max Bad Edges (bits 232 to 239): 0 to 255.
     ///

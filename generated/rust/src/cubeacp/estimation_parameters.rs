@@ -86,13 +86,20 @@ pub struct EstimationParameters {
     ///
     /// From MEMS rate estimation to RKF on a rate sensor error.
     pub estimation_transition_on_rate_sensor_error: bool,
-    /// Cam1 and Cam2 Sampling Period (bits 240 to 247): 0 to 255 s.
+    /// Cam1 period (bits 240 to 243): 0 to 15 s.
     ///
-    /// A period of 0 stops the sampling of that camera. Bits 0 to 3 of it: Cam1 period. Bits 4 to 7
-    /// of it: Cam2 period.
+    /// Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
+    /// camera.
     ///
     /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
-    pub cam1_and_cam2_sampling_period: u8,
+    pub cam1_period: u8,
+    /// Cam2 period (bits 244 to 247): 0 to 15 s.
+    ///
+    /// Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
+    /// camera.
+    ///
+    /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    pub cam2_period: u8,
 }
 
 impl EstimationParameters {
@@ -140,7 +147,8 @@ impl EstimationParameters {
             magnetometer_mode: Coded::from_raw(bytes[28] >> 6),
             raw_magnetometer_selection: Coded::from_raw(bytes[29] & 0x03),
             estimation_transition_on_rate_sensor_error: bytes[29] & 0x04 != 0,
-            cam1_and_cam2_sampling_period: bytes[30],
+            cam1_period: bytes[30] & 0x0f,
+            cam2_period: bytes[30] >> 4,
         }
     }
 
@@ -169,7 +177,8 @@ impl EstimationParameters {
         bytes[29] |= self.raw_magnetometer_selection.raw() & 0x03;
         let value = self.estimation_transition_on_rate_sensor_error;
         bytes[29] |= u8::from(value) << 2;
-        bytes[30] = self.cam1_and_cam2_sampling_period;
+        bytes[30] |= self.cam1_period & 0x0f;
+        bytes[30] |= self.cam2_period << 4;
         bytes
     }
 
@@ -183,6 +192,8 @@ impl EstimationParameters {
         MAGNETOMETER_MODE.fit(self.magnetometer_mode.raw())?;
         let value = self.raw_magnetometer_selection.raw();
         RAW_MAGNETOMETER_SELECTION.fit(value)?;
+        CAM1_PERIOD.fit(self.cam1_period)?;
+        CAM2_PERIOD.fit(self.cam2_period)?;
         Ok(self.to_bytes())
     }
 }
@@ -200,6 +211,24 @@ const RAW_MAGNETOMETER_SELECTION: Scale = Scale {
     field: "Magnetometer Selection for RAW MTM TLM",
     min: 0,
     max: 3,
+    factor: 1,
+    offset: 0,
+    divisor: 1,
+};
+
+const CAM1_PERIOD: Scale = Scale {
+    field: "Cam1 period",
+    min: 0,
+    max: 15,
+    factor: 1,
+    offset: 0,
+    divisor: 1,
+};
+
+const CAM2_PERIOD: Scale = Scale {
+    field: "Cam2 period",
+    min: 0,
+    max: 15,
     factor: 1,
     offset: 0,
     divisor: 1,

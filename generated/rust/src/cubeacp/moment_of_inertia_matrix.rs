@@ -18,10 +18,16 @@ pub struct MomentOfInertiaMatrix {
     /// Moment Of Inertia - Izz (bits 64 to 95): 32-bit float, in kg.m^2.
     pub moment_of_inertia_izz: f32,
     /// Product Of Inertia - Ixy (bits 96 to 127): 32-bit float, in kg.m^2.
+    ///
+    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_ixy: f32,
     /// Product Of Inertia - Ixz (bits 128 to 159): 32-bit float, in kg.m^2.
+    ///
+    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_ixz: f32,
     /// Product Of Inertia - Iyz (bits 160 to 191): 32-bit float, in kg.m^2.
+    ///
+    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_iyz: f32,
 }
 

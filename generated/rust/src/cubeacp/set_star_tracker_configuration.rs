@@ -91,13 +91,13 @@ pub struct SetStarTrackerConfiguration {
     ///
     /// Erratum ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
     pub star_tracker_delay_time: u16,
-    /// Star Tracker Centroid X (bits 160 to 191): 32-bit float.
+    /// Star Tracker Centroid X (bits 160 to 191): 32-bit float, in pixels.
     ///
-    /// In pixels.
+    /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
     pub star_tracker_centroid_x: f32,
-    /// Star Tracker Centroid Y (bits 192 to 223): 32-bit float.
+    /// Star Tracker Centroid Y (bits 192 to 223): 32-bit float, in pixels.
     ///
-    /// In pixels.
+    /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
     pub star_tracker_centroid_y: f32,
     /// Star Tracker Focal Length (bits 224 to 255): 32-bit float, in mm.
     pub star_tracker_focal_length: f32,

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from icdgen.backends.c.constants import Constant
+from icdgen.backends.c.constants import Macro
 from icdgen.backends.c.link.base import Table
 from icdgen.backends.c.link.buses import BusTables
 from icdgen.backends.c.link.files import FileTables
 from icdgen.backends.c.link.logs import LogTables
 from icdgen.backends.c.link.rows import boolean, or_none, row_of, short, wrapped
-from icdgen.backends.c.plan import Plan
+from icdgen.backends.c.names import constant
 from icdgen.backends.c.text import comment, plain
+from icdgen.describe import MessageDescription
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol.facts import Facts
 
@@ -35,7 +36,7 @@ def step_bytes(all_facts: Iterable[Facts]) -> int:
     return max(sizes)
 
 
-def sizes(known: Facts) -> list[Constant]:
+def sizes(known: Facts) -> list[Macro]:
     """Sizes of buffers."""
     upper, packet = known.node.name.upper(), known.can and known.can.extended
     rows = [("LONGEST", known.longest, "Bytes of the longest message of either direction, with id and checksum.")]
@@ -52,16 +53,16 @@ def sizes(known: Facts) -> list[Constant]:
         packets = known.packets_of(files.block_bytes)
         rows.append(("BLOCK_BYTES", packets * files.packet_bytes, "Bytes of the largest block of a file."))
         rows.append(("BLOCK_BITMAP_BYTES", -(-packets // 8), "Bytes of a bit for each packet of such a block."))
-    return [Constant(comment([text]), f"{upper}_{end}", f"{value}u") for end, value, text in rows]
+    return [Macro(comment([text]), f"{upper}_{end}", f"{value}u") for end, value, text in rows]
 
 
-def aliases(plans: Iterable[Plan]) -> list[Alias]:
+def aliases(messages: Iterable[MessageDescription]) -> list[Alias]:
     """``DEMO_ANGLES_TELEMETRY``: the id under which a message is requested, whatever its kind."""
-    found = []
-    for plan in plans:
-        if plan.message.telemetry_id is not None:
-            found.append(Alias(f"{plan.stem.upper()}_TELEMETRY", f"{plan.message.telemetry_id}u"))
-    return found
+    return [
+        Alias(constant(one, "telemetry"), f"{one.message.telemetry_id}u")
+        for one in messages
+        if one.message.telemetry_id is not None
+    ]
 
 
 class LinkTables(BusTables, LogTables, FileTables):

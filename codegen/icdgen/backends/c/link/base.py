@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from icdgen import codec
 from icdgen.backends.c.link.rows import aligned, lines, or_none
-from icdgen.backends.c.statement import STEP
 from icdgen.backends.c.text import comment, plain
+from icdgen.backends.lines import STEP
 from icdgen.protocol.facts import CAN, I2C, UART, Facts, Step
 
 BUSES = (UART, I2C, CAN)

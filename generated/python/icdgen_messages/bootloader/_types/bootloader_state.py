@@ -29,7 +29,8 @@ _BYTES_1 = _codec.Inverse(_BITS_1)
 class BootloaderState(_base.Message):
     """Bootloader State: telemetry 132, 6 bytes, table 69.
 
-    Up-time, SRAM state and error flags. The flags stay set until Clear Error Flags.
+    Up-time, SRAM state and error flags. The error flags stay set until Clear Error
+    Flags.
 
     Erratum BOOT-004: Ids 7, 132, 232 and 233 mean something else in the control
     program.
@@ -108,15 +109,9 @@ class BootloaderState(_base.Message):
     Erratum BOOT-015: Bootloader State: Up-time is Uptime in seconds.
     """
     sram1_is_enabled: bool
-    """SRAM1 is enabled: bit 16.
-
-    Erratum BOOT-014: Bootloader State: some of the latched error flags are states.
-    """
+    """SRAM1 is enabled: bit 16."""
     sram2_is_enabled: bool
-    """SRAM2 is enabled: bit 17.
-
-    Erratum BOOT-014: Bootloader State: some of the latched error flags are states.
-    """
+    """SRAM2 is enabled: bit 17."""
     sram_latchup_error: bool
     """SRAM Latch-up Error occurred and could not be recovered: bit 18.
 

@@ -40,7 +40,7 @@ class ProgramInformation(_base.Message):
             "program_index", "Program Index", 0, 8, "enum", enum=ProgramsList
         ),
         _base.FieldInfo("busy", "Busy", 8, 1, "bool"),
-        _base.FieldInfo("file_size", "File Size", 16, 32, "uint"),
+        _base.FieldInfo("file_size", "File Size", 16, 32, "uint", unit="byte"),
         _base.FieldInfo("checksum", "Checksum", 48, 16, "uint"),
     )
 
@@ -56,11 +56,11 @@ class ProgramInformation(_base.Message):
     Still reading.
     """
     file_size: int
-    """File Size: bits 16 to 47, 0 to 4294967295.
-
-    In bytes.
+    """File Size: bits 16 to 47, 0 to 4294967295, in byte.
 
     Erratum BOOT-019: Program Information: what the checksum covers.
+
+    Erratum BOOT-021: Size of a program has its unit in words only.
     """
     checksum: int
     """Checksum: bits 48 to 63, 0 to 65535.

@@ -36,7 +36,7 @@ class DownloadBlockReady(_base.Message):
         _base.FieldInfo("ready", "Ready", 0, 1, "bool"),
         _base.FieldInfo("parameter_error", "ParameterError", 1, 1, "bool"),
         _base.FieldInfo("block_crc16_checksum", "Block CRC16 Checksum", 8, 16, "uint"),
-        _base.FieldInfo("block_length", "Block Length", 24, 16, "uint"),
+        _base.FieldInfo("block_length", "Block Length", 24, 16, "uint", unit="byte"),
     )
 
     ready: bool
@@ -51,7 +51,7 @@ class DownloadBlockReady(_base.Message):
     block_crc16_checksum: int
     """Block CRC16 Checksum: bits 8 to 23, 0 to 65535."""
     block_length: int
-    """Block Length: bits 24 to 39, 0 to 65535.
+    """Block Length: bits 24 to 39, 0 to 65535, in byte.
 
     Erratum COM-039: Offsets and lengths of files have no unit.
     """

@@ -48,7 +48,7 @@ class FileInformation(_base.Message):
         _base.FieldInfo("file_type", "File Type", 0, 4, "enum", enum=FileType),
         _base.FieldInfo("busy_updating", "Busy Updating", 4, 1, "bool"),
         _base.FieldInfo("file_ctr", "File Ctr", 8, 8, "uint"),
-        _base.FieldInfo("file_size", "File Size", 16, 32, "uint"),
+        _base.FieldInfo("file_size", "File Size", 16, 32, "uint", unit="byte"),
         _base.FieldInfo(
             "file_date_and_time",
             "File Date and Time",
@@ -82,7 +82,7 @@ class FileInformation(_base.Message):
     Erratum COM-035: File counter of 8 bits.
     """
     file_size: int
-    """File Size: bits 16 to 47, 0 to 4294967295.
+    """File Size: bits 16 to 47, 0 to 4294967295, in byte.
 
     Erratum COM-039: Offsets and lengths of files have no unit.
     """

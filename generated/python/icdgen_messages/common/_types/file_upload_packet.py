@@ -25,6 +25,8 @@ class FileUploadPacket(_base.Message):
     only.
 
     Erratum COM-046: File Upload Packet is not acknowledged, against the rule.
+
+    Erratum COM-125: File Upload Packet: messages of 20 bytes, parameters of 22.
     """
 
     __slots__ = ("packet_number", "file_bytes")

@@ -26,6 +26,8 @@ class HoleMap4(_base.Message):
     Erratum COM-117: Hole map: bits beyond the last packet.
 
     Erratum COM-118: Hole map: order of the eight parts.
+
+    Erratum COM-124: The hole map is read with eight frames, one table is referred to.
     """
 
     __slots__ = ("hole_map",)

@@ -20,6 +20,9 @@ class ResetUploadBlock(_base.Message):
 
     Erratum COM-041: File upload is listed as common but described for the bootloader
     only.
+
+    Erratum COM-126: Reset Upload Block tells the node of a block, and does not say
+    which.
     """
 
     __slots__ = ()

@@ -35,6 +35,8 @@ _BITS_5 = _codec.bit_table(
 _BYTES_5 = _codec.Inverse(_BITS_5)
 _BITS_6 = _codec.bit_table((0, 2, MagModeVal), (2, 1, bool))
 _BYTES_6 = _codec.Inverse(_BITS_6)
+_BITS_7 = _codec.bit_table((0, 4, int), (4, 4, int))
+_BYTES_7 = _codec.Inverse(_BITS_7)
 _DEFAULT_0 = bytes(48)
 
 
@@ -276,7 +278,8 @@ class AdcsConfiguration(_base.Message):
         "magnetometer_mode",
         "raw_magnetometer_selection",
         "estimation_transition_on_rate_sensor_error",
-        "cam1_and_cam2_sampling_period",
+        "cam1_period",
+        "cam2_period",
         "incl_coefficient",
         "raan_coefficient",
         "ecc_coefficient",
@@ -641,6 +644,7 @@ class AdcsConfiguration(_base.Message):
             528,
             8,
             "uint",
+            unit="%",
         ),
         _base.FieldInfo("nadir_max_bad_edges", "Nadir Max Bad Edges", 536, 8, "uint"),
         _base.FieldInfo(
@@ -1118,10 +1122,20 @@ class AdcsConfiguration(_base.Message):
             unit="ms",
         ),
         _base.FieldInfo(
-            "star_tracker_centroid_x", "Star Tracker Centroid X", 1840, 32, "float"
+            "star_tracker_centroid_x",
+            "Star Tracker Centroid X",
+            1840,
+            32,
+            "float",
+            unit="pixels",
         ),
         _base.FieldInfo(
-            "star_tracker_centroid_y", "Star Tracker Centroid Y", 1872, 32, "float"
+            "star_tracker_centroid_y",
+            "Star Tracker Centroid Y",
+            1872,
+            32,
+            "float",
+            unit="pixels",
         ),
         _base.FieldInfo(
             "star_tracker_focal_length",
@@ -1428,14 +1442,8 @@ class AdcsConfiguration(_base.Message):
             1,
             "bool",
         ),
-        _base.FieldInfo(
-            "cam1_and_cam2_sampling_period",
-            "Cam1 and Cam2 Sampling Period",
-            3016,
-            8,
-            "uint",
-            unit="s",
-        ),
+        _base.FieldInfo("cam1_period", "Cam1 period", 3016, 4, "uint", unit="s"),
+        _base.FieldInfo("cam2_period", "Cam2 period", 3020, 4, "uint", unit="s"),
         _base.FieldInfo(
             "incl_coefficient",
             "Incl. coefficient",
@@ -1799,11 +1807,11 @@ class AdcsConfiguration(_base.Message):
     Erratum ACP-149: Boresight ends at 655 pixels.
     """
     nadir_max_deviation_percentage: int
-    """Nadir Max Deviation Percentage: bits 528 to 535, 0 to 255.
+    """Nadir Max Deviation Percentage: bits 528 to 535, 0 to 255, in %.
 
-    Largest deviation of an edge, in percent of the measured angular radius.
+    Largest deviation of an edge, of the measured angular radius.
 
-    Erratum ACP-151: Deviation percentage has no unit.
+    Erratum ACP-151: Deviation percentage has its unit in words only.
     """
     nadir_max_bad_edges: int
     """Nadir Max Bad Edges: bits 536 to 543, 0 to 255.
@@ -2162,14 +2170,14 @@ class AdcsConfiguration(_base.Message):
     Erratum ACP-140: milliseconds is ms.
     """
     star_tracker_centroid_x: float
-    """Star Tracker Centroid X: bits 1840 to 1871, 32-bit float.
+    """Star Tracker Centroid X: bits 1840 to 1871, 32-bit float, in pixels.
 
-    In pixels.
+    Erratum ACP-202: Image centre of the star tracker has its unit in words only.
     """
     star_tracker_centroid_y: float
-    """Star Tracker Centroid Y: bits 1872 to 1903, 32-bit float.
+    """Star Tracker Centroid Y: bits 1872 to 1903, 32-bit float, in pixels.
 
-    In pixels.
+    Erratum ACP-202: Image centre of the star tracker has its unit in words only.
     """
     star_tracker_focal_length: float
     """Star Tracker Focal Length: bits 1904 to 1935, 32-bit float, in mm."""
@@ -2346,16 +2354,22 @@ class AdcsConfiguration(_base.Message):
     """Product Of Inertia - Ixy: bits 2680 to 2711, 32-bit float, in kg.m^2.
 
     Erratum ACP-006: Moments of inertia: kg.m² and kg.m^2.
+
+    Erratum ACP-201: Products of inertia: the sign is not given.
     """
     product_of_inertia_ixz: float
     """Product Of Inertia - Ixz: bits 2712 to 2743, 32-bit float, in kg.m^2.
 
     Erratum ACP-006: Moments of inertia: kg.m² and kg.m^2.
+
+    Erratum ACP-201: Products of inertia: the sign is not given.
     """
     product_of_inertia_iyz: float
     """Product Of Inertia - Iyz: bits 2744 to 2775, 32-bit float, in kg.m^2.
 
     Erratum ACP-006: Moments of inertia: kg.m² and kg.m^2.
+
+    Erratum ACP-201: Products of inertia: the sign is not given.
     """
     magnetometer_rate_filter_system_noise: float
     """Magnetometer Rate Filter System Noise: bits 2776 to 2807, 32-bit float."""
@@ -2418,14 +2432,19 @@ class AdcsConfiguration(_base.Message):
 
     From MEMS rate estimation to RKF on a rate sensor error.
     """
-    cam1_and_cam2_sampling_period: int
-    """Cam1 and Cam2 Sampling Period: bits 3016 to 3023, 0 to 255, in s.
+    cam1_period: int
+    """Cam1 period: bits 3016 to 3019, 0 to 15, in s.
 
-    A period of 0 stops the sampling of that camera.
+    Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
+    that camera.
 
-    Its bits 0 to 3: Cam1 period.
+    Erratum ACP-169: Two sampling periods in one field with a unit.
+    """
+    cam2_period: int
+    """Cam2 period: bits 3020 to 3023, 0 to 15, in s.
 
-    Its bits 4 to 7: Cam2 period.
+    Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
+    that camera.
 
     Erratum ACP-169: Two sampling periods in one field with a unit.
     """
@@ -2743,7 +2762,8 @@ class AdcsConfiguration(_base.Message):
         magnetometer_mode: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
         raw_magnetometer_selection: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
         estimation_transition_on_rate_sensor_error: bool = False,
-        cam1_and_cam2_sampling_period: int = 0,
+        cam1_period: int = 0,
+        cam2_period: int = 0,
         incl_coefficient: int = 0,
         raan_coefficient: int = 0,
         ecc_coefficient: int = 0,
@@ -3015,7 +3035,8 @@ class AdcsConfiguration(_base.Message):
         self.estimation_transition_on_rate_sensor_error = (
             estimation_transition_on_rate_sensor_error
         )
-        self.cam1_and_cam2_sampling_period = cam1_and_cam2_sampling_period
+        self.cam1_period = cam1_period
+        self.cam2_period = cam2_period
         self.incl_coefficient = incl_coefficient
         self.raan_coefficient = raan_coefficient
         self.ecc_coefficient = ecc_coefficient
@@ -3231,7 +3252,8 @@ class AdcsConfiguration(_base.Message):
         magnetometer_mode: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
         raw_magnetometer_selection: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
         estimation_transition_on_rate_sensor_error: bool = False,
-        cam1_and_cam2_sampling_period: int = 0,
+        cam1_period: int = 0,
+        cam2_period: int = 0,
         incl_coefficient_physical: float = 0.0,
         raan_coefficient_physical: float = 0.0,
         ecc_coefficient_physical: float = 0.0,
@@ -3529,7 +3551,8 @@ class AdcsConfiguration(_base.Message):
         self.estimation_transition_on_rate_sensor_error = (
             estimation_transition_on_rate_sensor_error
         )
-        self.cam1_and_cam2_sampling_period = cam1_and_cam2_sampling_period
+        self.cam1_period = cam1_period
+        self.cam2_period = cam2_period
         self.incl_coefficient_physical = incl_coefficient_physical
         self.raan_coefficient_physical = raan_coefficient_physical
         self.ecc_coefficient_physical = ecc_coefficient_physical
@@ -3739,7 +3762,7 @@ class AdcsConfiguration(_base.Message):
                 self.star_tracker_measurement_noise,
                 v375,
                 v376,
-                self.cam1_and_cam2_sampling_period,
+                v377,
                 self.incl_coefficient,
                 self.raan_coefficient,
                 self.ecc_coefficient,
@@ -3804,6 +3827,7 @@ class AdcsConfiguration(_base.Message):
             self.raw_magnetometer_selection,
             self.estimation_transition_on_rate_sensor_error,
         ) = _BITS_6[v376]
+        self.cam1_period, self.cam2_period = _BITS_7[v377]
         total = (
             self.star_tracker_centroid_x
             + self.star_tracker_centroid_y
@@ -3871,6 +3895,7 @@ class AdcsConfiguration(_base.Message):
                 self.raw_magnetometer_selection,
                 self.estimation_transition_on_rate_sensor_error,
             ]
+            v377 = _BYTES_7[self.cam1_period, self.cam2_period]
             frame = _pack(
                 self.magnetorquer_1_configuration,
                 self.magnetorquer_2_configuration,
@@ -4054,7 +4079,7 @@ class AdcsConfiguration(_base.Message):
                 self.star_tracker_measurement_noise,
                 v375,
                 v376,
-                self.cam1_and_cam2_sampling_period,
+                v377,
                 self.incl_coefficient,
                 self.raan_coefficient,
                 self.ecc_coefficient,

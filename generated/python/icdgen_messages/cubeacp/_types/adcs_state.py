@@ -557,9 +557,9 @@ class AdcsState(_base.Message):
             physical="altitude_km",
             scale=(1, 0, 100),
         ),
-        _base.FieldInfo("ecef_position_x", "ECEF Position X", 384, 16, "int", unit="m"),
-        _base.FieldInfo("ecef_position_y", "ECEF Position Y", 400, 16, "int", unit="m"),
-        _base.FieldInfo("ecef_position_z", "ECEF Position Z", 416, 16, "int", unit="m"),
+        _base.FieldInfo("ecef_position_x", "ECEF Position X", 384, 16, "int"),
+        _base.FieldInfo("ecef_position_y", "ECEF Position Y", 400, 16, "int"),
+        _base.FieldInfo("ecef_position_z", "ECEF Position Z", 416, 16, "int"),
     )
 
     attitude_estimation_mode: EstimModeSelect
@@ -828,21 +828,21 @@ class AdcsState(_base.Message):
     Erratum ACP-067: Position and altitude do not reach equally far.
     """
     ecef_position_x: int
-    """ECEF Position X: bits 384 to 399, -32768 to 32767, in m.
+    """ECEF Position X: bits 384 to 399, -32768 to 32767.
 
     Erratum ACP-098: ECEF position: 16 bits in metres.
 
     Erratum ACP-099: ECEF position: one name, two widths.
     """
     ecef_position_y: int
-    """ECEF Position Y: bits 400 to 415, -32768 to 32767, in m.
+    """ECEF Position Y: bits 400 to 415, -32768 to 32767.
 
     Erratum ACP-098: ECEF position: 16 bits in metres.
 
     Erratum ACP-099: ECEF position: one name, two widths.
     """
     ecef_position_z: int
-    """ECEF Position Z: bits 416 to 431, -32768 to 32767, in m.
+    """ECEF Position Z: bits 416 to 431, -32768 to 32767.
 
     Erratum ACP-098: ECEF position: 16 bits in metres.
 

@@ -226,6 +226,7 @@ class CubesenseConfiguration(_base.Message):
             224,
             8,
             "uint",
+            unit="%",
         ),
         _base.FieldInfo("nadir_max_bad_edges", "Nadir Max Bad Edges", 232, 8, "uint"),
         _base.FieldInfo(
@@ -470,11 +471,11 @@ class CubesenseConfiguration(_base.Message):
     Erratum ACP-149: Boresight ends at 655 pixels.
     """
     nadir_max_deviation_percentage: int
-    """Nadir Max Deviation Percentage: bits 224 to 231, 0 to 255.
+    """Nadir Max Deviation Percentage: bits 224 to 231, 0 to 255, in %.
 
-    Largest deviation of an edge, in percent of the measured angular radius.
+    Largest deviation of an edge, of the measured angular radius.
 
-    Erratum ACP-151: Deviation percentage has no unit.
+    Erratum ACP-151: Deviation percentage has its unit in words only.
     """
     nadir_max_bad_edges: int
     """Nadir Max Bad Edges: bits 232 to 239, 0 to 255.

@@ -23,6 +23,8 @@ _BITS_0 = _codec.bit_table(
 _BYTES_0 = _codec.Inverse(_BITS_0)
 _BITS_1 = _codec.bit_table((0, 2, MagModeVal), (2, 1, bool))
 _BYTES_1 = _codec.Inverse(_BITS_1)
+_BITS_2 = _codec.bit_table((0, 4, int), (4, 4, int))
+_BYTES_2 = _codec.Inverse(_BITS_2)
 
 
 @dataclass(init=False, repr=False, eq=False)
@@ -54,7 +56,8 @@ class EstimationParameters(_base.Message):
         "magnetometer_mode",
         "raw_magnetometer_selection",
         "estimation_transition_on_rate_sensor_error",
-        "cam1_and_cam2_sampling_period",
+        "cam1_period",
+        "cam2_period",
     )
 
     NODE = "cubeacp"
@@ -141,14 +144,8 @@ class EstimationParameters(_base.Message):
             1,
             "bool",
         ),
-        _base.FieldInfo(
-            "cam1_and_cam2_sampling_period",
-            "Cam1 and Cam2 Sampling Period",
-            240,
-            8,
-            "uint",
-            unit="s",
-        ),
+        _base.FieldInfo("cam1_period", "Cam1 period", 240, 4, "uint", unit="s"),
+        _base.FieldInfo("cam2_period", "Cam2 period", 244, 4, "uint", unit="s"),
     )
 
     magnetometer_rate_filter_system_noise: float
@@ -237,14 +234,19 @@ class EstimationParameters(_base.Message):
 
     From MEMS rate estimation to RKF on a rate sensor error.
     """
-    cam1_and_cam2_sampling_period: int
-    """Cam1 and Cam2 Sampling Period: bits 240 to 247, 0 to 255, in s.
+    cam1_period: int
+    """Cam1 period: bits 240 to 243, 0 to 15, in s.
 
-    A period of 0 stops the sampling of that camera.
+    Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
+    that camera.
 
-    Its bits 0 to 3: Cam1 period.
+    Erratum ACP-169: Two sampling periods in one field with a unit.
+    """
+    cam2_period: int
+    """Cam2 period: bits 244 to 247, 0 to 15, in s.
 
-    Its bits 4 to 7: Cam2 period.
+    Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
+    that camera.
 
     Erratum ACP-169: Two sampling periods in one field with a unit.
     """
@@ -268,7 +270,8 @@ class EstimationParameters(_base.Message):
         magnetometer_mode: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
         raw_magnetometer_selection: MagModeVal = MagModeVal.MAIN_MTM_SAMPLED_THROUGH_SIGNAL,
         estimation_transition_on_rate_sensor_error: bool = False,
-        cam1_and_cam2_sampling_period: int = 0,
+        cam1_period: int = 0,
+        cam2_period: int = 0,
     ) -> None:
         self.magnetometer_rate_filter_system_noise = (
             magnetometer_rate_filter_system_noise
@@ -290,7 +293,8 @@ class EstimationParameters(_base.Message):
         self.estimation_transition_on_rate_sensor_error = (
             estimation_transition_on_rate_sensor_error
         )
-        self.cam1_and_cam2_sampling_period = cam1_and_cam2_sampling_period
+        self.cam1_period = cam1_period
+        self.cam2_period = cam2_period
 
     @classmethod
     def from_bytes(cls, data: _base.Buffer) -> EstimationParameters:
@@ -307,7 +311,7 @@ class EstimationParameters(_base.Message):
                 self.star_tracker_measurement_noise,
                 v28,
                 v29,
-                self.cam1_and_cam2_sampling_period,
+                v30,
             ) = _unpack(data)
         except struct.error:
             raise _codec.length_error(cls, data) from None
@@ -324,6 +328,7 @@ class EstimationParameters(_base.Message):
             self.raw_magnetometer_selection,
             self.estimation_transition_on_rate_sensor_error,
         ) = _BITS_1[v29]
+        self.cam1_period, self.cam2_period = _BITS_2[v30]
         total = (
             self.magnetometer_rate_filter_system_noise
             + self.ekf_system_noise
@@ -353,6 +358,7 @@ class EstimationParameters(_base.Message):
                 self.raw_magnetometer_selection,
                 self.estimation_transition_on_rate_sensor_error,
             ]
+            v30 = _BYTES_2[self.cam1_period, self.cam2_period]
             frame = _pack(
                 self.magnetometer_rate_filter_system_noise,
                 self.ekf_system_noise,
@@ -363,7 +369,7 @@ class EstimationParameters(_base.Message):
                 self.star_tracker_measurement_noise,
                 v28,
                 v29,
-                self.cam1_and_cam2_sampling_period,
+                v30,
             )
             total = (
                 self.magnetometer_rate_filter_system_noise

@@ -135,10 +135,20 @@ class SetStarTrackerConfiguration(_base.Message):
             unit="ms",
         ),
         _base.FieldInfo(
-            "star_tracker_centroid_x", "Star Tracker Centroid X", 160, 32, "float"
+            "star_tracker_centroid_x",
+            "Star Tracker Centroid X",
+            160,
+            32,
+            "float",
+            unit="pixels",
         ),
         _base.FieldInfo(
-            "star_tracker_centroid_y", "Star Tracker Centroid Y", 192, 32, "float"
+            "star_tracker_centroid_y",
+            "Star Tracker Centroid Y",
+            192,
+            32,
+            "float",
+            unit="pixels",
         ),
         _base.FieldInfo(
             "star_tracker_focal_length",
@@ -312,14 +322,14 @@ class SetStarTrackerConfiguration(_base.Message):
     Erratum ACP-147: Star tracker fields: Star Tracker, StarTracker, Star tracking.
     """
     star_tracker_centroid_x: float
-    """Star Tracker Centroid X: bits 160 to 191, 32-bit float.
+    """Star Tracker Centroid X: bits 160 to 191, 32-bit float, in pixels.
 
-    In pixels.
+    Erratum ACP-202: Image centre of the star tracker has its unit in words only.
     """
     star_tracker_centroid_y: float
-    """Star Tracker Centroid Y: bits 192 to 223, 32-bit float.
+    """Star Tracker Centroid Y: bits 192 to 223, 32-bit float, in pixels.
 
-    In pixels.
+    Erratum ACP-202: Image centre of the star tracker has its unit in words only.
     """
     star_tracker_focal_length: float
     """Star Tracker Focal Length: bits 224 to 255, 32-bit float, in mm."""

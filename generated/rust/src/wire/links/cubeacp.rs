@@ -15,6 +15,10 @@ pub const LONGEST: usize = 506;
 
 /// The protocol of node `cubeacp`. What the manual leaves open is marked as assumed.
 ///
+/// Assumed (`boot`, `attempts`): One attempt and two more are announced. But the status is raised
+/// before each start, so it reads 3 Failed boot attempts before the third, and at that value no
+/// start is said to follow.
+///
 /// Assumed (`unsolicited_log.configured_by`, `period_unit_ms`): No unit is given. The control loop
 /// runs once a second.
 ///
@@ -447,6 +451,8 @@ pub static LINK: Link = Link {
         block_bytes: 20_480,
         packet_ids: PerBus {
             uart: Some(119),
+            // Assumed. That the reads are headed by the id of the frame with the packet's format is
+            // not said.
             i2c: Some(241),
             // Assumed. Download over CAN is not described. The packets are requested one by one as
             // on I2C.

@@ -1,0 +1,90 @@
+"""Fields that the manual divides in words: each of their ``bitfields`` is a field of the frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from icdgen.icd.located import Map
+
+OF_A_WHOLE = ("unit", "formula", "const", "special", "min", "max", "above", "below")
+"""Keys that say what a value means: of a divided field its parts say so."""
+
+
+class Obstacle(NamedTuple):
+    """Why a field cannot be divided as it says; ``key`` of ``item`` is wrong."""
+
+    item: Map
+    key: str
+    message: str
+    help: str
+
+
+def parts_of(field: Map) -> list[Map]:
+    """The parts that can be read."""
+    items = field.get("bitfields")
+    return [item for item in items if isinstance(item, Map)] if isinstance(items, list) else []
+
+
+def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Obstacle]:
+    """What is wrong with the division; the parts are `parts_of` it."""
+    name, bits = f"`{field['name']}`", field["bits"]
+    if field["type"] != "uint" or bits > 64:
+        what = f"{name} is `{field['type']}`" if field["type"] != "uint" else f"{name} has {bits:,} bits"
+        message = f"`bitfields` divide an unsigned number, and {what}"
+        yield Obstacle(field, "bitfields", message, "make the parts fields of the message")
+        return
+    for key in OF_A_WHOLE:
+        if key in field:
+            message = f"{name} is divided, so its value has no `{key}`: its parts have"
+            yield Obstacle(field, key, message, "move it to the parts; an erratum removes what is printed")
+    taken: dict[int, str] = {}
+    for part in parts_of(field):
+        at, size, title = part.get("at"), part.get("bits"), f"`{part.get('name')}`"
+        if not (isinstance(at, int) and isinstance(size, int) and at >= 0 and size > 0):
+            continue  # the schema's business
+        if at + size > bits:
+            message = f"{title} ends at bit {at + size} of {name}, which has {bits} bit{'s' * (bits != 1)}"
+            yield Obstacle(part, "bits", message, "`at` counts within the field")
+        elif not lies_together(field, part, byte_order, bit_order):
+            message = f"the bits of {title} do not lie together in the frame"
+            yield Obstacle(part, "at", message, "make the parts fields of the message")
+        clash = next((taken[bit] for bit in range(at, at + size) if bit in taken), None)
+        if clash:
+            yield Obstacle(part, "at", f"{title} overlaps {clash}", "`at` counts within the field")
+        taken.update((bit, title) for bit in range(at, at + size))
+    left = [bit for bit in range(bits) if bit not in taken]
+    if left:
+        message = f"bit {left[0]} of {name} belongs to none of its parts"
+        yield Obstacle(field, "bitfields", message, "name what it is, or that it is reserved")
+
+
+def place(field: Map, part: Map, byte_order: str, bit_order: str) -> int:
+    """The bit of the frame at which the part begins."""
+    return min(_wanted(field, part, byte_order, bit_order))
+
+
+def lies_together(field: Map, part: Map, byte_order: str, bit_order: str) -> bool:
+    """Whether a field at that place has the part's bits, in their order."""
+    wanted = _wanted(field, part, byte_order, bit_order)
+    return _bits(min(wanted), part["bits"], byte_order, bit_order) == wanted
+
+
+def _wanted(field: Map, part: Map, byte_order: str, bit_order: str) -> list[int]:
+    return _bits(field["at"], field["bits"], byte_order, bit_order)[part["at"] : part["at"] + part["bits"]]
+
+
+def _bits(at: int, count: int, byte_order: str, bit_order: str) -> list[int]:
+    """Which bit of the frame each bit of a value is, the least significant first."""
+    runs: dict[int, list[int]] = {}
+    for bit in range(at, at + count):
+        runs.setdefault(bit // 8, []).append(bit)
+    ordered = list(runs.values()) if byte_order == "little" else list(runs.values())[::-1]
+    return [bit for run in ordered for bit in (run if bit_order == "lsb0" else run[::-1])]
+
+
+def described(field: Map, part: Map) -> str:
+    """The summary of the part: where in the divided field it is, and its own words, or else the field's."""
+    first, last = part["at"], part["at"] + part["bits"] - 1
+    bits = f"Bit {first}" if first == last else f"Bits {first} to {last}"
+    return f"{bits} of {field['name']}. {part.get('summary') or field.get('summary', '')}".rstrip()

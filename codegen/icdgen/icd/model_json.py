@@ -1,0 +1,105 @@
+"""A model as JSON and back, for keeping: values, and objects of the model's own classes, nothing else.
+
+An object is ``{"is": class, attribute: value ...}`` without what it has by default; one that was written before is
+``{"same": number}``. A sequence becomes a tuple, for the model has no lists outside of what stands as ``{"is": "raw", ...}``.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import MISSING, fields, is_dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from icdgen.icd import model
+from icdgen.icd.formula import Scale
+from icdgen.icd.units import Unit
+
+_CLASSES: dict[str, Callable[..., Any]] = {
+    kind.__name__: kind for kind in (Scale, Unit, *filter(is_dataclass, vars(model).values()))
+}
+
+
+def text(icd: model.Icd, inputs: dict[Path, str]) -> bytes:
+    """The model, and what it was read from with the fingerprint of each."""
+    tree = _Writer().plain(icd)
+    return json.dumps([tree, [[str(path), seen] for path, seen in inputs.items()]], separators=(",", ":")).encode()
+
+
+def read(data: bytes) -> tuple[model.Icd, dict[Path, str]] | None:
+    """What `text` was given; None if this is not of its making."""
+    try:
+        icd, inputs = json.loads(data, object_hook=_Reader().object)
+        found = {Path(path): str(seen) for path, seen in inputs}
+    except (ValueError, TypeError, LookupError, ArithmeticError, RecursionError):
+        return None
+    return (icd, found) if isinstance(icd, model.Icd) else None
+
+
+class _Writer:
+    def __init__(self) -> None:
+        self.known: dict[int, int] = {}  # id of an object -> its number
+
+    def plain(self, value: Any) -> Any:
+        if value is None or isinstance(value, (str, int, float)):
+            return value
+        if isinstance(value, Fraction):
+            return {"is": "/", "parts": [value.numerator, value.denominator]}
+        name = type(value).__name__
+        if name not in _CLASSES:
+            return (
+                [self.plain(item) for item in value]
+                if type(value) is tuple
+                else {"is": "raw", "json": json.dumps(value)}
+            )
+        if id(value) in self.known:
+            return {"same": self.known[id(value)]}
+        made = {"is": name}
+        for key, item in _attributes(value):
+            made[key] = self.plain(item)
+        self.known[id(value)] = len(self.known)
+        return made
+
+
+def _attributes(value: Any) -> list[tuple[str, Any]]:
+    """What differs from the default, without positions."""
+    if isinstance(value, tuple):
+        defaults = value._field_defaults
+        return [(k, v) for k, v in value._asdict().items() if k not in defaults or v != defaults[k]]
+    found = []
+    for one in fields(value):
+        item = getattr(value, one.name)
+        default = one.default if one.default_factory is MISSING else one.default_factory()
+        if one.compare and (default is MISSING or item != default or type(item) is not type(default)):
+            found.append((one.name, item))
+    return found
+
+
+class _Reader:
+    def __init__(self) -> None:
+        self.known: list[Any] = []
+
+    def object(self, made: dict[str, Any]) -> Any:
+        if "same" in made:
+            return self.known[made["same"]]
+        name = made.pop("is")
+        if name == "/":
+            return Fraction(*made["parts"])
+        if name == "raw":
+            value = json.loads(made["json"])
+            return _List(value) if type(value) is list else value
+        for key, value in made.items():
+            if type(value) is list:
+                made[key] = _tuples(value)
+        self.known.append(_CLASSES[name](**made))
+        return self.known[-1]
+
+
+class _List(list[Any]):
+    """A list that stays one."""
+
+
+def _tuples(value: list[Any]) -> tuple[Any, ...]:
+    return tuple([_tuples(item) if type(item) is list else item for item in value])

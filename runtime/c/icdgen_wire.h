@@ -1,0 +1,51 @@
+#ifndef ICDGEN_WIRE_H
+#define ICDGEN_WIRE_H
+
+/**
+ * @file
+ * How messages travel: UART, I2C, CAN, checksums, a client, file transfer, logs. Nothing here opens a port, sleeps,
+ * looks at a clock or allocates: bytes go in, bytes and events come out, memory and time (milliseconds, which may wrap)
+ * are the caller's. What differs from node to node is in its link, which NODE_link() of its header gives.
+ *
+ * ICDGEN_NO_TABLES  define it to compute checksums without tables: slower, and smaller by 512 bytes each.
+ */
+
+#include "icdgen.h"
+
+#include "wire/forms.h"
+
+#include "wire/link.h"
+
+#include "wire/events.h"
+
+#include "wire/crc.h"
+
+#include "wire/uart.h"
+
+#include "wire/i2c.h"
+
+#include "wire/can.h"
+
+#include "wire/can_join.h"
+
+#include "wire/log.h"
+
+#include "wire/time.h"
+
+#include "wire/files.h"
+
+#include "wire/client.h"
+
+#include "wire/client_input.h"
+
+#include "wire/procedure.h"
+
+#include "wire/list.h"
+
+#include "wire/download.h"
+
+#include "wire/upload.h"
+
+#include "wire/erase.h"
+
+#endif /* ICDGEN_WIRE_H */

@@ -1,0 +1,2 @@
+/** Bytes of the longest message that takes part in a procedure, of any node. */
+#define ICD_STEP_BYTES 8u

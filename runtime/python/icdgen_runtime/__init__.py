@@ -1,0 +1,1 @@
+"""What generated messages run on. Its modules are copied into every generated package, beside its nodes."""

@@ -1,0 +1,264 @@
+"""Many frames at once, as columns. Needs numpy; tables need pyarrow as well."""
+
+from __future__ import annotations
+
+import json
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ._codec import raw_range
+from ._errors import LengthError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ._base import Buffer, FieldInfo, Message
+
+_EXACT = 1 << 53  # integers below this are exact as 64-bit floats
+
+
+def decode_many(
+    message: type[Message], frames: Buffer, physical: bool
+) -> dict[str, Any]:
+    """See `Message.decode_many`."""
+    numpy: Any = import_module("numpy")
+    decoder = _Decoder(numpy, message, frames)
+    columns = {}
+    for info in message.FIELDS:
+        column = decoder.column(info)
+        if physical and info.physical:
+            columns[info.physical] = _physical(numpy, info, column)
+        else:
+            columns[info.attribute] = column
+    return columns
+
+
+def decode_table(message: type[Message], frames: Buffer, physical: bool) -> Any:
+    """See `Message.decode_table`."""
+    numpy: Any = import_module("numpy")
+    pyarrow: Any = import_module("pyarrow")
+    columns = decode_many(message, frames, physical)
+    fields, arrays = [], []
+    for info, (name, column) in zip(message.FIELDS, columns.items()):
+        column = numpy.ascontiguousarray(column)
+        if info.type == "bytes":
+            kind = pyarrow.binary(info.bits // 8)
+            buffers = [None, pyarrow.py_buffer(column)]
+            array = pyarrow.Array.from_buffers(kind, len(column), buffers)
+        else:
+            array = pyarrow.array(column)
+        fields.append(pyarrow.field(name, array.type, metadata=_metadata(info)))
+        arrays.append(array)
+    about = {
+        "node": message.NODE,
+        "message": message.NAME,
+        "ids": json.dumps(message.IDS),
+    }
+    schema = pyarrow.schema(fields, metadata=about)
+    return pyarrow.Table.from_arrays(arrays, schema=schema)
+
+
+def _metadata(info: FieldInfo) -> dict[str, str]:
+    found = {"name": info.name}
+    if info.unit:
+        found["unit"] = info.unit
+    if info.enum:
+        names = {int(member): member.label for member in info.enum}
+        found["values"] = json.dumps(names)
+    return found
+
+
+def _physical(numpy: Any, info: FieldInfo, raw: Any) -> Any:
+    """Correctly rounded: all but the division is exact, or Python's integers do it."""
+    p, c, q = info.scale
+    low, high = raw_range(info)
+    bounds = [p, c, q, low, high, low * p, high * p, low * p + c, high * p + c]
+    if max(map(abs, bounds)) > _EXACT:
+        values = ((value * p + c) / q for value in raw.tolist())
+        return numpy.fromiter(values, numpy.float64, len(raw))
+    column = raw.astype(numpy.float64)
+    if p != 1:
+        column *= p
+    if c:
+        column += c
+    if q != 1:
+        column /= q
+    return column
+
+
+class _Decoder:
+    """The columns of frames that follow each other.
+
+    What stands on whole bytes is a view; frames that can change are copied before.
+    """
+
+    def __init__(self, numpy: Any, message: type[Message], frames: Buffer) -> None:
+        view = memoryview(frames)
+        size = message.LENGTH
+        count, rest = divmod(view.nbytes, size) if size else (0, view.nbytes)
+        if rest:
+            raise LengthError(message.NAME, (count + 1) * size, view.nbytes)
+        data: Any = view if view.readonly and view.c_contiguous else view.tobytes()
+        self.numpy, self.message, self.count = numpy, message, count
+        self.words = (count + 7) // 8  # of 64 bits, for a byte of every frame
+        self.rows = numpy.frombuffer(data, numpy.uint8).reshape(count, size)
+        if message not in _plans:
+            _plans[message] = _plan(message)
+        plan = _plans[message]
+        self.bytes: dict[int, Any] = {}
+        for byte, width in plan.runs:
+            self._split(self._column(f"<u{width}", byte), byte)
+        self.flags = self._flags(plan)
+
+    def _split(self, run: Any, byte: int) -> None:
+        """Keeps each byte of the integers ``run``, which begin at a byte of the frame.
+
+        Reading a run from every frame takes as long as reading one byte.
+        """
+        width = run.itemsize
+        if width == 1:
+            self._keep(run, byte)
+            return
+        run = self.numpy.ascontiguousarray(run)
+        if width == 2:
+            self._keep(run, byte)
+            self._keep(run >> 8, byte + 1)
+        else:
+            self._split(run.astype("<u2"), byte)
+            self._split((run >> 16).astype("<u2"), byte + 2)
+
+    def _keep(self, values: Any, byte: int) -> None:
+        """Keeps the lowest byte of integers."""
+        self.bytes[byte] = self.numpy.empty(self.words * 8, self.numpy.uint8)
+        self.bytes[byte][: self.count] = values
+
+    def _flags(self, plan: _Plan) -> dict[str, Any]:
+        """All columns of booleans, eight frames at a time in 64-bit words."""
+        numpy = self.numpy
+        flags = numpy.empty((len(plan.names), self.words), numpy.uint64)
+        lowest = numpy.uint64(0x0101010101010101)  # bits of the bytes of a word
+        row = 0
+        for byte, shifts in plan.flags:
+            words = self.bytes[byte].view(numpy.uint64)
+            found = flags[row : row + len(shifts)]
+            by = numpy.array(shifts, numpy.uint64)[:, None]
+            numpy.right_shift(words, by, out=found)
+            numpy.bitwise_and(found, lowest, out=found)
+            row += len(shifts)
+        columns = flags.view(numpy.bool_)[:, : self.count]
+        return dict(zip(plan.names, columns))
+
+    def column(self, info: FieldInfo) -> Any:
+        """The raw values of a field."""
+        if info.type == "bool":
+            return self.flags[info.attribute]
+        if _is_whole(info):
+            return self._whole(info)
+        pieces = list(_pieces(info, self.message))
+        if len(pieces) == 1:
+            return self._within(info, *pieces[0])
+        return self._across(info, pieces)
+
+    def _whole(self, info: FieldInfo) -> Any:
+        start, size = info.at // 8, info.bits // 8
+        if info.type == "bytes":
+            return self.rows[:, start : start + size]
+        code = {"int": "i", "float": "f"}.get(info.type, "u")
+        order = ">" if self.message.BYTE_ORDER == "big" else "<"
+        kind = self.numpy.dtype(f"{order}{code}{size}")
+        column = self._column(kind, start)
+        return column if kind.isnative else column.astype(kind.newbyteorder("="))
+
+    def _column(self, kind: Any, start: int) -> Any:
+        """What stands at a byte of every frame, as a view."""
+        if not self.count:
+            return self.numpy.empty(0, kind)
+        return self.numpy.ndarray(
+            self.count, kind, self.rows, start, (self.message.LENGTH,)
+        )
+
+    def _byte(self, byte: int) -> Any:
+        return self.bytes[byte][: self.count]
+
+    def _within(self, info: FieldInfo, byte: int, shift: int, bits: int, _: int) -> Any:
+        column = self._byte(byte)
+        if info.type == "int":
+            column = (column << (8 - shift - bits)).view(self.numpy.int8)
+            return column >> (8 - bits)
+        if shift + bits < 8:
+            return (column >> shift) & ((1 << bits) - 1)
+        return column >> shift
+
+    def _across(self, info: FieldInfo, pieces: list[tuple[int, int, int, int]]) -> Any:
+        numpy = self.numpy
+        total = numpy.zeros(self.count, numpy.uint64)
+        for byte, shift, bits, at in pieces:
+            part = (self._byte(byte) >> shift) & ((1 << bits) - 1)
+            total |= part.astype(numpy.uint64) << numpy.uint64(at)
+        size = next(size for size in (8, 16, 32, 64) if size >= info.bits)
+        if info.type == "float":
+            return total.astype(f"u{size // 8}").view(f"f{size // 8}")
+        if info.type != "int":
+            return total.astype(f"u{size // 8}")
+        spare = numpy.uint64(64 - info.bits)
+        return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(
+            f"i{size // 8}"
+        )
+
+
+class _Plan(NamedTuple):
+    """Where the fields of a message are that do not stand on whole bytes."""
+
+    runs: list[tuple[int, int]]
+    """First byte and width of each run of 1, 2 or 4 bytes that hold them."""
+    flags: list[tuple[int, list[int]]]
+    """Each byte that has booleans, with their bits."""
+    names: list[str]
+    """Their attributes, in this order."""
+
+
+_plans: dict[type[Message], _Plan] = {}
+
+
+def _plan(message: type[Message]) -> _Plan:
+    needed: set[int] = set()
+    flags: dict[int, list[int]] = {}
+    names: dict[int, list[str]] = {}
+    for info in message.FIELDS:
+        if _is_whole(info):
+            continue
+        for byte, shift, _, _ in _pieces(info, message):
+            needed.add(byte)
+            if info.type == "bool":
+                flags.setdefault(byte, []).append(shift)
+                names.setdefault(byte, []).append(info.attribute)
+    runs = []
+    while needed:
+        byte = min(needed)
+        width = next(w for w in (4, 2, 1) if needed.issuperset(range(byte, byte + w)))
+        runs.append((byte, width))
+        needed.difference_update(range(byte, byte + width))
+    ordered = [name for found in names.values() for name in found]
+    return _Plan(runs, list(flags.items()), ordered)
+
+
+def _is_whole(info: FieldInfo) -> bool:
+    """Whether it is an array element as it stands."""
+    is_wide = info.type == "bytes" or info.bits in (8, 16, 32, 64)
+    return is_wide and info.at % 8 == 0
+
+
+def _pieces(
+    info: FieldInfo, message: type[Message]
+) -> Iterator[tuple[int, int, int, int]]:
+    """Byte, shift, width and place in the value of each run of bits."""
+    at, end = info.at, info.at + info.bits
+    below = 0
+    while at < end:
+        byte, first = divmod(at, 8)
+        bits = min(8 - first, end - at)
+        shift = first if message.BIT_ORDER == "lsb0" else 8 - first - bits
+        at += bits
+        weight = below if message.BYTE_ORDER == "little" else info.bits - below - bits
+        below += bits
+        yield byte, shift, bits, weight

@@ -1,0 +1,48 @@
+"""The exceptions of this package."""
+
+from __future__ import annotations
+
+
+class IcdError(ValueError):
+    """Whatever this package refuses."""
+
+
+class LengthError(IcdError):
+    """A frame has not ``expected`` but ``actual`` bytes."""
+
+    def __init__(self, message: str, expected: int, actual: int) -> None:
+        super().__init__(f"{message} has {expected} bytes, {actual} given")
+        self.message, self.expected, self.actual = message, expected, actual
+
+    def __reduce__(self) -> tuple[type[LengthError], tuple[str, int, int]]:
+        return LengthError, (self.message, self.expected, self.actual)
+
+
+class RangeError(IcdError):
+    """``value`` does not fit ``field``, an attribute; ``allowed`` says what does."""
+
+    def __init__(self, field: str, allowed: str, value: object) -> None:
+        super().__init__(f"{field} takes {allowed}, not {_shortly(value)}")
+        self.field, self.allowed, self.value = field, allowed, value
+
+    def __reduce__(self) -> tuple[type[RangeError], tuple[str, str, object]]:
+        return RangeError, (self.field, self.allowed, self.value)
+
+
+class UnknownIdError(IcdError):
+    """The node has no such message: ``node``, ``kind`` and ``id``."""
+
+    def __init__(self, node: str, kind: str, id: object) -> None:
+        super().__init__(f"{node} has no {kind} {_shortly(id)}")
+        self.node, self.kind, self.id = node, kind, id
+
+    def __reduce__(self) -> tuple[type[UnknownIdError], tuple[str, str, object]]:
+        return UnknownIdError, (self.node, self.kind, self.id)
+
+
+def _shortly(value: object) -> str:
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of too many digits to print
+        return "a very long number"
+    return text if len(text) <= 60 else f"{text[:57]}..."

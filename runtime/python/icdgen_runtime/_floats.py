@@ -1,0 +1,75 @@
+"""Floats whose NaNs keep sign and payload.
+
+`struct` makes signalling 32-bit NaNs quiet. Here a 32-bit NaN becomes the 64-bit one
+with the same sign and payload, and goes back the same way.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ._base import Buffer, Message
+
+_FLOAT32, _FLOAT64 = struct.Struct("<f"), struct.Struct("<d")
+_BITS32, _BITS64 = struct.Struct("<I"), struct.Struct("<Q")
+
+isnan = math.isnan
+
+
+def float32(bits: int) -> float:
+    """The number that the bits stand for; NaNs keep sign and payload."""
+    if bits & 0x7F800000 == 0x7F800000 and bits & 0x007FFFFF:
+        wide = (bits >> 31) << 63 | 0x7FF << 52 | (bits & 0x007FFFFF) << 29
+        return float64(wide)
+    (value,) = _FLOAT32.unpack(_BITS32.pack(bits))
+    return float(value)
+
+
+def float32_bits(value: float) -> int:
+    """The bits of the nearest 32-bit float; those of a NaN keep sign and payload."""
+    if isnan(value):
+        wide = float64_bits(value)
+        payload = wide >> 29 & 0x007FFFFF
+        return wide >> 63 << 31 | 0x7F800000 | (payload or 0x00400000)
+    (bits,) = _BITS32.unpack(_FLOAT32.pack(value))
+    return int(bits)
+
+
+def float64(bits: int) -> float:
+    """The number that the bits stand for."""
+    (value,) = _FLOAT64.unpack(_BITS64.pack(bits))
+    return float(value)
+
+
+def float64_bits(value: float) -> int:
+    """The bits of the number."""
+    (bits,) = _BITS64.unpack(_FLOAT64.pack(value))
+    return int(bits)
+
+
+def keep_nans(message: Message, data: Buffer) -> None:
+    """Sets the aligned 32-bit floats of ``message`` again, exactly as in ``data``."""
+    frame = memoryview(data).tobytes()
+    for name, byte in _aligned(message):
+        bits = int.from_bytes(frame[byte : byte + 4], message.BYTE_ORDER)
+        setattr(message, name, float32(bits))
+
+
+def with_nans(message: Message, frame: bytes) -> bytes:
+    """``frame`` with the exact bits of the aligned 32-bit floats of ``message``."""
+    exact = bytearray(frame)
+    for name, byte in _aligned(message):
+        bits = float32_bits(getattr(message, name))
+        exact[byte : byte + 4] = bits.to_bytes(4, message.BYTE_ORDER)
+    return bytes(exact)
+
+
+def _aligned(message: Message) -> Iterator[tuple[str, int]]:
+    for info in message.FIELDS:
+        if info.type == "float" and info.bits == 32 and info.at % 8 == 0:
+            yield info.attribute, info.at // 8

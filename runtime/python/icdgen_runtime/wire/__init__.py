@@ -1,0 +1,123 @@
+"""How messages travel: framing, checksums, CAN packets, a client, files and logs.
+
+Nothing here opens a port, sleeps or looks at a clock: bytes go in, bytes and events
+come out, and the time is passed in. Only `Session` waits, by the functions that it is
+given. What there is to know of a node is in its ``LINK``.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from .can import CanEvent as CanEvent
+    from .can import CanJoiner as CanJoiner
+    from .can import CanMessage as CanMessage
+    from .can import CanPacket as CanPacket
+    from .can import can_split as can_split
+    from .client import Client as Client
+    from .client import Request as Request
+    from .crc import Crc as Crc
+    from .crc import crc8 as crc8
+    from .crc import crc16 as crc16
+    from .errors import BusyError as BusyError
+    from .errors import ChecksumError as ChecksumError
+    from .errors import FailedError as FailedError
+    from .errors import RefusedError as RefusedError
+    from .errors import ReplyTimeoutError as ReplyTimeoutError
+    from .errors import TooLongError as TooLongError
+    from .errors import UnsupportedError as UnsupportedError
+    from .events import Done as Done
+    from .events import Event as Event
+    from .events import LineError as LineError
+    from .events import Log as Log
+    from .events import Malformed as Malformed
+    from .events import Packet as Packet
+    from .events import Refused as Refused
+    from .events import Stray as Stray
+    from .events import Timeout as Timeout
+    from .files import HoleMap as HoleMap
+    from .files import IndexEntry as IndexEntry
+    from .files import read_index as read_index
+    from .files import write_index as write_index
+    from .i2c import I2cTransfer as I2cTransfer
+    from .i2c import i2c_read_length as i2c_read_length
+    from .i2c import i2c_reply as i2c_reply
+    from .i2c import i2c_write as i2c_write
+    from .identity import Identity as Identity
+    from .identity import identify as identify
+    from .link import Link as Link
+    from .link import Settings as Settings
+    from .logs import LogEntry as LogEntry
+    from .logs import LogFrame as LogFrame
+    from .logs import LogMessage as LogMessage
+    from .logs import LogReader as LogReader
+    from .logs import LogWriter as LogWriter
+    from .ports import serial_port as serial_port
+    from .procedures import Procedure as Procedure
+    from .session import Session as Session
+    from .times import DosTime as DosTime
+    from .times import dos_time_pack as dos_time_pack
+    from .times import dos_time_unpack as dos_time_unpack
+    from .transfer import Download as Download
+    from .transfer import Erase as Erase
+    from .transfer import FileEntry as FileEntry
+    from .transfer import FileList as FileList
+    from .transfer import Format as Format
+    from .transfer import Upload as Upload
+    from .uart import UartDecoder as UartDecoder
+    from .uart import UartEvent as UartEvent
+    from .uart import uart_encode as uart_encode
+    from .uart import uart_kind as uart_kind
+
+_HOMES = {
+    "can": ("CanEvent", "CanJoiner", "CanMessage", "CanPacket", "can_split"),
+    "client": ("Client", "Request"),
+    "crc": ("Crc", "crc16", "crc8"),
+    "errors": (
+        "BusyError",
+        "ChecksumError",
+        "FailedError",
+        "RefusedError",
+        "ReplyTimeoutError",
+        "TooLongError",
+        "UnsupportedError",
+    ),
+    "events": (
+        "Done",
+        "Event",
+        "LineError",
+        "Log",
+        "Malformed",
+        "Packet",
+        "Refused",
+        "Stray",
+        "Timeout",
+    ),
+    "files": ("HoleMap", "IndexEntry", "read_index", "write_index"),
+    "i2c": ("I2cTransfer", "i2c_read_length", "i2c_reply", "i2c_write"),
+    "identity": ("Identity", "identify"),
+    "link": ("Link", "Settings"),
+    "logs": ("LogEntry", "LogFrame", "LogMessage", "LogReader", "LogWriter"),
+    "ports": ("serial_port",),
+    "procedures": ("Procedure",),
+    "session": ("Session",),
+    "times": ("DosTime", "dos_time_pack", "dos_time_unpack"),
+    "transfer": ("Download", "Erase", "FileEntry", "FileList", "Format", "Upload"),
+    "uart": ("UartDecoder", "UartEvent", "uart_encode", "uart_kind"),
+}
+_HOME = {name: home for home, names in _HOMES.items() for name in names}
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name):
+        if name not in _HOME:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        value = getattr(import_module(f".{_HOME[name]}", __name__), name)
+        globals()[name] = value
+        return value
+
+    def __dir__():
+        return sorted({*globals(), *_HOME})

@@ -1,0 +1,258 @@
+"""CAN: messages from and to packets."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from .._errors import RangeError
+from .errors import TooLongError, need
+
+if TYPE_CHECKING:
+    from .link import Can, CanKind, Extended, Link
+
+Found = Literal[
+    "message", "duplicate", "incomplete", "malformed", "busy", "unknown_type"
+]
+_WITH_DATA = ("telecommand", "reply")
+
+
+class CanPacket(NamedTuple):
+    """A CAN frame: identifier of 29 bits, and data."""
+
+    id: int
+    data: bytes
+
+
+class CanMessage(NamedTuple):
+    """A message: ``id`` is that of the telecommand or telemetry."""
+
+    kind: CanKind
+    id: int
+    source: int
+    destination: int
+    data: bytes = b""
+
+
+class CanEvent(NamedTuple):
+    """A message, or what went wrong with the one of that id and sender.
+
+    ``duplicate``: the packet was there already. ``incomplete``: so many packets were
+    ``missing``. ``malformed``: the packet cannot be part of such a message. ``busy``:
+    there was no room for another sender. ``unknown_type``: the ICD does not have it.
+    """
+
+    event: Found
+    id: int
+    source: int
+    message: CanMessage | None = None
+    missing: int = 0
+
+
+def can_split(link: Link, message: CanMessage) -> list[CanPacket]:
+    """The packets of a message, in the order in which they are to be sent.
+
+    Raises `TooLongError`, `RangeError` for an id or an address that does not fit, and
+    `UnsupportedError`.
+    """
+    can, data = need(link.can, "can"), message.data
+    room = can.data_bytes if message.kind in _WITH_DATA else 0
+    if len(data) <= room:
+        type = need(can.types.get(message.kind), f"can: {message.kind}")
+        return [CanPacket(_identifier(can, type, message), data)]
+    form, extended = can.extended, can.extended_types.get(message.kind)
+    if form is None or extended is None:
+        raise TooLongError(room, len(data))
+    if len(data) > form.bytes:
+        raise TooLongError(form.bytes, len(data))
+    id, fill = _identifier(can, extended, message), bytes((form.fill,))
+    count = -(-len(data) // form.data_bytes)
+    packets = []
+    for number in range(count):
+        piece = data[number * form.data_bytes :][: form.data_bytes]
+        left = form.left_in_last + count - 1 - number
+        packets.append(CanPacket(id, piece.ljust(form.left_at, fill) + bytes((left,))))
+    return packets
+
+
+def _identifier(can: Can, type: int, message: CanMessage) -> int:
+    values = {
+        "type": type,
+        "channel": message.id,
+        "source": message.source,
+        "destination": message.destination,
+    }
+    identifier = 0
+    for role, part in can.parts.items():
+        value = values.get(role, 0)
+        if not 0 <= value < 1 << part.bits:
+            raise RangeError(role, f"0 to {(1 << part.bits) - 1}", value)
+        identifier |= value << part.shift
+    return identifier
+
+
+class _Joining:
+    """A message of several packets; also after it is complete, to know duplicates."""
+
+    def __init__(
+        self, message: CanMessage, count: int, length: int | None, now: float
+    ) -> None:
+        self.message, self.count, self.length = message, count, length
+        self.last = now
+        self.pieces: dict[int, bytes] = {}
+        self.in_order = 0  # so many packets came last in order, from the first on
+        self.completed_by: int | None = None
+
+    def came(self, position: int, now: float) -> None:
+        """Notes a packet, be it a repeated one."""
+        self.last = now
+        if position == self.in_order:
+            self.in_order += 1
+        elif position != self.in_order - 1:
+            self.in_order = 0 if position else 1
+
+    def again(self, position: int, piece: bytes) -> bool:
+        """Whether the packet is there already, and no part of another message."""
+        expected = self.completed_by in (None, position)
+        return expected and self.pieces.get(position) == piece
+
+    def is_over(self, position: int, count: int) -> bool:
+        """Whether the packet is of another message."""
+        if self.completed_by is not None or self.count != count:
+            return True
+        return position in self.pieces
+
+
+class CanJoiner:
+    """Puts messages together from packets in any order, of several senders.
+
+    ``address``: whose messages (None: everybody's). ``senders``: how many extended
+    messages at once.
+    """
+
+    def __init__(
+        self, link: Link, address: int | None = None, senders: int = 4
+    ) -> None:
+        self._link, self._can = link, need(link.can, "can")
+        self._address, self._senders = address, senders
+        self._open: dict[tuple[int, int, int, int], _Joining] = {}
+        self._kinds: dict[int, CanKind] = {
+            number: kind for kind, number in self._can.types.items()
+        }
+        self._extended_kinds: dict[int, CanKind] = {
+            number: kind for kind, number in self._can.extended_types.items()
+        }
+
+    def expire(self, now: float) -> list[CanEvent]:
+        """Gives up what has waited too long for its next packet."""
+        form = self._can.extended
+        if form is None or not self._open:
+            return []
+        late = [
+            key
+            for key, joining in self._open.items()
+            if now - joining.last >= form.packet_timeout
+        ]
+        return [event for key in late for event in self._give_up(key)]
+
+    def feed(self, now: float, packet: CanPacket) -> list[CanEvent]:
+        """Takes one packet; ``now`` in milliseconds."""
+        events = self.expire(now)
+        type, id, source, destination = key = self._parts(packet.id)
+        if self._address is not None and destination != self._address:
+            return events
+        kind = self._kinds.get(type)
+        if kind is not None:
+            room = self._can.data_bytes if kind in _WITH_DATA else 0
+            if len(packet.data) > room:
+                return [*events, CanEvent("malformed", id, source)]
+            message = CanMessage(kind, id, source, destination, packet.data)
+            return [*events, CanEvent("message", id, source, message)]
+        kind, form = self._extended_kinds.get(type), self._can.extended
+        if kind is None or form is None:
+            return [*events, CanEvent("unknown_type", id, source)]
+        head = CanMessage(kind, id, source, destination)
+        return events + self._extended(now, key, head, packet.data, form)
+
+    def _parts(self, identifier: int) -> tuple[int, int, int, int]:
+        def part(role: str) -> int:
+            bits, shift = self._can.parts[role]
+            return identifier >> shift & (1 << bits) - 1
+
+        return part("type"), part("channel"), part("source"), part("destination")
+
+    def _extended(
+        self,
+        now: float,
+        key: tuple[int, int, int, int],
+        head: CanMessage,
+        data: bytes,
+        form: Extended,
+    ) -> list[CanEvent]:
+        """One packet of an extended message."""
+        malformed = CanEvent("malformed", head.id, head.source)
+        if len(data) != form.left_at + 1:
+            return [*self._give_up(key), malformed]
+        joining = self._open.get(key)
+        left, piece = data[form.left_at] - form.left_in_last, data[: form.data_bytes]
+        length = self._length(head)
+        if length is not None:
+            count = -(-length // form.data_bytes)
+        elif joining and joining.completed_by is None and left < joining.count:
+            count = joining.count
+        else:  # the first packet that comes tells how many there are
+            count = left + 1
+        most = -(-self._link.longest_data // form.data_bytes)
+        if not 0 <= left < count <= most:
+            return [*self._give_up(key), malformed]
+        position, events = count - 1 - left, []
+        kept: dict[int, bytes] = {}
+        if joining and joining.again(position, piece):
+            joining.came(position, now)
+            return [CanEvent("duplicate", head.id, head.source)]
+        if joining and joining.is_over(position, count):
+            if joining.completed_by is None and position == joining.in_order:
+                # What came again, in order, belongs to the new message.
+                kept = {n: joining.pieces[n] for n in range(position)}
+            events = self._give_up(key)
+            joining = None
+        if joining is None:
+            if not self._make_room():
+                return [*events, CanEvent("busy", head.id, head.source)]
+            joining = self._open[key] = _Joining(head, count, length, now)
+            joining.pieces, joining.in_order = kept, len(kept)
+        joining.pieces[position] = piece
+        joining.came(position, now)
+        if len(joining.pieces) == joining.count:
+            joining.completed_by = position
+            whole = b"".join(joining.pieces[n] for n in range(joining.count))
+            message = head._replace(data=whole[: joining.length])
+            events.append(CanEvent("message", head.id, head.source, message))
+        return events
+
+    def _make_room(self) -> bool:
+        """The oldest complete message makes room for a new one."""
+        if len(self._open) < self._senders:
+            return True
+        for key, joining in self._open.items():
+            if joining.completed_by is not None:
+                del self._open[key]
+                return True
+        return False
+
+    def _length(self, head: CanMessage) -> int | None:
+        """Bytes of the message, if the ICD knows it and it needs several packets."""
+        if head.kind == "telecommand":
+            sent = self._link.commands.get(head.id)
+            length = sent.length if sent else None
+        else:
+            length = self._link.frames.get(head.id)
+        return length if length and length > self._can.data_bytes else None
+
+    def _give_up(self, key: tuple[int, int, int, int]) -> list[CanEvent]:
+        """Forgets a message; silently, if it was complete."""
+        joining = self._open.pop(key, None)
+        if joining is None or joining.completed_by is not None:
+            return []
+        missing = joining.count - len(joining.pieces)
+        id, source = joining.message.id, joining.message.source
+        return [CanEvent("incomplete", id, source, missing=missing)]

@@ -1,0 +1,396 @@
+"""One request at a time, from sending to its outcome, over any bus."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from .._errors import IcdError, LengthError, UnknownIdError
+from .can import CanEvent, CanJoiner, CanMessage, can_split
+from .errors import BusyError, need
+from .events import (
+    Done,
+    LineError,
+    Log,
+    Malformed,
+    Packet,
+    Refused,
+    Stray,
+    Timeout,
+)
+from .i2c import I2cTransfer, i2c_read_length, i2c_reply, i2c_write
+from .link import Link
+from .logs import LogMessage
+from .uart import UartDecoder, uart_encode, uart_kind
+
+if TYPE_CHECKING:
+    from .._base import Buffer, Message
+    from .can import CanPacket
+    from .events import Event
+    from .link import Bus, Polled, Settings
+
+
+class Request(NamedTuple):
+    """What is asked of a node.
+
+    ``repeat``: whether it may be sent again although it may have arrived. Telemetry and
+    settings always may.
+    """
+
+    kind: Literal["telecommand", "telemetry"]
+    id: int
+    data: bytes = b""
+    repeat: bool = False
+
+
+class Client:
+    """A client on one bus.
+
+    It is told what happens and when, in milliseconds of any clock that never goes back:
+    `received`, `packet` or `transferred`, and `tick` at the latest at `deadline`. What
+    is to be sent is taken from `output`, `packets` or `transfers`.
+
+    ``crc``: with checksums, where the ICD has them for the bus. ``address``: ours, on
+    CAN. Raises `UnsupportedError` for a bus that the ICD does not describe.
+    """
+
+    def __init__(
+        self,
+        link: Link,
+        bus: Bus,
+        crc: bool = False,
+        address: int = 0,
+        settings: Settings | None = None,
+    ) -> None:
+        self.link, self.bus = link, bus
+        self.settings = settings or link.settings
+        form = link.checksum if crc else None
+        self._checks_sent = form is not None and bus in form.telecommand_buses
+        self._checks_frames = form is not None and bus in form.telemetry_buses
+        self._address = address
+        self._decoder: UartDecoder | None = None
+        self._joiner: CanJoiner | None = None
+        if bus == "uart":
+            need(link.framing, "uart")
+            self._decoder = UartDecoder(link)
+        elif bus == "can":
+            self._joiner = CanJoiner(link, address, 1)
+        else:
+            need(link.i2c_address, "i2c")
+        self._stream: list[bytes] = []
+        self._packets: list[CanPacket] = []
+        self._transfers: list[I2cTransfer] = []
+        self._owed = 0  # I2C: transfers taken of which `transferred` was not told
+        self._state: Literal["idle", "hold", "wait", "pause", "poll"] = "idle"
+        self._asked = Request("telemetry", 0)
+        self._attempts = 0
+        self._until: float = 0
+        self._is_written = False  # I2C: the telecommand; its acknowledge is polled
+        self._give_up: float = 0  # when polling ends
+        self._late: tuple[int, float] | None = None  # id that may be answered again
+
+    @property
+    def busy(self) -> bool:
+        """Whether a request is going on."""
+        return self._state != "idle"
+
+    @property
+    def deadline(self) -> float | None:
+        """When `tick` wants to be called at the latest; None: not at all."""
+        return self._until if self.busy else None
+
+    def request(self, now: float, message: type[Message]) -> list[Event]:
+        """Requests telemetry, or reads a setting. See `start`."""
+        id = message.IDS[-1]
+        if id not in self.link.TELEMETRY or self.link.TELEMETRY[id] is not message:
+            raise UnknownIdError(self.link.node, "telemetry", message.NAME)
+        return self.start(now, Request("telemetry", id))
+
+    def send(self, now: float, message: Message, repeat: bool = False) -> list[Event]:
+        """Sends a telecommand or a setting. See `start`; also raises `RangeError`."""
+        id = message.IDS[0]
+        known = self.link.TELECOMMANDS
+        if id not in known or known[id] is not type(message):
+            raise UnknownIdError(self.link.node, "telecommand", message.NAME)
+        return self.start(now, Request("telecommand", id, message.to_bytes(), repeat))
+
+    def start(self, now: float, request: Request) -> list[Event]:
+        """Begins a request.
+
+        Raises `UnknownIdError`, `BusyError` while another one is going on or its output
+        has not been taken, and `LengthError`.
+        """
+        id = request.id
+        sent = self.link.commands.get(id)
+        if request.kind == "telecommand":
+            if sent is None:
+                raise UnknownIdError(self.link.node, "telecommand", id)
+        elif id not in self.link.frames:
+            raise UnknownIdError(self.link.node, "telemetry", id)
+        if self.busy or self._stream or self._packets or self._transfers:
+            raise BusyError("a request is going on")
+        if request.kind == "telemetry":
+            request = Request("telemetry", id, b"", True)
+        elif sent:
+            if len(request.data) != sent.length:
+                name = f"telecommand {id}"
+                raise LengthError(name, sent.length, len(request.data))
+            request = request._replace(repeat=request.repeat or sent.setting)
+        self._asked, self._attempts = request, 0
+        if self._late and self._late[0] == id and now < self._late[1]:
+            self._state, self._until = "hold", self._late[1]
+            return []
+        return self._transmit(now)
+
+    def output(self) -> bytes:
+        """UART: what is to be sent, once."""
+        taken, self._stream = self._stream, []
+        return b"".join(taken)
+
+    def packets(self) -> list[CanPacket]:
+        """CAN: what is to be sent, once."""
+        taken, self._packets = self._packets, []
+        return taken
+
+    def transfers(self) -> list[I2cTransfer]:
+        """I2C: what is to be written and read, once.
+
+        `transferred` is told of each, once and in this order.
+        """
+        taken, self._transfers = self._transfers, []
+        self._owed += len(taken)
+        return taken
+
+    def cancel(self) -> None:
+        """Gives up the request, without an event, and what of it was not taken.
+
+        The next one may begin at once; a late reply to this one is `Stray`.
+        """
+        self._stream, self._packets, self._transfers = [], [], []
+        if self.busy and self._attempts:
+            self._late = self._asked.id, self._until + self.settings.reply_timeout
+        self._state = "idle"
+
+    def tick(self, now: float) -> list[Event]:
+        """Lets time pass."""
+        events: list[Event] = []
+        if self._joiner:
+            events += map(_line_error, self._joiner.expire(now))
+        if self.busy and now >= self._until:
+            events += self._expired(now)
+        return events
+
+    def received(self, now: float, data: Buffer) -> list[Event]:
+        """UART: the next bytes of the stream."""
+        events = self.tick(now)
+        for found in need(self._decoder, "uart").feed(data):
+            if found.event == "message":
+                events += self._uart_message(now, found.message)
+            else:
+                events.append(LineError(found.event))
+        return events
+
+    def packet(self, now: float, packet: CanPacket) -> list[Event]:
+        """CAN: a packet."""
+        events = self.tick(now)
+        for found in need(self._joiner, "can").feed(now, packet):
+            if found.message:
+                events += self._can_message(now, found.message)
+            else:
+                events.append(_line_error(found))
+        return events
+
+    def transferred(self, now: float, data: Buffer | None) -> list[Event]:
+        """I2C: what was read (nothing after a write); None: the transaction failed.
+
+        What a request owed that is over is `Stray`.
+        """
+        is_awaited = self._owed == 1 and self._awaits_transfer
+        self._owed = max(0, self._owed - 1)
+        events = self.tick(now)  # which may end the request that it belongs to
+        read = None if data is None else bytes(data)
+        if not (is_awaited and self._awaits_transfer):
+            return [*events, Stray(read or b"")]
+        if self._state == "poll":
+            return events + self._polled(now, read)
+        if read is None:
+            return events + self._no_reply(now)
+        if self._asked.kind == "telemetry":
+            id = self._asked.id
+            try:
+                frame = i2c_reply(self.link, id, read, self._checks_frames)
+            except IcdError:
+                return [*events, Malformed(id), *self._no_reply(now)]
+            return events + self._done(now, frame)
+        if not self.link.commands[self._asked.id].acknowledged:
+            return events + self._done(now)
+        self._is_written = True
+        self._give_up = now + self.settings.poll_timeout
+        return events + self._pause(now)
+
+    @property
+    def _awaits_transfer(self) -> bool:
+        """I2C: whether the last transfer was taken, and is that of the request."""
+        return self._state in ("wait", "poll") and not self._transfers
+
+    def _transmit(self, now: float) -> list[Event]:
+        """Sends the request, for the first time or again."""
+        request = self._asked
+        is_telecommand = request.kind == "telecommand"
+        self._attempts += 1
+        self._is_written = False
+        self._state, self._until = "wait", now + self.settings.reply_timeout
+        checked = is_telecommand and self._checks_sent
+        message = i2c_write(self.link, request.id, request.data, checked)
+        if self.bus == "uart":
+            self._stream.append(uart_encode(self.link, message))
+        elif self.bus == "can":
+            node = need(self.link.can, "can").node_address
+            head = CanMessage(
+                "telecommand" if is_telecommand else "request",
+                request.id,
+                self._address,
+                node,
+                message[1:],
+            )
+            self._packets += can_split(self.link, head)
+        else:
+            checks = self._checks_frames
+            length = 0
+            if not is_telecommand:
+                length = i2c_read_length(self.link, request.id, checks)
+            self._transfers.append(I2cTransfer(message, length))
+            return []
+        if is_telecommand and not self.link.commands[request.id].acknowledged:
+            return self._done(now)
+        return []
+
+    def _expired(self, now: float) -> list[Event]:
+        """The time of the state is over."""
+        if self._state == "wait":
+            return self._no_reply(now)
+        if self._state == "poll":
+            return self._pause(now)
+        if self._state == "pause":
+            if now >= self._give_up:
+                return self._timeout(now)
+            if self._is_written:
+                self._poll(now)
+                return []
+        return self._transmit(now)
+
+    def _no_reply(self, now: float) -> list[Event]:
+        """There was no reply that can be used: once more, or the end."""
+        if not self._asked.repeat or self._attempts > self.settings.retries:
+            return self._timeout(now)
+        if self.bus == "i2c":  # the bus said so at once: the node gets some time
+            self._state, self._until = "pause", now + self.settings.poll_interval
+            self._give_up = now + self.settings.poll_timeout
+            return []
+        return self._transmit(now)
+
+    def _pause(self, now: float) -> list[Event]:
+        """Polls after a while, unless that has been done for long enough."""
+        if now >= self._give_up:
+            return self._timeout(now)
+        self._state, self._until = "pause", now + self.settings.poll_interval
+        return []
+
+    def _poll(self, now: float) -> None:
+        id = need(self.link.polled, "i2c.acknowledge").telemetry
+        self._state, self._until = "poll", now + self.settings.reply_timeout
+        length = i2c_read_length(self.link, id, self._checks_frames)
+        self._transfers.append(I2cTransfer(bytes((id,)), length))
+
+    def _polled(self, now: float, data: bytes | None) -> list[Event]:
+        """The acknowledge frame came, or did not."""
+        if data is None:
+            return self._pause(now)
+        form: Polled = need(self.link.polled, "i2c.acknowledge")
+        try:
+            frame = i2c_reply(self.link, form.telemetry, data, self._checks_frames)
+        except IcdError:
+            return [Malformed(form.telemetry), *self._pause(now)]
+        told = self.link.TELEMETRY[form.telemetry].from_bytes(frame)
+        if getattr(told, form.id) != self._asked.id or not getattr(
+            told, form.processed
+        ):
+            return self._pause(now)
+        code = int(getattr(told, form.error))
+        if code == self.link.errors.get("none", 0):
+            return self._done(now)
+        return self._refused(now, code, int(getattr(told, form.parameter)))
+
+    def _uart_message(self, now: float, message: bytes) -> list[Event]:
+        link, asked = self.link, self._asked
+        kind, id = uart_kind(link, message), message[0]
+        if kind == "log":
+            return [Log(message, LogMessage.decode(link, message))]
+        if kind == "packet" and link.files:
+            start = 1 + link.files.counter_bytes
+            number = int.from_bytes(message[1:start], link.order)
+            return [Packet(number, message[start:])]
+        if self._state == "wait" and asked.kind == "telemetry":
+            if kind == "reply" and id == asked.id:
+                return self._replied(now, message[1:])
+        elif self._state == "wait" and kind == "acknowledge" and link.acknowledge:
+            form = link.acknowledge
+            if message[form.id_at] == asked.id:
+                code = message[form.error_at]
+                if code == link.errors.get("none", 0):
+                    return self._done(now)
+                return self._refused(now, code)
+        return [Stray(message)]
+
+    def _can_message(self, now: float, message: CanMessage) -> list[Event]:
+        asked, node = self._asked, need(self.link.can, "can").node_address
+        is_ours = message.id == asked.id and message.source == node
+        if self._state == "wait" and is_ours:
+            if asked.kind == "telecommand":
+                if message.kind == "acknowledge":
+                    return self._done(now)
+                if message.kind == "refusal":
+                    return self._refused(now, None)
+            elif message.kind == "reply":
+                return self._replied(now, message.data)
+            elif message.kind == "request_refusal":
+                return self._refused(now, None)
+        return [Stray(bytes((message.id,)) + message.data)]
+
+    def _replied(self, now: float, frame: bytes) -> list[Event]:
+        id = self._asked.id
+        if len(frame) != self.link.frames[id]:
+            return [Malformed(id)]
+        return self._done(now, frame)
+
+    def _done(self, now: float, frame: bytes = b"") -> list[Event]:
+        id, message = self._asked.id, None
+        if self._asked.kind == "telemetry":
+            message = self.link.TELEMETRY[id]
+        self._end(now, self._attempts > 1)
+        return [Done(id, self._attempts, frame, message)]
+
+    def _refused(
+        self, now: float, code: int | None, parameter: int | None = None
+    ) -> list[Event]:
+        """The node refused it. After a wrong checksum it is sent again."""
+        codes = {number: role for role, number in self.link.errors.items()}
+        reason = None if code is None else codes.get(code)
+        is_left = self._attempts <= self.settings.retries
+        if reason == "checksum" and self._checks_sent and is_left:
+            return self._transmit(now)
+        self._end(now, self._attempts > 1)
+        id = self._asked.id
+        return [Refused(id, self._attempts, code, reason, parameter)]
+
+    def _timeout(self, now: float) -> list[Event]:
+        self._end(now, True)
+        return [Timeout(self._asked.id, self._attempts)]
+
+    def _end(self, now: float, may_be_answered_again: bool) -> None:
+        self._state, self._late = "idle", None
+        if may_be_answered_again:
+            self._late = self._asked.id, now + self.settings.reply_timeout
+
+
+def _line_error(event: CanEvent) -> LineError:
+    return LineError(event.event, event.id)

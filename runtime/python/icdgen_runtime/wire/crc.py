@@ -1,0 +1,93 @@
+"""Checksums, in one go or piece by piece."""
+
+from __future__ import annotations
+
+from binascii import crc_hqx
+from functools import cache
+from typing import TYPE_CHECKING
+
+from .errors import need
+from .link import CrcForm
+
+if TYPE_CHECKING:
+    from .._base import Buffer
+    from .link import Link
+
+
+class Crc:
+    """A CRC that is fed piece by piece. Without ``table`` it goes bit by bit."""
+
+    def __init__(self, form: CrcForm, table: bool = True) -> None:
+        self._form = form
+        self._is_fed = False
+        self._register = form.init
+        if form.reflect_in:
+            self._register = _reversed(form.init, form.width)
+        self._rows = _table(form) if table else None
+        self._is_known = table and form[:4] == (16, 0x1021, form.init, False)
+
+    def feed(self, data: Buffer) -> Crc:
+        """Takes the next bytes; returns itself."""
+        data = memoryview(data).cast("B")
+        self._is_fed = self._is_fed or bool(data)
+        if self._is_known:  # the standard library has it
+            self._register = crc_hqx(data, self._register)
+        elif self._rows is None:
+            for byte in data:
+                self._register = _step(self._form, self._register, byte)
+        elif self._form.reflect_in:
+            rows, register = self._rows, self._register
+            for byte in data:
+                register = register >> 8 ^ rows[(register ^ byte) & 0xFF]
+            self._register = register
+        else:
+            rows, register = self._rows, self._register
+            shift, mask = self._form.width - 8, (1 << self._form.width) - 1
+            for byte in data:
+                register = register << 8 & mask ^ rows[register >> shift ^ byte]
+            self._register = register
+        return self
+
+    def result(self) -> int:
+        """The CRC of everything fed so far."""
+        form, value = self._form, self._register
+        if not self._is_fed and form.empty is not None:
+            return form.empty
+        if form.reflect_in != form.reflect_out:
+            value = _reversed(value, form.width)
+        return value ^ form.xor_out
+
+
+def crc8(link: Link, data: Buffer) -> int:
+    """The checksum of telecommands and frames. Raises `UnsupportedError`."""
+    return Crc(need(link.checksum, "crc8").crc).feed(data).result()
+
+
+def crc16(link: Link, data: Buffer) -> int:
+    """The checksum of files and blocks. Raises `UnsupportedError`."""
+    return Crc(need(link.crc16, "crc16")).feed(data).result()
+
+
+@cache
+def _table(form: CrcForm) -> tuple[int, ...]:
+    return tuple(_step(form, 0, byte) for byte in range(256))
+
+
+def _step(form: CrcForm, register: int, byte: int) -> int:
+    """The register after one more byte, bit by bit."""
+    if form.reflect_in:
+        polynomial = _reversed(form.polynomial, form.width)
+        register ^= byte
+        for _ in range(8):
+            register = register >> 1 ^ (polynomial if register & 1 else 0)
+        return register
+    top, mask = 1 << (form.width - 1), (1 << form.width) - 1
+    register ^= byte << (form.width - 8)
+    for _ in range(8):
+        carry = form.polynomial if register & top else 0
+        register = (register << 1 & mask) ^ carry
+    return register
+
+
+def _reversed(value: int, width: int) -> int:
+    return int(f"{value:0{width}b}"[::-1], 2)

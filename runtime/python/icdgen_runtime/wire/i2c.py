@@ -1,0 +1,65 @@
+"""I2C: the bytes that the master writes and reads."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from .._errors import LengthError, UnknownIdError
+from .crc import Crc
+from .errors import ChecksumError, need
+
+if TYPE_CHECKING:
+    from .link import Link
+
+
+class I2cTransfer(NamedTuple):
+    """One transaction: bytes to write, then count of bytes to read."""
+
+    write: bytes
+    read: int
+
+
+def i2c_write(link: Link, id: int, data: bytes = b"", crc: bool = False) -> bytes:
+    """What is written for a telecommand, or for a request, which has no data.
+
+    A telecommand is the same on the UART. Raises `UnsupportedError`.
+    """
+    message = bytes((id,)) + data
+    if crc:
+        message += _checksum(link, id, data)
+    return message
+
+
+def i2c_read_length(link: Link, id: int, crc: bool = False) -> int:
+    """Bytes to read for a frame. Raises `UnknownIdError` and `UnsupportedError`."""
+    extra = need(link.checksum, "crc8").bytes if crc else 0
+    return _length(link, id) + extra
+
+
+def i2c_reply(link: Link, id: int, data: bytes, crc: bool = False) -> bytes:
+    """The frame in what was read.
+
+    Raises `UnknownIdError`, `LengthError`, `ChecksumError` and `UnsupportedError`.
+    """
+    length, expected = _length(link, id), i2c_read_length(link, id, crc)
+    if len(data) != expected:
+        raise LengthError("the reply", expected, len(data))
+    frame = data[:length]
+    if crc and data[length:] != _checksum(link, id, frame):
+        numbers = (_checksum(link, id, frame), data[length:])
+        raise ChecksumError(*(int.from_bytes(one, link.order) for one in numbers))
+    return frame
+
+
+def _length(link: Link, id: int) -> int:
+    if id not in link.frames:
+        raise UnknownIdError(link.node, "telemetry", id)
+    return link.frames[id]
+
+
+def _checksum(link: Link, id: int, data: bytes) -> bytes:
+    form = need(link.checksum, "crc8")
+    register = Crc(form.crc)
+    if form.covers_id:
+        register.feed(bytes((id,)))
+    return register.feed(data).result().to_bytes(form.bytes, link.order)

@@ -1,0 +1,34 @@
+"""Whether a node is what this package was generated for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from .errors import need
+
+if TYPE_CHECKING:
+    from .._base import Buffer
+    from .link import Link
+
+
+class Identity(NamedTuple):
+    """What a node says of itself, and whether the ICD says the same."""
+
+    node_type: int
+    interface_version: int
+    matches: bool
+
+
+def identify(link: Link, data: Buffer) -> Identity:
+    """The identity in an identification frame.
+
+    Raises `LengthError` and `UnsupportedError`.
+    """
+    step = need(link.identification, "identification")
+    frame = link.TELEMETRY[need(step.telemetry, "identification")].from_bytes(data)
+    type = int(getattr(frame, step.fields["node_type"]))
+    version = int(getattr(frame, step.fields["interface_version"]))
+    is_type = link.node_type in (None, type)
+    return Identity(
+        type, version, is_type and link.interface_version in (None, version)
+    )

@@ -1,0 +1,195 @@
+"""Telemetry logs: the file form and the unsolicited form."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from .._errors import LengthError, RangeError
+from .errors import UnsupportedError, need
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from .._base import Buffer, Message
+    from .link import Link, LogBit, LogMask
+
+
+class LogFrame(NamedTuple):
+    """One frame of a log. Where the ICD assigns none to the bit, ``id`` is None and
+    ``data`` is the whole slot."""
+
+    bit: int
+    id: int | None
+    data: bytes
+
+    def message(self, link: Link) -> Message:
+        """The frame as a message. Raises `UnsupportedError` for an unassigned bit."""
+        if self.id not in link.frames:
+            raise UnsupportedError(f"the ICD has no frame for bit {self.bit} of a log")
+        return link.TELEMETRY[self.id].from_bytes(self.data)
+
+
+class LogEntry(NamedTuple):
+    """An entry of a log file: Unix time, and the frames by rising bits of the mask."""
+
+    seconds: int
+    milliseconds: int
+    frames: tuple[LogFrame, ...]
+
+
+class LogMessage(NamedTuple):
+    """What a node sends of its own accord: a log without time."""
+
+    mask: bytes
+    frames: tuple[LogFrame, ...]
+
+    @classmethod
+    def decode(cls, link: Link, message: bytes) -> LogMessage:
+        """The log in a message, which begins with its id.
+
+        Raises `LengthError` and `UnsupportedError`.
+        """
+        form = need(link.log_message, "unsolicited_log")
+        layout = need(link.mask, "log_mask")
+        if len(message) < form.frames_at:
+            raise LengthError("a log message", form.frames_at, len(message))
+        mask = message[form.mask_at : form.mask_at + layout.size]
+        slots = layout.selected(mask)
+        length = form.frames_at + len(slots) * layout.slot_bytes
+        if len(message) != length:
+            raise LengthError("the log message", length, len(message))
+        pieces = _pieces(slots, layout, form.frames_at)
+        return cls(mask, _frames(pieces, message, 0))
+
+    @staticmethod
+    def encode(link: Link, mask: bytes, frames: Iterable[bytes]) -> bytes:
+        """A log message with its id. Raises `LengthError` and `UnsupportedError`."""
+        form = need(link.log_message, "unsolicited_log")
+        head = bytearray(form.frames_at)
+        head[0] = form.id
+        slots = _selected(need(link.mask, "log_mask"), mask)
+        head[form.mask_at : form.mask_at + len(mask)] = mask
+        return bytes(head) + _filled(link, slots, frames)
+
+
+class LogReader:
+    """Reads a log file in pieces of any size. Raises `UnsupportedError`."""
+
+    def __init__(self, link: Link) -> None:
+        self._form = need(link.log_file, "telemetry_log")
+        self._layout = need(link.mask, "log_mask")
+        self._order: Literal["little", "big"] = link.order
+        self._rest = b""
+        self._pieces: list[tuple[int, int | None, int, int]] = []
+        self._entry_bytes = 0
+        self.mask: bytes | None = None
+        """The mask of the file; None as long as its header is incomplete."""
+
+    @property
+    def truncated(self) -> int:
+        """At the end of the file: bytes that belong to no whole entry."""
+        return len(self._rest)
+
+    def feed(self, data: Buffer) -> list[LogEntry]:
+        """Takes the next bytes of the file; gives the entries that are whole now."""
+        form, data = self._form, self._rest + bytes(data)
+        position = 0
+        if self.mask is None:
+            if len(data) < form.header_bytes:
+                self._rest = data
+                return []
+            self.mask = data[form.mask_at : form.mask_at + self._layout.size]
+            slots = self._layout.selected(self.mask)
+            self._pieces = _pieces(slots, self._layout, form.frames_at)
+            self._entry_bytes = form.frames_at + len(slots) * self._layout.slot_bytes
+            position = form.header_bytes
+        whole = (len(data) - position) // self._entry_bytes * self._entry_bytes
+        starts = range(position, position + whole, self._entry_bytes)
+        entries = [self._entry(data, start) for start in starts]
+        self._rest = data[position + whole :]
+        return entries
+
+    def _entry(self, data: bytes, start: int) -> LogEntry:
+        def number(at: int, size: int) -> int:
+            return int.from_bytes(data[start + at : start + at + size], self._order)
+
+        return LogEntry(
+            number(*self._form.seconds),
+            number(*self._form.milliseconds),
+            _frames(self._pieces, data, start),
+        )
+
+
+class LogWriter:
+    """Makes a log file of the frames that ``mask`` selects.
+
+    Raises `LengthError` for a mask of another length, and `UnsupportedError`.
+    """
+
+    def __init__(self, link: Link, mask: bytes) -> None:
+        self._link, self._form = link, need(link.log_file, "telemetry_log")
+        self._slots = _selected(need(link.mask, "log_mask"), mask)
+        self._mask = mask
+
+    def header(self) -> bytes:
+        """What a file begins with."""
+        out = bytearray(self._form.header_bytes)
+        out[self._form.mask_at : self._form.mask_at + len(self._mask)] = self._mask
+        return bytes(out)
+
+    def entry(self, seconds: int, milliseconds: int, frames: Iterable[bytes]) -> bytes:
+        """An entry: the data of each frame, in the order of the mask's bits.
+
+        Raises `LengthError`, and `RangeError` for a time that does not fit.
+        """
+        head = bytearray(self._form.frames_at)
+        places = {
+            "seconds": self._form.seconds,
+            "milliseconds": self._form.milliseconds,
+        }
+        for name, value in (("seconds", seconds), ("milliseconds", milliseconds)):
+            at, size = places[name]
+            if not 0 <= value < 1 << 8 * size:
+                raise RangeError(name, f"0 to {(1 << 8 * size) - 1}", value)
+            head[at : at + size] = value.to_bytes(size, self._link.order)
+        return bytes(head) + _filled(self._link, self._slots, frames)
+
+
+def _selected(layout: LogMask, mask: bytes) -> list[LogBit]:
+    if len(mask) != layout.size:
+        raise LengthError("the mask", layout.size, len(mask))
+    return layout.selected(mask)
+
+
+def _pieces(
+    slots: Sequence[LogBit], layout: LogMask, start: int
+) -> list[tuple[int, int | None, int, int]]:
+    """Bit, id, begin and end of each frame."""
+    pieces = []
+    for number, slot in enumerate(slots):
+        begin = start + number * layout.slot_bytes
+        pieces.append((slot.bit, slot.id, begin, begin + slot.length))
+    return pieces
+
+
+def _frames(
+    pieces: Sequence[tuple[int, int | None, int, int]], data: bytes, start: int
+) -> tuple[LogFrame, ...]:
+    return tuple(
+        [
+            LogFrame(bit, id, data[start + begin : start + end])
+            for bit, id, begin, end in pieces
+        ]
+    )
+
+
+def _filled(link: Link, slots: Sequence[LogBit], frames: Iterable[bytes]) -> bytes:
+    layout, given = need(link.mask, "log_mask"), list(frames)
+    if len(given) != len(slots):
+        raise LengthError("an entry, in frames,", len(slots), len(given))
+    fill, out = bytes((layout.fill,)), bytearray()
+    for slot, frame in zip(slots, given):
+        if len(frame) != slot.length:
+            raise LengthError(slot.name or "the frame", slot.length, len(frame))
+        out += frame.ljust(layout.slot_bytes, fill)
+    return bytes(out)

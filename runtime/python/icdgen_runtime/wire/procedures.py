@@ -1,0 +1,169 @@
+"""What all procedures share: they say which request comes next, and are told what
+became of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union
+
+from .client import Request
+from .errors import need
+from .events import Done, Packet, Refused, Timeout
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from .._base import Message
+    from .events import Event, Outcome
+    from .link import Link, Step
+
+Result = Literal[
+    "done", "refused", "timeout", "parameter", "length", "rounds", "checksum"
+]
+
+
+class Wait(NamedTuple):
+    """Nothing to send until then, or until something comes."""
+
+    until: float
+
+
+class Ended(Exception):
+    """The procedure cannot go on."""
+
+    def __init__(self, result: Result) -> None:
+        super().__init__(result)
+        self.result: Result = result
+
+
+Wanted = Union[Request, Wait]
+Values = dict[str, Any]
+
+if TYPE_CHECKING:
+    Steps = Generator[Wanted, "Outcome | None", None]
+
+
+class Procedure:
+    """A procedure over a client; it knows neither clock nor bus.
+
+    `next` gives the request to start, `event` takes the events of the client. Requests
+    begin when `next` is called for the first time. Raises `UnsupportedError`.
+    """
+
+    def __init__(self, link: Link) -> None:
+        self.link, self._files = link, need(link.files, "file_transfer")
+        self.result: Result | None = None
+        """None while it runs, then ``done`` or why it is not."""
+        self._now: float = 0
+        self._wanted: Wanted | None = None
+        self._is_asked = False
+        self._steps: Steps | None = None
+
+    @property
+    def progress(self) -> tuple[int, int | None]:
+        """Bytes that are delivered, and bytes in all, if that is known."""
+        return 0, None
+
+    @property
+    def deadline(self) -> float | None:
+        """When `next` wants to be called again; None while an outcome is awaited."""
+        return self._wanted.until if isinstance(self._wanted, Wait) else None
+
+    def next(self, now: float) -> Request | None:
+        """The next request, once; None while there is nothing to send."""
+        self._now = now
+        if self._steps is None:
+            self._steps = self._run()
+            self._go_on(None)
+        while isinstance(self._wanted, Wait) and now >= self._wanted.until:
+            self._go_on(None)
+        if isinstance(self._wanted, Request) and not self._is_asked:
+            self._is_asked = True
+            return self._wanted
+        return None
+
+    def event(self, now: float, event: Event) -> None:
+        """Takes an event of the client. Those that are of no concern are ignored."""
+        self._now = now
+        if isinstance(event, Packet):
+            self._packet(event.number, event.data)
+        elif isinstance(event, (Done, Refused, Timeout)) and self._is_asked:
+            self._is_asked = False
+            self._go_on(event)
+
+    def _run(self) -> Steps:
+        raise NotImplementedError
+
+    def _packet(self, number: int, data: bytes) -> None:
+        """Takes a download packet."""
+
+    def _go_on(self, outcome: Outcome | None) -> None:
+        if self._steps is None:
+            return
+        self._wanted = None
+        try:
+            self._wanted = self._steps.send(outcome)
+        except StopIteration:
+            self.result = "done"
+        except Ended as end:
+            self.result = end.result
+
+    def _step(self, name: str) -> Step:
+        return need(self._files.steps.get(name), f"file_transfer.{name}")
+
+    def _number(self, name: str) -> int:
+        return need(self._files.numbers.get(name), f"file_transfer.{name}")
+
+    def _telecommand(
+        self, name: str, values: Values | None = None, repeat: bool = True
+    ) -> Request:
+        """The telecommand of a step: a fresh message with values by role."""
+        step = self._step(name)
+        id = need(step.telecommand, f"file_transfer.{name}")
+        message = self.link.TELECOMMANDS[id]()
+        for role, value in (values or {}).items():
+            setattr(message, step.fields[role], value)
+        return Request("telecommand", id, message.to_bytes(), repeat)
+
+    def _ask(self, request: Request) -> Generator[Wanted, Outcome | None, Outcome]:
+        """The outcome of a request."""
+        outcome = yield request
+        if outcome is None:
+            raise Ended("timeout")
+        return outcome
+
+    def _must(self, request: Request) -> Generator[Wanted, Outcome | None, Done]:
+        """The outcome of a request without which there is no going on."""
+        outcome = yield from self._ask(request)
+        if isinstance(outcome, Done):
+            return outcome
+        raise Ended("refused" if isinstance(outcome, Refused) else "timeout")
+
+    def _order(
+        self, name: str, values: Values | None = None, repeat: bool = True
+    ) -> Generator[Wanted, Outcome | None, None]:
+        """Sends the telecommand of a step, which must be executed."""
+        yield from self._must(self._telecommand(name, values, repeat))
+
+    def _frame(
+        self, name: str
+    ) -> Generator[Wanted, Outcome | None, tuple[Values, bytes]]:
+        """The frame of a step: its values by role, and its bytes."""
+        step = self._step(name)
+        id = need(step.telemetry, f"file_transfer.{name}")
+        done = yield from self._must(Request("telemetry", id, repeat=True))
+        frame: Message = self.link.TELEMETRY[id].from_bytes(done.data)
+        values = {role: getattr(frame, at) for role, at in step.fields.items()}
+        return values, done.data
+
+    def _poll(
+        self, name: str, role: str, wanted: bool, interval: str, timeout: float
+    ) -> Generator[Wanted, Outcome | None, tuple[Values, bytes]]:
+        """The frame of a step as soon as the flag is as wanted, or tells an error."""
+        end = self._now + timeout
+        while True:
+            values, frame = yield from self._frame(name)
+            if bool(values[role]) == wanted or values.get("error"):
+                return values, frame
+            if self._now >= end:
+                raise Ended("timeout")
+            yield Wait(self._now + self._number(interval))

@@ -1,0 +1,81 @@
+"""Date and time packed into bits."""
+
+from __future__ import annotations
+
+from calendar import monthrange
+from datetime import datetime
+from typing import TYPE_CHECKING, NamedTuple
+
+from .._errors import RangeError
+from .errors import need
+
+if TYPE_CHECKING:
+    from .link import Link
+
+
+class DosTime(NamedTuple):
+    """The parts of a packed time, whatever they are."""
+
+    year: int
+    month: int
+    day: int
+    hour: int
+    minute: int
+    second: int
+
+    @property
+    def is_valid(self) -> bool:
+        """Whether the calendar has it."""
+        return _wrong(self) is None
+
+    def datetime(self) -> datetime:
+        """The same, without time zone. Raises `ValueError` if it does not exist."""
+        return datetime(*self)
+
+
+def dos_time_unpack(link: Link, value: int) -> DosTime:
+    """The parts of a packed time. Raises `UnsupportedError`."""
+    form = need(link.time, "msdos_time")
+    parts = dict.fromkeys(DosTime._fields, 0)
+    for name, part in form.items():
+        raw = value >> part.at & (1 << part.bits) - 1
+        parts[name] = raw * part.factor + part.offset
+    return DosTime(**parts)
+
+
+def dos_time_pack(link: Link, time: DosTime | datetime) -> int:
+    """The packed time; what is finer than its resolution is cut off.
+
+    Raises `RangeError` for the first part that does not exist or does not fit, and
+    `UnsupportedError`.
+    """
+    form = need(link.time, "msdos_time")
+    if isinstance(time, datetime):
+        time = DosTime(*time.timetuple()[:6])
+    wrong = _wrong(time)
+    if wrong:
+        raise RangeError(wrong, "what the calendar has", getattr(time, wrong))
+    packed = 0
+    for name in DosTime._fields:
+        if name not in form:
+            continue
+        part = form[name]
+        raw, most = (getattr(time, name) - part.offset) // part.factor, 1 << part.bits
+        if not 0 <= raw < most:
+            last = (most - 1) * part.factor + part.offset
+            raise RangeError(name, f"{part.offset} to {last}", getattr(time, name))
+        packed |= raw << part.at
+    return packed
+
+
+def _wrong(time: DosTime) -> str | None:
+    """The first part that does not exist."""
+    if not 1 <= time.month <= 12:
+        return "month"
+    # Every 400 years are alike; `calendar` does not have all years.
+    days = monthrange(2000 + time.year % 400, time.month)[1]
+    most = {"day": (1, days), "hour": (0, 23), "minute": (0, 59), "second": (0, 59)}
+    for name, (low, high) in most.items():
+        if not low <= getattr(time, name) <= high:
+            return name
+    return None

@@ -1,0 +1,332 @@
+"""Files: list, download, upload, erase, format."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from .client import Request
+from .crc import crc16
+from .errors import need
+from .events import Done, Refused
+from .files import HoleMap
+from .procedures import Ended, Procedure, Values, Wait
+from .times import dos_time_unpack
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from .events import Outcome
+    from .link import Bus, Link
+    from .procedures import Steps, Wanted
+    from .times import DosTime
+
+
+class FileEntry(NamedTuple):
+    """A file of the node; ``time`` is packed."""
+
+    type: int = 0
+    counter: int = 0
+    size: int = 0
+    time: int = 0
+    checksum: int = 0
+
+    def modified(self, link: Link) -> DosTime:
+        """When it was made. Raises `UnsupportedError`."""
+        return dos_time_unpack(link, self.time)
+
+
+class FileList(Procedure):
+    """Finds the files of the node, which are in ``entries``."""
+
+    def __init__(self, link: Link) -> None:
+        super().__init__(link)
+        self.entries: list[FileEntry] = []
+
+    def _run(self) -> Steps:
+        last, repeated = b"", 0
+        yield from self._order("list.reset")
+        timeout, interval = self._number("list.timeout_ms"), "list.poll_interval_ms"
+        while True:
+            values, frame = yield from self._poll(
+                "list.information", "busy", False, interval, timeout
+            )
+            if not any(frame):
+                return
+            if frame != last:
+                known = {
+                    role: values[role] for role in FileEntry._fields if role in values
+                }
+                self.entries.append(FileEntry(**{r: int(v) for r, v in known.items()}))
+                repeated = 0
+            elif repeated > self.link.settings.retries:
+                raise Ended("timeout")
+            last, repeated = frame, repeated + 1
+            # Once: if only its acknowledge is lost, the next frame tells.
+            advance = self._telecommand("list.advance", repeat=False)
+            outcome = yield from self._ask(advance)
+            if isinstance(outcome, Refused):
+                raise Ended("refused")
+
+
+class Download(Procedure):
+    """Gets a file, block by block.
+
+    ``size`` None: as much as there is, which the index file needs. ``block``: bytes of
+    a block, at most those of the ICD.
+    """
+
+    def __init__(
+        self,
+        link: Link,
+        bus: Bus,
+        type: int,
+        counter: int,
+        size: int | None = None,
+        block: int | None = None,
+    ) -> None:
+        super().__init__(link)
+        self.size = size
+        self.blocks: list[tuple[int, bytes]] = []
+        """Offset and data of what was delivered."""
+        self._bus = bus
+        self._file = {"type": type, "counter": counter}
+        self._block_bytes = min(
+            block or self._files.block_bytes, self._files.block_bytes
+        )
+        self._offset = 0
+        self._got: dict[int, bytes] = {}
+        self._count = 0  # packets of the block
+        self._last: float = 0  # when a packet came
+
+    @property
+    def data(self) -> bytes:
+        """What was delivered up to now."""
+        return b"".join(data for _, data in self.blocks)
+
+    @property
+    def progress(self) -> tuple[int, int | None]:
+        return self._offset, self.size
+
+    def _packet(self, number: int, data: bytes) -> None:
+        position = number - self._files.first_packet
+        if not 0 <= position < self._count:
+            return
+        self._got.setdefault(position, data)
+        self._last = self._now
+        if len(self._got) == self._count and isinstance(self._wanted, Wait):
+            self._wanted = Wait(self._now)
+
+    def _run(self) -> Steps:
+        while self.size is None or self._offset < self.size:
+            length = self._block_bytes
+            if self.size is not None:
+                length = min(length, self.size - self._offset)
+            data = yield from self._block(length)
+            if data:
+                self.blocks.append((self._offset, data))
+                self._offset += len(data)
+            if self.size is None and len(data) < length:
+                return
+
+    def _block(self, length: int) -> Generator[Wanted, Outcome | None, bytes]:
+        """A block of so many bytes, or of less at the end of a file of unknown size."""
+        numbers, rounds = self._files.numbers, 0
+        while True:
+            ready = yield from self._load(length)
+            size: int = ready["length"]
+            if size > length or (self.size is not None and size != length):
+                raise Ended("length")
+            self._count = self._files.packets_of(size)
+            while len(self._got) < self._count:
+                if rounds == self._number("download.rounds"):
+                    raise Ended("rounds")
+                rounds += 1
+                yield from self._round()
+            packets = b"".join(self._got[position] for position in range(self._count))
+            covers_fill = numbers.get("download.checksum_covers_fill")
+            covered = packets if covers_fill else packets[:size]
+            if crc16(self.link, covered) == ready["checksum"]:
+                return packets[:size]
+            if rounds == self._number("download.rounds"):
+                raise Ended("checksum")
+            if not size:  # no packet, so that no round was made
+                rounds += 1
+
+    def _load(self, length: int) -> Generator[Wanted, Outcome | None, Values]:
+        """Has the node load a block; what its ready frame says."""
+        self._got, self._count = {}, 0
+        place = {**self._file, "offset": self._offset, "length": length}
+        yield from self._order("download.load", place)
+        interval = "download.poll_interval_ms"
+        timeout = self._number("download.ready_timeout_ms")
+        ready, _ = yield from self._poll(
+            "download.ready", "ready", True, interval, timeout
+        )
+        if ready["error"]:
+            raise Ended("parameter")
+        return ready
+
+    def _round(self) -> Steps:
+        """One burst, of the packets that are missing."""
+        missing = self._count - len(self._got)
+        if self._got:
+            yield from self._send_hole_map()
+        self._last = self._now
+        values = {
+            "length": self._number("download.message_length"),
+            "ignore_hole_map": not self._got,
+        }
+        # Once: the packets tell more than the acknowledge.
+        burst = self._telecommand("download.burst", values, repeat=False)
+        outcome = yield from self._ask(burst)
+        if isinstance(outcome, Refused):
+            raise Ended("refused")
+        if self._bus != "uart":
+            yield from self._fetch(missing)
+            return
+        silence = self._number("download.silence_ms")
+        self._last = max(self._last, self._now)
+        while len(self._got) < self._count and self._now < self._last + silence:
+            yield Wait(self._last + silence)
+
+    def _fetch(self, packets: int) -> Steps:
+        """Requests so many packets one by one."""
+        id = need(
+            self._files.packet_ids.get(self._bus), f"file_transfer.download.{self._bus}"
+        )
+        for _ in range(packets):
+            outcome = yield from self._ask(Request("telemetry", id, repeat=True))
+            if isinstance(outcome, Done):
+                counter, rest = self._files.counter_bytes, outcome.data
+                number = int.from_bytes(rest[:counter], self.link.order)
+                self._packet(number, rest[counter:])
+
+    def _send_hole_map(self) -> Steps:
+        form = need(self.link.hole_map, "file_transfer.hole_map")
+        first = self._files.first_packet
+        received = [first + position for position in self._got]
+        pieces = HoleMap(self.link, self._count, received).messages()
+        for id, piece in zip(
+            form.telecommands, pieces[: _maps(self.link, self._count)]
+        ):
+            message = self.link.TELECOMMANDS[id]()
+            setattr(message, form.attribute, piece)
+            data = message.to_bytes()
+            yield from self._must(Request("telecommand", id, data, repeat=True))
+
+
+class Upload(Procedure):
+    """Sends a file, block by block. ``sent``: bytes that are committed."""
+
+    def __init__(
+        self, link: Link, destination: int, data: bytes, block: int | None = None
+    ) -> None:
+        super().__init__(link)
+        self.sent = 0
+        self._destination, self._data = destination, data
+        self._block_bytes = min(
+            block or self._files.block_bytes, self._files.block_bytes
+        )
+
+    @property
+    def progress(self) -> tuple[int, int | None]:
+        return self.sent, len(self._data)
+
+    def _run(self) -> Steps:
+        values = {
+            "destination": self._destination,
+            "block_size": self._number("upload.block_size"),
+        }
+        yield from self._order("upload.initiate", values)
+        timeout = 1000 * self._number("upload.erase_timeout_s")
+        interval = "upload.poll_interval_ms"
+        yield from self._poll("upload.initiated", "busy", False, interval, timeout)
+        while self.sent < len(self._data):
+            data = self._data[self.sent : self.sent + self._block_bytes]
+            yield from self._block(data)
+            self.sent += len(data)
+
+    def _block(self, data: bytes) -> Steps:
+        files, rounds = self._files, 0
+        count = files.packets_of(len(data))
+        filled = data.ljust(count * files.packet_bytes, bytes((files.fill,)))
+        covered = filled if files.numbers.get("upload.checksum_covers_fill") else data
+        while True:
+            yield from self._order("upload.begin")
+            missing = [files.first_packet + position for position in range(count)]
+            while missing:
+                if rounds == self._number("upload.rounds"):
+                    raise Ended("rounds")
+                rounds += 1
+                for number in missing:
+                    at = (number - files.first_packet) * files.packet_bytes
+                    piece = filled[at : at + files.packet_bytes]
+                    values = {"number": number, "bytes": piece}
+                    yield from self._order("upload.packet", values, repeat=False)
+                missing = yield from self._missing(count)
+            told, _ = yield from self._frame("upload.checksum")
+            if told["checksum"] == crc16(self.link, covered):
+                is_committed = yield from self._commit(len(data))
+                if is_committed:
+                    return
+            if rounds == self._number("upload.rounds"):
+                raise Ended("checksum")
+
+    def _missing(self, count: int) -> Generator[Wanted, Outcome | None, list[int]]:
+        """Numbers of the packets that the node has not."""
+        form = need(self.link.hole_map, "file_transfer.hole_map")
+        data = b""
+        for id in form.telemetry[: _maps(self.link, count)]:
+            done = yield from self._must(Request("telemetry", id, repeat=True))
+            frame = self.link.TELEMETRY[id].from_bytes(done.data)
+            data += getattr(frame, form.attribute)
+        whole = data.ljust(form.bytes, b"\0")
+        return HoleMap.from_bytes(self.link, count, whole).missing()
+
+    def _commit(self, length: int) -> Generator[Wanted, Outcome | None, bool]:
+        """Has the node keep the block; whether it could."""
+        values = {
+            "destination": self._destination,
+            "offset": self.sent,
+            "length": length,
+        }
+        yield from self._order("upload.finalize", values)
+        interval = "upload.poll_interval_ms"
+        timeout = self._number("upload.finalize_timeout_ms")
+        told, _ = yield from self._poll(
+            "upload.finalized", "busy", False, interval, timeout
+        )
+        return not told["error"]
+
+
+class Erase(Procedure):
+    """Deletes a file, or all files: then it is done when the node is no longer busy."""
+
+    def __init__(
+        self, link: Link, type: int = 0, counter: int = 0, all: bool = False
+    ) -> None:
+        super().__init__(link)
+        self._values = {"type": type, "counter": counter, "all": all}
+
+    def _run(self) -> Steps:
+        yield from self._order("erase.request", self._values)
+        if self._values["all"]:
+            interval, timeout = "erase.poll_interval_ms", self._number(
+                "erase.timeout_ms"
+            )
+            yield from self._poll("erase.progress", "busy", False, interval, timeout)
+
+
+class Format(Procedure):
+    """Formats the medium of the node."""
+
+    def _run(self) -> Steps:
+        yield from self._order("format.request")
+        interval, timeout = "format.poll_interval_ms", self._number("format.timeout_ms")
+        yield from self._poll("format.progress", "busy", False, interval, timeout)
+
+
+def _maps(link: Link, packets: int) -> int:
+    """Messages that carry the hole map of a block of so many packets."""
+    bits = 8 * need(link.hole_map, "file_transfer.hole_map").message_bytes
+    return -(-packets // bits)

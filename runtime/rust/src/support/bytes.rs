@@ -1,0 +1,118 @@
+//! Access to bytes.
+
+use super::Error;
+
+// Macros, so that every index is a constant at any level of optimisation.
+
+/// Bytes from a place on: `take!(bytes[at; count])`.
+macro_rules! take {
+    ($bytes:ident[$at:literal; 2]) => {
+        [$bytes[$at], $bytes[$at + 1]]
+    };
+    ($bytes:ident[$at:literal; 4]) => {
+        [
+            $bytes[$at],
+            $bytes[$at + 1],
+            $bytes[$at + 2],
+            $bytes[$at + 3],
+        ]
+    };
+    ($bytes:ident[$at:literal; 8]) => {
+        [
+            $bytes[$at],
+            $bytes[$at + 1],
+            $bytes[$at + 2],
+            $bytes[$at + 3],
+            $bytes[$at + 4],
+            $bytes[$at + 5],
+            $bytes[$at + 6],
+            $bytes[$at + 7],
+        ]
+    };
+}
+pub(crate) use take;
+
+/// Puts bytes at a place: `put!(value => bytes[at; count])`.
+macro_rules! put {
+    ($value:expr => $bytes:ident[$at:literal; 1]) => {
+        let value = $value;
+        $bytes[$at] = value[0];
+    };
+    ($value:expr => $bytes:ident[$at:literal; 2]) => {
+        let value = $value;
+        $bytes[$at] = value[0];
+        $bytes[$at + 1] = value[1];
+    };
+    ($value:expr => $bytes:ident[$at:literal; 4]) => {
+        let value = $value;
+        $bytes[$at] = value[0];
+        $bytes[$at + 1] = value[1];
+        $bytes[$at + 2] = value[2];
+        $bytes[$at + 3] = value[3];
+    };
+    ($value:expr => $bytes:ident[$at:literal; 8]) => {
+        let value = $value;
+        $bytes[$at] = value[0];
+        $bytes[$at + 1] = value[1];
+        $bytes[$at + 2] = value[2];
+        $bytes[$at + 3] = value[3];
+        $bytes[$at + 4] = value[4];
+        $bytes[$at + 5] = value[5];
+        $bytes[$at + 6] = value[6];
+        $bytes[$at + 7] = value[7];
+    };
+}
+pub(crate) use put;
+
+/// The `N` bytes from `at` on.
+#[inline(always)]
+pub(crate) fn array<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
+    match bytes.get(at..at + N).map(TryInto::try_into) {
+        Some(Ok(taken)) => taken,
+        _ => [0; N],
+    }
+}
+
+/// Copies `value` to the bytes from `at` on; says whether there are enough.
+#[inline(always)]
+pub(crate) fn put_array<const N: usize>(bytes: &mut [u8], at: usize, value: &[u8; N]) -> bool {
+    match bytes.get_mut(at..at + N).map(<&mut [u8; N]>::try_from) {
+        Some(Ok(target)) => {
+            *target = *value;
+            true
+        }
+        _ => false,
+    }
+}
+
+/// Copies `bytes` to the beginning of `buffer` and says how many they are.
+#[inline]
+pub(crate) fn write_to<const N: usize>(buffer: &mut [u8], bytes: &[u8; N]) -> Result<usize, Error> {
+    if put_array(buffer, 0, bytes) {
+        Ok(N)
+    } else {
+        Error::length(N, buffer.len())
+    }
+}
+
+/// The eight bits of a byte, least significant first.
+#[inline(always)]
+pub(crate) fn flags(byte: u8) -> [bool; 8] {
+    FLAGS[usize::from(byte)]
+}
+
+static FLAGS: [[bool; 8]; 256] = flag_table();
+
+const fn flag_table() -> [[bool; 8]; 256] {
+    let mut table = [[false; 8]; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        let mut bit = 0;
+        while bit < 8 {
+            table[byte][bit] = (byte >> bit) & 1 != 0;
+            bit += 1;
+        }
+        byte += 1;
+    }
+    table
+}

@@ -1,0 +1,149 @@
+//! What all messages share: the error, enumerations, access to bytes, scale formulas.
+
+#![allow(dead_code, unused_imports, unused_macros)] // not every interface needs all of it
+
+use core::fmt;
+use core::hash::Hash;
+
+#[cfg(feature = "serde")]
+pub(crate) mod array;
+mod bytes;
+mod scale;
+
+pub(crate) use self::bytes::{array, flags, put, put_array, take, write_to};
+pub(crate) use self::scale::Scale;
+
+/// Why bytes are not a message, or a message or value cannot be encoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Error {
+    /// There are more or fewer bytes than the message has, or the buffer has fewer.
+    Length {
+        /// Length of the message in bytes.
+        expected: usize,
+        /// Number of bytes that were given.
+        actual: usize,
+    },
+    /// A value does not fit its field, or is not a finite number.
+    Range {
+        /// The field, as the ICD calls it.
+        field: &'static str,
+    },
+    /// The node has no message of that id in that direction.
+    UnknownId {
+        /// The id.
+        id: u16,
+    },
+}
+
+impl Error {
+    /// Out of line, so that it costs a decoder nothing.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn length<T>(expected: usize, actual: usize) -> Result<T, Self> {
+        Err(Self::Length { expected, actual })
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Length { expected, actual } => {
+                write!(out, "{expected} bytes expected, {actual} given")
+            }
+            Self::Range { field } => write!(out, "the value does not fit `{field}`"),
+            Self::UnknownId { id } => write!(out, "there is no message of id {id}"),
+        }
+    }
+}
+
+#[cfg(feature = "std")]
+impl std::error::Error for Error {}
+
+/// An enumeration whose values can be made from every number and back.
+pub trait Enumeration: Copy + fmt::Debug + From<Self::Raw> + Into<Self::Raw> {
+    /// The integer that holds its values.
+    type Raw: Copy + Default + Eq + Hash;
+
+    /// What the ICD calls the value; None if it has no name.
+    fn name(self) -> Option<&'static str>;
+}
+
+/// A value of an enumeration as it is on the wire, so that every number is kept.
+#[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub struct Coded<E: Enumeration>(E::Raw);
+
+impl<E: Enumeration> Coded<E> {
+    /// From the number on the wire.
+    #[inline]
+    pub const fn from_raw(raw: E::Raw) -> Self {
+        Self(raw)
+    }
+
+    /// The number on the wire.
+    #[inline]
+    pub const fn raw(self) -> E::Raw {
+        self.0
+    }
+
+    /// The enumeration's value, to be matched.
+    #[inline]
+    #[must_use]
+    pub fn get(self) -> E {
+        E::from(self.0)
+    }
+
+    /// What the ICD calls the value; None if it has no name.
+    #[must_use]
+    pub fn name(self) -> Option<&'static str> {
+        self.get().name()
+    }
+}
+
+impl<E: Enumeration> From<E> for Coded<E> {
+    #[inline]
+    fn from(value: E) -> Self {
+        Self(value.into())
+    }
+}
+
+impl<E: Enumeration> PartialEq<E> for Coded<E> {
+    #[inline]
+    fn eq(&self, other: &E) -> bool {
+        self.0 == (*other).into()
+    }
+}
+
+impl<E: Enumeration> fmt::Debug for Coded<E> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.get().fmt(out)
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl<E: Enumeration + defmt::Format> defmt::Format for Coded<E> {
+    fn format(&self, out: defmt::Formatter) {
+        self.get().format(out);
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<E: Enumeration> serde::Serialize for Coded<E>
+where
+    E::Raw: serde::Serialize,
+{
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.serialize(serializer)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de, E: Enumeration> serde::Deserialize<'de> for Coded<E>
+where
+    E::Raw: serde::Deserialize<'de>,
+{
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        E::Raw::deserialize(deserializer).map(Self)
+    }
+}

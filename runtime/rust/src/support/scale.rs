@@ -1,0 +1,119 @@
+//! Scale formulas, in integers of 128 bits.
+
+use super::Error;
+
+/// What a field's raw value may be, and its physical value: `(raw * factor + offset) / divisor`.
+pub(crate) struct Scale {
+    pub(crate) field: &'static str,
+    pub(crate) min: i128,
+    pub(crate) max: i128,
+    pub(crate) factor: i128,
+    pub(crate) offset: i128,
+    pub(crate) divisor: i128,
+}
+
+impl Scale {
+    const fn refusal(&self) -> Error {
+        Error::Range { field: self.field }
+    }
+
+    /// The raw value, if the field can hold it.
+    #[inline]
+    pub(crate) fn fit<T: Copy + Into<i128>>(&self, raw: T) -> Result<T, Error> {
+        if (self.min..=self.max).contains(&raw.into()) {
+            Ok(raw)
+        } else {
+            Err(self.refusal())
+        }
+    }
+
+    /// The double nearest to the physical value, ties to even.
+    pub(crate) fn physical<T: Into<i128>>(&self, raw: T) -> f64 {
+        let value = raw.into() * self.factor + self.offset;
+        let size = quotient(value.unsigned_abs(), self.divisor.unsigned_abs());
+        if value < 0 {
+            -size
+        } else {
+            size
+        }
+    }
+
+    /// The raw value nearest to a physical one, ties to even.
+    pub(crate) fn raw<T: TryFrom<i128>>(&self, physical: f64) -> Result<T, Error> {
+        let raw = self.nearest(physical).ok_or_else(|| self.refusal())?;
+        T::try_from(self.fit(raw)?).map_err(|_| self.refusal())
+    }
+
+    /// The whole number nearest to `(physical * divisor - offset) / factor`, unless it is out of all bounds.
+    fn nearest(&self, physical: f64) -> Option<i128> {
+        let (mantissa, exponent) = parts(physical)?;
+        let sign = self.factor.signum();
+        let product = mantissa * self.divisor * sign;
+        // whole + rest is the product scaled by the exponent; rest is 0, or 1 below, 2 at, 3 above one half.
+        let (whole, rest) = if exponent >= 0 {
+            let power = 1_i128.checked_shl(exponent.unsigned_abs())?;
+            (product.checked_mul(power)?, 0)
+        } else {
+            halved(product, exponent.unsigned_abs())
+        };
+        let whole = whole.checked_sub(self.offset * sign)?;
+        let factor = self.factor.abs();
+        let raw = whole.checked_div_euclid(factor)?;
+        let remainder = whole.checked_rem_euclid(factor)?;
+        let beyond_half = 2 * (2 * remainder - factor) + rest;
+        let up = beyond_half > 0 || (beyond_half == 0 && raw & 1 == 1);
+        Some(raw + i128::from(up))
+    }
+}
+
+/// Mantissa and exponent: the value is `mantissa * 2^exponent`. None if it is not finite.
+fn parts(value: f64) -> Option<(i128, i32)> {
+    let bits = value.to_bits();
+    let [first, second, ..] = bits.to_be_bytes();
+    let exponent = i32::from(u16::from_be_bytes([first & 0x7f, second]) >> 4);
+    let fraction = i128::from(bits & 0x000f_ffff_ffff_ffff);
+    let (mantissa, exponent) = match exponent {
+        0x7ff => return None,
+        0 => (fraction, -1074),
+        _ => (fraction | 0x0010_0000_0000_0000, exponent - 1075),
+    };
+    Some((if first < 0x80 { mantissa } else { -mantissa }, exponent))
+}
+
+/// `value / 2^places` rounded down, and the rest: 0 if none, or 1 below, 2 at, 3 above one half.
+fn halved(value: i128, places: u32) -> (i128, i128) {
+    // Beyond 120 places only the sign of such a value still counts.
+    let (value, places) = if places > 120 {
+        (value.signum(), 120)
+    } else {
+        (value, places)
+    };
+    let rest = value & ((1 << places) - 1);
+    let half = 1 << (places - 1);
+    let kind = match rest.cmp(&half) {
+        _ if rest == 0 => 0,
+        core::cmp::Ordering::Less => 1,
+        core::cmp::Ordering::Equal => 2,
+        core::cmp::Ordering::Greater => 3,
+    };
+    (value >> places, kind)
+}
+
+/// The double nearest to `value / divisor`, ties to even.
+fn quotient(value: u128, divisor: u128) -> f64 {
+    if value == 0 {
+        return 0.0;
+    }
+    let shift = value.leading_zeros();
+    let scaled = value << shift;
+    let quotient = scaled.checked_div(divisor).unwrap_or(0);
+    let inexact = scaled.checked_rem(divisor).unwrap_or(0) != 0;
+    let surplus = 75_u32.saturating_sub(quotient.leading_zeros()); // bits beyond the 53 of a double
+    let rest = quotient & ((1 << surplus) - 1);
+    let half = (1 << surplus) >> 1;
+    let mantissa = quotient >> surplus;
+    let up = rest > half || (rest == half && (inexact || mantissa & 1 == 1));
+    let mantissa = u64::try_from(mantissa).unwrap_or(0) + u64::from(up);
+    // The mantissa's leading one adds 1 to the exponent; so does the carry of rounding up.
+    f64::from_bits((u64::from(surplus + 1074 - shift) << 52) + mantissa)
+}

@@ -1,0 +1,245 @@
+//! What a client does, whichever way its bytes come and go.
+
+mod input;
+mod output;
+
+use super::super::bits::reached;
+use super::super::event::Event;
+use super::super::i2c;
+use super::super::link::{Bus, Form, Link, Reason, Settings};
+use super::super::request::{Direction, Request, Started};
+use super::super::uart::Encoder;
+use super::super::Error;
+use super::{Output, State};
+
+/// Bytes of a piece of UART output.
+const PIECE: usize = 64;
+/// Outputs that wait to be taken.
+const QUEUE: usize = 4;
+
+#[derive(Clone, Debug)]
+pub(super) struct Machine<const N: usize> {
+    pub(super) link: &'static Link,
+    pub(super) bus: Bus,
+    pub(super) settings: Settings,
+    address: u32,
+    pub(super) checks_telecommands: bool,
+    pub(super) checks_telemetry: bool,
+    pub(super) state: State,
+    pub(super) until: u32, // when the state ends by itself
+    give_up: u32,          // when polling ends
+    sent_whole: bool,      // I2C: the telecommand is sent, its acknowledge is polled
+    direction: Direction,
+    id: u8,
+    repeat: bool,
+    attempts: u16,
+    echo: Option<(u8, u32)>, // id and end of what may still be answered a second time
+    pub(super) message: [u8; N], // the request, with id and checksum
+    pub(super) length: usize,
+    poll: [u8; 1],
+    pub(super) owed: u16, // I2C: transactions taken of which nothing was told
+    queue: [Option<Output>; QUEUE],
+    repeats: u16,            // so often more the first one of the queue is sent
+    pub(super) begun: usize, // packets of it that were taken
+    pub(super) encoder: Option<Encoder<'static>>,
+    pub(super) piece: [u8; PIECE],
+}
+
+impl<const N: usize> Machine<N> {
+    pub(super) fn new(link: &'static Link, bus: Bus, address: u32) -> Self {
+        let poll = link.polled.as_ref().map_or(0, |polled| polled.frame);
+        Self {
+            link,
+            bus,
+            settings: link.client,
+            address,
+            checks_telecommands: false,
+            checks_telemetry: false,
+            state: State::Idle,
+            until: 0,
+            give_up: 0,
+            sent_whole: false,
+            direction: Direction::Telemetry,
+            id: 0,
+            repeat: false,
+            attempts: 0,
+            echo: None,
+            message: [0; N],
+            length: 0,
+            poll: [poll],
+            owed: 0,
+            queue: [None; QUEUE],
+            repeats: 0,
+            begun: 0,
+            encoder: None,
+            piece: [0; PIECE],
+        }
+    }
+
+    /// Whether a request is going on, or its output has not been taken.
+    pub(super) fn is_busy(&self) -> bool {
+        self.state != State::Idle || self.first().is_some()
+    }
+
+    fn form(&self, direction: Direction, id: u8) -> Option<&'static Form> {
+        match direction {
+            Direction::Telecommand => self.link.telecommand(id),
+            Direction::Telemetry => self.link.telemetry(id),
+        }
+    }
+
+    pub(super) fn start(&mut self, now: u32, request: &Request<'_>) -> Result<Started, Error> {
+        let id = request.id;
+        let form = self.form(request.direction, id);
+        let form = form.ok_or(Error::UnknownId { id })?;
+        if self.is_busy() {
+            return Err(Error::Busy);
+        }
+        let telecommand = request.direction == Direction::Telecommand;
+        let (expected, actual) = (form.length, request.data.len());
+        if telecommand && actual != expected {
+            return Err(Error::Length { expected, actual });
+        }
+        let data = if telecommand { request.data } else { &[] };
+        let checked = telecommand && self.checks_telecommands;
+        self.length = i2c::write(self.link, id, data, checked, &mut self.message)?;
+        self.direction = request.direction;
+        self.id = id;
+        self.repeat = request.repeat || !telecommand || form.repeatable;
+        self.attempts = 0;
+        match self.echo {
+            Some((other, end)) if other == id && !reached(now, end) => {
+                self.state = State::Hold;
+                self.until = end;
+                Ok(Started::Waiting)
+            }
+            _ => {
+                self.send(now, &mut |_| {});
+                Ok(if self.state == State::Idle {
+                    Started::Done
+                } else {
+                    Started::Waiting
+                })
+            }
+        }
+    }
+
+    pub(super) fn cancel(&mut self) {
+        self.drop_output();
+        if self.state != State::Idle && self.attempts > 0 {
+            let end = self.until.wrapping_add(self.settings.reply_timeout_ms);
+            self.echo = Some((self.id, end));
+        }
+        self.state = State::Idle;
+    }
+
+    /// I2C: whether the last transaction was taken, and is that of the request.
+    pub(super) fn awaits_transfer(&self) -> bool {
+        matches!(self.state, State::Wait | State::Poll) && self.first().is_none()
+    }
+
+    pub(super) fn tick(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
+        if self.echo.map_or(false, |(_, end)| reached(now, end)) {
+            self.echo = None; // the time may wrap until the next request
+        }
+        if self.state == State::Idle || !reached(now, self.until) {
+            return;
+        }
+        match self.state {
+            State::Idle => {}
+            State::Hold => self.send(now, on_event),
+            State::Pause if reached(now, self.give_up) => self.timeout(now, on_event),
+            State::Pause if self.sent_whole => {
+                self.state = State::Poll;
+                self.until = now.wrapping_add(self.settings.reply_timeout_ms);
+                self.push(Output::Poll);
+            }
+            State::Pause => self.send(now, on_event),
+            State::Poll => self.again(now, on_event),
+            State::Wait => self.no_reply(now, on_event),
+        }
+    }
+
+    /// Sends the request, for the first time or again.
+    fn send(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
+        self.attempts = self.attempts.saturating_add(1);
+        self.sent_whole = false;
+        self.state = State::Wait;
+        self.until = now.wrapping_add(self.settings.reply_timeout_ms);
+        self.push(Output::Request);
+        let form = self.form(self.direction, self.id);
+        let acknowledged = form.map_or(true, |form| form.acknowledged);
+        let telecommand = self.direction == Direction::Telecommand;
+        if self.bus != Bus::I2c && telecommand && !acknowledged {
+            self.done(now, &[], on_event);
+        }
+    }
+
+    fn done(&mut self, now: u32, data: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
+        let (id, attempts) = self.end(now, false);
+        on_event(Event::Done { id, attempts, data });
+    }
+
+    fn timeout(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
+        let (id, attempts) = self.end(now, true);
+        on_event(Event::Timeout { id, attempts });
+    }
+
+    /// The node refused it. A wrong checksum is no fault of the request: it is sent again.
+    fn refused(
+        &mut self,
+        now: u32,
+        code: Option<u32>,
+        parameter: Option<u32>,
+        on_event: &mut dyn FnMut(Event<'_>),
+    ) {
+        let reason = code.and_then(|code| self.link.reason(code));
+        if reason == Some(Reason::Checksum) && self.checks_telecommands && self.may_repeat() {
+            return self.send(now, on_event);
+        }
+        let (id, attempts) = self.end(now, false);
+        on_event(Event::Refused {
+            id,
+            attempts,
+            code,
+            reason,
+            parameter,
+        });
+    }
+
+    const fn may_repeat(&self) -> bool {
+        self.attempts <= self.settings.retries as u16
+    }
+
+    fn end(&mut self, now: u32, timeout: bool) -> (u8, u16) {
+        let late = self.attempts > 1 || timeout;
+        let end = now.wrapping_add(self.settings.reply_timeout_ms);
+        self.echo = late.then_some((self.id, end));
+        self.state = State::Idle;
+        (self.id, self.attempts)
+    }
+
+    /// There was no reply, or none that can be used: once more, or the end.
+    fn no_reply(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
+        if !self.repeat || !self.may_repeat() {
+            self.timeout(now, on_event);
+        } else if self.bus == Bus::I2c {
+            // The bus said so at once: give the node some time.
+            self.state = State::Pause;
+            self.until = now.wrapping_add(self.settings.poll_interval_ms);
+            self.give_up = now.wrapping_add(self.settings.poll_timeout_ms);
+        } else {
+            self.send(now, on_event);
+        }
+    }
+
+    /// Polls once more after a while.
+    fn again(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
+        if reached(now, self.give_up) {
+            self.timeout(now, on_event);
+        } else {
+            self.state = State::Pause;
+            self.until = now.wrapping_add(self.settings.poll_interval_ms);
+        }
+    }
+}

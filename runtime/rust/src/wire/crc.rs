@@ -1,0 +1,129 @@
+//! CRCs: streaming, without a table or with one.
+
+use super::link::{CrcForm, Link};
+use super::Error;
+
+/// A CRC that is fed piece by piece.
+#[derive(Clone, Debug)]
+pub struct Crc<'a> {
+    form: &'a CrcForm,
+    table: Option<&'a Table>,
+    register: u32, // its highest bits hold the CRC
+    fed: bool,
+}
+
+/// What makes a CRC fast: 1 KiB, which may be a `static`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Table([u32; 256]);
+
+impl Table {
+    /// The table of a CRC.
+    #[must_use]
+    pub const fn new(form: &CrcForm) -> Self {
+        let mut rows = [0; 256];
+        let mut row = 0;
+        let mut first: u32 = 0;
+        while row < 256 {
+            rows[row] = shifted(first, form.aligned_polynomial());
+            row += 1;
+            first = first.wrapping_add(1 << 24);
+        }
+        Self(rows)
+    }
+}
+
+/// A register after eight bits.
+const fn shifted(register: u32, polynomial: u32) -> u32 {
+    let mut value = register;
+    let mut bit = 0;
+    while bit < 8 {
+        value = (value << 1) ^ if value >> 31 == 0 { 0 } else { polynomial };
+        bit += 1;
+    }
+    value
+}
+
+impl<'a> Crc<'a> {
+    /// A CRC that is computed bit by bit.
+    #[must_use]
+    pub const fn new(form: &'a CrcForm) -> Self {
+        Self {
+            form,
+            table: None,
+            register: form.init.wrapping_shl(form.unused_bits()),
+            fed: false,
+        }
+    }
+
+    /// A CRC that is computed with the [`Table`] of the same form.
+    #[must_use]
+    pub const fn with_table(form: &'a CrcForm, table: &'a Table) -> Self {
+        Self {
+            form,
+            table: Some(table),
+            register: form.init.wrapping_shl(form.unused_bits()),
+            fed: false,
+        }
+    }
+
+    /// Takes the next bytes.
+    pub fn feed(&mut self, bytes: &[u8]) {
+        let polynomial = self.form.aligned_polynomial();
+        for &byte in bytes {
+            self.fed = true;
+            let byte = if self.form.reflect_in {
+                byte.reverse_bits()
+            } else {
+                byte
+            };
+            self.register = match self.table {
+                Some(Table(rows)) => {
+                    let [first, ..] = self.register.to_be_bytes();
+                    (self.register << 8) ^ rows[usize::from(first ^ byte)]
+                }
+                None => shifted(self.register ^ (u32::from(byte) << 24), polynomial),
+            };
+        }
+    }
+
+    /// The CRC of everything fed so far.
+    #[must_use]
+    pub const fn result(&self) -> u32 {
+        if let (false, Some(value)) = (self.fed, self.form.empty) {
+            return value;
+        }
+        let value = if self.form.reflect_out {
+            self.register.reverse_bits()
+        } else {
+            self.register.wrapping_shr(self.form.unused_bits())
+        };
+        value ^ self.form.xor_out
+    }
+}
+
+/// The CRC of the bytes.
+pub(crate) fn whole(form: &CrcForm, bytes: &[u8]) -> u32 {
+    let mut crc = Crc::new(form);
+    crc.feed(bytes);
+    crc.result()
+}
+
+/// The checksum of messages.
+///
+/// # Errors
+///
+/// [`Error::Unsupported`] if the ICD has none.
+pub fn crc8(link: &Link, bytes: &[u8]) -> Result<u32, Error> {
+    let form = link.checksum.as_ref().ok_or(Error::Unsupported)?;
+    Ok(whole(&form.crc, bytes))
+}
+
+/// The checksum of file blocks.
+///
+/// # Errors
+///
+/// [`Error::Unsupported`] if the ICD has none.
+pub fn crc16(link: &Link, bytes: &[u8]) -> Result<u32, Error> {
+    let form = link.crc16.as_ref().ok_or(Error::Unsupported)?;
+    Ok(whole(form, bytes))
+}

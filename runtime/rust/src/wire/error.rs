@@ -1,0 +1,81 @@
+//! Why something of the wire layer cannot be done.
+
+use core::fmt;
+
+/// Why something cannot be sent, read or begun.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Error {
+    /// The ICD does not describe this part of the protocol.
+    Unsupported,
+    /// The node has no message of that id.
+    UnknownId {
+        /// The id.
+        id: u8,
+    },
+    /// Another request is going on, or its output has not been taken.
+    Busy,
+    /// There are more or fewer bytes than there must be, or a buffer is too small.
+    Length {
+        /// Bytes that there must be.
+        expected: usize,
+        /// Bytes that there are.
+        actual: usize,
+    },
+    /// The data do not fit the packets of a message.
+    TooLong {
+        /// Bytes that fit.
+        most: usize,
+        /// Bytes that were given.
+        actual: usize,
+    },
+    /// The checksum is wrong.
+    Checksum {
+        /// That of the data.
+        expected: u32,
+        /// The one that came.
+        actual: u32,
+    },
+    /// A value does not fit its place, or does not exist.
+    Range {
+        /// What it is a value of.
+        field: &'static str,
+    },
+}
+
+impl From<crate::Error> for Error {
+    fn from(error: crate::Error) -> Self {
+        match error {
+            crate::Error::Length { expected, actual } => Self::Length { expected, actual },
+            crate::Error::Range { field } => Self::Range { field },
+            crate::Error::UnknownId { id } => Self::UnknownId {
+                id: u8::try_from(id).unwrap_or(u8::MAX),
+            },
+        }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unsupported => out.write_str("the ICD does not describe this"),
+            Self::UnknownId { id } => write!(out, "there is no message of id {id}"),
+            Self::Busy => out.write_str("a request is going on"),
+            Self::Length { expected, actual } => {
+                write!(out, "{expected} bytes expected, {actual} given")
+            }
+            Self::TooLong { most, actual } => write!(out, "{actual} bytes, at most {most} fit"),
+            Self::Checksum { expected, actual } => {
+                write!(
+                    out,
+                    "the checksum is {actual:#x}, of the data {expected:#x}"
+                )
+            }
+            Self::Range { field } => write!(out, "the value does not fit `{field}`"),
+        }
+    }
+}
+
+#[cfg(feature = "std")]
+impl std::error::Error for Error {}

@@ -1,0 +1,231 @@
+//! What all procedures share.
+
+use super::super::bits::{head, part_mut, reached};
+use super::super::event::Event;
+use super::super::link::{Link, Role, Step};
+use super::super::links::STEP_BYTES;
+use super::super::request::{Direction, Request};
+
+/// How a procedure ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum End {
+    /// It is done.
+    Done,
+    /// A request was refused.
+    Refused,
+    /// A request was not answered, or a flag never became what was waited for.
+    Timeout,
+    /// The node cannot load this block.
+    Parameter,
+    /// The block has another length than was asked for.
+    Length,
+    /// Packets were still missing after so many rounds.
+    Rounds,
+    /// After so many rounds the checksum was still wrong.
+    Checksum,
+}
+
+/// A procedure, which says which request comes next and is told what became of it.
+pub trait Procedure {
+    /// The next request, once; None while there is nothing to send.
+    fn next(&mut self, now: u32) -> Option<Request<'_>>;
+
+    /// Takes an event of the client.
+    fn event(&mut self, now: u32, event: &Event<'_>);
+
+    /// When `next` wants to be called again at the latest; None while an outcome is awaited.
+    fn deadline(&self) -> Option<u32>;
+
+    /// How it ended; None while it runs.
+    fn result(&self) -> Option<End>;
+}
+
+/// What became of a request.
+#[derive(Clone, Copy, Debug)]
+pub enum Answer<'a> {
+    Done(&'a [u8]),
+    Refused,
+    Timeout,
+}
+
+/// What comes next.
+#[derive(Clone, Copy, Debug)]
+enum Want {
+    Begin,
+    Ask(Direction, u8, usize, bool),
+    Wait(u32),
+    Nothing,
+}
+
+/// What a procedure remembers.
+#[derive(Clone, Debug)]
+pub struct Core {
+    pub now: u32,
+    want: Want,
+    asked: bool,
+    retries: u8,
+    damaged: u8, // acknowledges of the request that were
+    result: Option<End>,
+    data: [u8; STEP_BYTES],
+}
+
+impl Core {
+    pub(super) const fn new(link: &Link) -> Self {
+        Self {
+            now: 0,
+            want: Want::Begin,
+            asked: false,
+            retries: link.client.retries,
+            damaged: 0,
+            result: None,
+            data: [0; STEP_BYTES],
+        }
+    }
+
+    /// Sends the telecommand of a step with values by role; others as a fresh message has them.
+    pub(super) fn send(&mut self, step: &Step, repeat: bool, values: &[(Role, u32)]) {
+        self.data = [0; STEP_BYTES];
+        super::super::bits::copy(&mut self.data, step.fresh);
+        for (role, value) in values {
+            step.put(*role, *value, &mut self.data);
+        }
+        self.want = Want::Ask(Direction::Telecommand, step.id, step.fresh.len(), repeat);
+    }
+
+    /// Sends a telecommand of so many bytes, all 0 but what is put into `payload`.
+    pub(super) fn send_bytes(&mut self, id: u8, length: usize) {
+        self.data = [0; STEP_BYTES];
+        self.want = Want::Ask(Direction::Telecommand, id, length, true);
+    }
+
+    /// Some bytes of the telecommand that is to be sent.
+    pub(super) fn payload(&mut self, at: usize, size: usize) -> &mut [u8] {
+        part_mut(&mut self.data, at, size)
+    }
+
+    pub(super) fn ask(&mut self, id: u8) {
+        self.want = Want::Ask(Direction::Telemetry, id, 0, true);
+    }
+
+    pub(super) fn wait(&mut self, until: u32) {
+        self.want = Want::Wait(until);
+    }
+
+    /// Ends a wait.
+    pub(super) fn hurry(&mut self) {
+        if let Want::Wait(until) = &mut self.want {
+            *until = self.now;
+        }
+    }
+
+    /// Whether the same request is made once more, after a damaged acknowledge.
+    fn asks_again(&mut self) -> bool {
+        let again = matches!(self.want, Want::Ask(.., true)) && self.damaged < self.retries;
+        self.damaged += u8::from(again);
+        again
+    }
+
+    pub(super) fn end(&mut self, end: End) {
+        self.want = Want::Nothing;
+        self.result = Some(end);
+    }
+
+    /// The frame, or none: then the procedure has ended.
+    pub(super) fn frame<'a>(&mut self, answer: Option<Answer<'a>>) -> Option<&'a [u8]> {
+        match answer {
+            Some(Answer::Done(frame)) => return Some(frame),
+            Some(Answer::Refused) => self.end(End::Refused),
+            Some(Answer::Timeout) => self.end(End::Timeout),
+            None => {}
+        }
+        None
+    }
+}
+
+/// Whether it is a refusal with a code that the ICD does not have: a damaged acknowledge.
+const fn is_damaged(event: &Event<'_>) -> bool {
+    matches!(
+        event,
+        Event::Refused {
+            code: Some(_),
+            reason: None,
+            ..
+        }
+    )
+}
+
+/// A procedure as a step machine.
+pub trait Run {
+    fn core(&self) -> &Core;
+
+    fn core_mut(&mut self) -> &mut Core;
+
+    /// Goes on until there is something to ask or to wait for: at the beginning and after a wait without an answer.
+    fn resume(&mut self, answer: Option<Answer<'_>>);
+
+    /// Takes a packet of a file.
+    fn packet(&mut self, number: u32, data: &[u8]) {
+        let _ = (number, data);
+    }
+}
+
+impl<T: Run> Procedure for T {
+    fn next(&mut self, now: u32) -> Option<Request<'_>> {
+        self.core_mut().now = now;
+        loop {
+            match self.core().want {
+                Want::Begin => {}
+                Want::Wait(until) if reached(now, until) => {}
+                _ => break,
+            }
+            self.resume(None);
+        }
+        let core = self.core_mut();
+        match core.want {
+            Want::Ask(direction, id, length, repeat) if !core.asked => {
+                core.asked = true;
+                Some(Request {
+                    direction,
+                    id,
+                    data: head(&core.data, length),
+                    repeat,
+                })
+            }
+            _ => None,
+        }
+    }
+
+    fn event(&mut self, now: u32, event: &Event<'_>) {
+        self.core_mut().now = now;
+        let damaged = is_damaged(event);
+        let answer = match event {
+            Event::Done { data, .. } => Answer::Done(data),
+            Event::Refused { .. } if damaged => Answer::Timeout,
+            Event::Refused { .. } => Answer::Refused,
+            Event::Timeout { .. } => Answer::Timeout,
+            Event::Packet { number, data } => return self.packet(*number, data),
+            _ => return,
+        };
+        let core = self.core_mut();
+        if core.asked {
+            core.asked = false;
+            if damaged && core.asks_again() {
+                return;
+            }
+            core.damaged = 0;
+            self.resume(Some(answer));
+        }
+    }
+
+    fn deadline(&self) -> Option<u32> {
+        match self.core().want {
+            Want::Wait(until) => Some(until),
+            _ => None,
+        }
+    }
+
+    fn result(&self) -> Option<End> {
+        self.core().result
+    }
+}

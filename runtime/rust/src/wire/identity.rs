@@ -1,0 +1,39 @@
+//! Whether the node is the one that this code was generated for.
+
+use super::link::{Link, Role};
+use super::Error;
+
+/// What a node says it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Identity {
+    /// The type of the node.
+    pub node_type: u32,
+    /// The version of its interface.
+    pub interface_version: u32,
+    /// Whether both are those of the ICD, as far as it has them.
+    pub matches: bool,
+}
+
+/// What the identification frame says.
+///
+/// # Errors
+///
+/// [`Error::Length`] if the frame has another length, [`Error::Unsupported`] if the ICD has none.
+pub fn identify(link: &Link, frame: &[u8]) -> Result<Identity, Error> {
+    let step = link.identification.as_ref().ok_or(Error::Unsupported)?;
+    let (expected, actual) = (step.fresh.len(), frame.len());
+    if expected != actual {
+        return Err(Error::Length { expected, actual });
+    }
+    let node_type = step.get(Role::NodeType, frame).unwrap_or(0);
+    let interface_version = step.get(Role::InterfaceVersion, frame).unwrap_or(0);
+    Ok(Identity {
+        node_type,
+        interface_version,
+        matches: link.node_type.map_or(true, |known| known == node_type)
+            && link
+                .interface_version
+                .map_or(true, |known| known == interface_version),
+    })
+}

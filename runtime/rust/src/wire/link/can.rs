@@ -1,0 +1,67 @@
+//! CAN.
+
+/// CAN: parts of the identifier, and types by kind of message.
+#[derive(Clone, Copy, Debug)]
+pub struct Can {
+    /// Where the message type stands.
+    pub kind: CanPart,
+    /// Where the id of the message stands.
+    pub id: CanPart,
+    /// Where the sender's address stands.
+    pub source: CanPart,
+    /// Where the receiver's address stands.
+    pub destination: CanPart,
+    /// The address of the node.
+    pub node_address: u32,
+    /// Most bytes of a packet.
+    pub data_bytes: usize,
+    /// Message types of single packets.
+    pub types: CanTypes,
+    /// Messages of several packets.
+    pub extended: Option<Extended>,
+}
+
+/// A part of the CAN identifier.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CanPart {
+    /// How many bits it has.
+    pub bits: u32,
+    /// How many bits stand below it.
+    pub shift: u32,
+}
+
+/// Message types by kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CanTypes {
+    /// A telecommand.
+    pub telecommand: Option<u32>,
+    /// Its acknowledge.
+    pub acknowledge: Option<u32>,
+    /// It is refused.
+    pub refusal: Option<u32>,
+    /// A request of telemetry.
+    pub request: Option<u32>,
+    /// The frame.
+    pub reply: Option<u32>,
+    /// The request is refused.
+    pub request_refusal: Option<u32>,
+}
+
+/// CAN messages of several packets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extended {
+    /// The message types.
+    pub types: CanTypes,
+    /// Bytes of the message in a packet.
+    pub data_bytes: usize,
+    /// Where the count of packets still to come stands.
+    pub left_at: usize,
+    /// The count in the last packet.
+    pub left_in_last: u8,
+    /// Most bytes of a message.
+    pub bytes: usize,
+    /// What fills the last packet.
+    pub fill: u8,
+    /// How long the next packet may take.
+    pub packet_timeout_ms: u32,
+}

@@ -1,0 +1,117 @@
+//! Logs, times and the index file.
+
+/// The mask of a log. Frames stand in slots of one size, in the order of rising bits.
+#[derive(Clone, Copy, Debug)]
+pub struct LogMask {
+    /// Bytes of the mask.
+    pub bytes: usize,
+    /// Whether bit 0 is the most significant one of a byte.
+    pub msb0: bool,
+    /// Bytes of a slot.
+    pub slot_bytes: usize,
+    /// What fills a slot.
+    pub fill: u8,
+    /// The bits that have a frame, rising.
+    pub bits: &'static [LogBit],
+}
+
+/// A bit of the log mask and the frame that it selects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LogBit {
+    /// The bit.
+    pub bit: u16,
+    /// The telemetry id.
+    pub id: u8,
+    /// Bytes of the frame, at most those of a slot.
+    pub length: usize,
+    /// What the ICD calls the frame.
+    pub name: &'static str,
+}
+
+/// The file form of a log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LogFile {
+    /// Where the mask stands in the header.
+    pub mask_at: usize,
+    /// Bytes of the header.
+    pub header_bytes: usize,
+    /// Where the Unix time stands in an entry.
+    pub seconds: Span,
+    /// Where the milliseconds stand in an entry.
+    pub milliseconds: Span,
+    /// Where the slots begin in an entry.
+    pub frames_at: usize,
+    /// The type of such files.
+    pub file_type: Option<u8>,
+}
+
+/// The unsolicited form of a log. Places count from the id.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LogMessage {
+    /// The id.
+    pub id: u8,
+    /// Where the mask stands.
+    pub mask_at: usize,
+    /// Where the slots begin.
+    pub frames_at: usize,
+}
+
+/// Some bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Span {
+    /// The first.
+    pub at: usize,
+    /// How many.
+    pub bytes: usize,
+}
+
+/// Date and time packed into bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TimeForm {
+    /// The year.
+    pub year: TimePart,
+    /// The month.
+    pub month: TimePart,
+    /// The day of the month.
+    pub day: TimePart,
+    /// The hour.
+    pub hour: TimePart,
+    /// The minute.
+    pub minute: TimePart,
+    /// The second.
+    pub second: TimePart,
+}
+
+/// A part of a packed time: its bits, times the factor, plus the offset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TimePart {
+    /// How many bits stand below it.
+    pub at: u32,
+    /// How many bits it has.
+    pub bits: u32,
+    /// Its resolution.
+    pub factor: u32,
+    /// What 0 stands for.
+    pub offset: u32,
+}
+
+/// Entries of the index file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct IndexForm {
+    /// Bytes of an entry.
+    pub entry_bytes: usize,
+    /// Type of the file.
+    pub kind: Span,
+    /// Counter of the file.
+    pub counter: Span,
+    /// Checksum of the file.
+    pub checksum: Span,
+    /// Size of the file.
+    pub size: Span,
+    /// When it was created, packed.
+    pub time: Span,
+    /// Meta-data.
+    pub meta: Span,
+    /// The type of the index file itself.
+    pub file_type: Option<u8>,
+}

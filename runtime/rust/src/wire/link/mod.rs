@@ -1,0 +1,283 @@
+//! The facts of a node's protocol. A part that the ICD does not describe is None.
+//!
+//! Times are milliseconds, sizes bytes.
+
+mod can;
+mod logs;
+mod steps;
+mod transfer;
+
+pub use self::can::{Can, CanPart, CanTypes, Extended};
+pub use self::logs::{IndexForm, LogBit, LogFile, LogMask, LogMessage, Span, TimeForm, TimePart};
+pub use self::steps::{Piece, Place, Role, Step};
+pub use self::transfer::{
+    DownloadForm, ErasureForm, Files, HoleMapForm, ListForm, MapMessage, UploadForm,
+};
+
+pub(crate) use self::steps::get;
+
+/// Everything that differs between the nodes. Each node's is the constant `LINK` of its module.
+#[derive(Clone, Copy, Debug)]
+pub struct Link {
+    /// The node, as the ICD calls it.
+    pub node: &'static str,
+    /// What the node answers when asked for its type.
+    pub node_type: Option<u32>,
+    /// Version of the interface that this code was generated from.
+    pub interface_version: Option<u32>,
+    /// Bytes of the longest message of either direction, with its id and checksum.
+    pub longest: usize,
+    /// Bytes of the longest message of either direction, without id and checksum.
+    pub longest_data: usize,
+    /// Whether the least significant byte of a number comes first.
+    pub little: bool,
+    /// Ids of telecommands.
+    pub telecommand_ids: Ids,
+    /// Ids of telemetry.
+    pub telemetry_ids: Ids,
+    /// The telecommands.
+    pub telecommands: &'static [Form],
+    /// The telemetry.
+    pub telemetry: &'static [Form],
+    /// How a client waits and tries again, unless it is told otherwise.
+    pub client: Settings,
+    /// The error codes.
+    pub errors: &'static [(u32, Reason)],
+    /// How messages are delimited on the UART.
+    pub framing: Option<Framing>,
+    /// The acknowledge on the UART.
+    pub acknowledge: Option<Acknowledge>,
+    /// The address on the I2C bus, of 7 bits.
+    pub i2c_address: Option<u8>,
+    /// The frame that tells what became of a telecommand, for I2C.
+    pub polled: Option<Polled>,
+    /// CAN.
+    pub can: Option<Can>,
+    /// The optional checksum of messages.
+    pub checksum: Option<Checksum>,
+    /// The checksum of file blocks.
+    pub crc16: Option<CrcForm>,
+    /// The mask of a telemetry log.
+    pub mask: Option<LogMask>,
+    /// The file form of a log.
+    pub log_file: Option<LogFile>,
+    /// The unsolicited form of a log.
+    pub log_message: Option<LogMessage>,
+    /// Date and time packed into bits.
+    pub time: Option<TimeForm>,
+    /// Entries of the index file.
+    pub index: Option<IndexForm>,
+    /// File transfer.
+    pub files: Option<Files>,
+    /// The frame that identifies the node.
+    pub identification: Option<Step>,
+    /// How long the bootloader waits before it starts the program.
+    pub boot_ms: Option<u32>,
+}
+
+impl Link {
+    /// The telecommand of that id.
+    #[must_use]
+    pub fn telecommand(&self, id: u8) -> Option<&'static Form> {
+        self.telecommands.iter().find(|form| form.id == id)
+    }
+
+    /// The telemetry of that id.
+    #[must_use]
+    pub fn telemetry(&self, id: u8) -> Option<&'static Form> {
+        self.telemetry.iter().find(|form| form.id == id)
+    }
+
+    /// What the ICD says of an error code.
+    #[must_use]
+    pub fn reason(&self, code: u32) -> Option<Reason> {
+        let found = self.errors.iter().find(|(known, _)| *known == code);
+        found.map(|(_, reason)| *reason)
+    }
+
+    /// Whether the code is that of success.
+    pub(crate) fn is_success(&self, code: u32) -> bool {
+        let mut rows = self.errors.iter();
+        let none = rows.find(|(_, reason)| *reason == Reason::NoError);
+        code == none.map_or(0, |(known, _)| *known)
+    }
+}
+
+/// A bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Bus {
+    /// UART.
+    Uart,
+    /// I2C, as the master.
+    I2c,
+    /// CAN.
+    Can,
+}
+
+/// Something for each bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PerBus<T> {
+    /// On the UART.
+    pub uart: T,
+    /// On I2C.
+    pub i2c: T,
+    /// On CAN.
+    pub can: T,
+}
+
+impl<T: Copy> PerBus<T> {
+    /// That of the bus.
+    pub const fn of(&self, bus: Bus) -> T {
+        match bus {
+            Bus::Uart => self.uart,
+            Bus::I2c => self.i2c,
+            Bus::Can => self.can,
+        }
+    }
+}
+
+/// Ids from the first to the last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ids {
+    /// The first.
+    pub first: u8,
+    /// The last.
+    pub last: u8,
+}
+
+impl Ids {
+    /// Whether the id is one of them.
+    #[must_use]
+    pub const fn contains(&self, id: u8) -> bool {
+        self.first <= id && id <= self.last
+    }
+}
+
+/// A message as the wire sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Form {
+    /// Its id.
+    pub id: u8,
+    /// Bytes of its data.
+    pub length: usize,
+    /// Whether a telecommand is acknowledged.
+    pub acknowledged: bool,
+    /// Whether it may be sent again although it may have arrived.
+    pub repeatable: bool,
+}
+
+/// How a client waits and tries again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// How long a reply may take.
+    pub reply_timeout_ms: u32,
+    /// How often a request is sent again.
+    pub retries: u8,
+    /// How long to wait between two polls.
+    pub poll_interval_ms: u32,
+    /// How long to poll.
+    pub poll_timeout_ms: u32,
+}
+
+/// What an error code means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Reason {
+    /// No error.
+    NoError,
+    /// The node does not know the id.
+    UnknownId,
+    /// The message has a wrong length.
+    Length,
+    /// A parameter is wrong.
+    Parameter,
+    /// The checksum is wrong.
+    Checksum,
+}
+
+/// How messages are delimited on the UART. The escape byte comes before each of the other three.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Framing {
+    /// The escape byte.
+    pub escape: u8,
+    /// Begins a message.
+    pub start: u8,
+    /// Ends a message.
+    pub end: u8,
+    /// Stands for the escape byte as data.
+    pub escaped: u8,
+    /// Whether the id is escaped like the data.
+    pub escapes_id: bool,
+    /// Whether an escape byte before any other byte is skipped with it, or an error.
+    pub ignores_other: bool,
+}
+
+/// The acknowledge as a message on the UART, which counts from its first byte.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Acknowledge {
+    /// Bytes of the message.
+    pub length: usize,
+    /// Where the id of the telecommand stands.
+    pub id_at: usize,
+    /// Where the error code stands.
+    pub error_at: usize,
+}
+
+/// The frame that tells what became of a telecommand.
+#[derive(Clone, Copy, Debug)]
+pub struct Polled {
+    /// The telemetry id of the frame.
+    pub frame: u8,
+    /// The id of the last telecommand.
+    pub id: Place,
+    /// Whether it is processed.
+    pub processed: Place,
+    /// Its error code.
+    pub error: Place,
+    /// The parameter that is wrong.
+    pub parameter: Place,
+}
+
+/// Parameters of a CRC of up to 32 bits in the notation of the usual catalogues.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CrcForm {
+    /// Bits.
+    pub width: u32,
+    /// The polynomial, without its highest bit.
+    pub polynomial: u32,
+    /// What it begins with.
+    pub init: u32,
+    /// Whether the least significant bit of a byte comes first.
+    pub reflect_in: bool,
+    /// Whether the result is turned round.
+    pub reflect_out: bool,
+    /// What the result is combined with.
+    pub xor_out: u32,
+    /// The value for no bytes at all, if it is not what the others give.
+    pub empty: Option<u32>,
+}
+
+impl CrcForm {
+    pub(crate) const fn unused_bits(&self) -> u32 {
+        32_u32.wrapping_sub(self.width)
+    }
+
+    pub(crate) const fn aligned_polynomial(&self) -> u32 {
+        self.polynomial.wrapping_shl(self.unused_bits())
+    }
+}
+
+/// The optional checksum of telecommands and frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Checksum {
+    /// Its parameters.
+    pub crc: CrcForm,
+    /// Whether it covers the id, too.
+    pub covers_id: bool,
+    /// Where telecommands have it.
+    pub telecommands: PerBus<bool>,
+    /// Where telemetry has it.
+    pub telemetry: PerBus<bool>,
+    /// Bytes that it adds to a message.
+    pub bytes: usize,
+}

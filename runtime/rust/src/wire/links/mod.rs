@@ -1,0 +1,9 @@
+//! A sample, so that the runtime is a crate of its own: the links of the nodes, and what the procedures
+//! need for any of them, are generated.
+
+/// Bytes of the longest message of a procedure.
+pub(crate) const STEP_BYTES: usize = 8;
+/// Bytes of the longest hole map.
+pub(crate) const MAP_BYTES: usize = 64;
+/// Most packets of a block.
+pub(crate) const BLOCK_PACKETS: usize = 512;

@@ -1,0 +1,274 @@
+//! A client over a port that reads and writes, for programs that may wait. Feature `std`.
+
+use super::files::{End, Procedure};
+use super::link::{Link, Reason, Settings};
+use super::{Client, Error, Event, Request, Started, Telecommand, Telemetry};
+use std::boxed::Box;
+use std::fmt;
+use std::io::{self, ErrorKind, Read, Write};
+use std::time::Instant;
+use std::vec::Vec;
+
+/// Why a request or a procedure failed.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Failure {
+    /// The port did.
+    Port(io::Error),
+    /// It cannot be asked, or what came is no such message.
+    Wire(Error),
+    /// The node refused the request.
+    Refused {
+        /// The id.
+        id: u8,
+        /// The error code.
+        code: Option<u32>,
+        /// What the ICD says of the code.
+        reason: Option<Reason>,
+    },
+    /// The node did not answer.
+    Timeout {
+        /// The id.
+        id: u8,
+        /// How often it was asked.
+        attempts: u16,
+    },
+    /// How a procedure ended that was not done.
+    Procedure(End),
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        Self::Port(error)
+    }
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self::Wire(error)
+    }
+}
+
+impl From<crate::Error> for Failure {
+    fn from(error: crate::Error) -> Self {
+        Self::Wire(error.into())
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Port(error) => error.fmt(out),
+            Self::Wire(error) => error.fmt(out),
+            Self::Refused { id, code, reason } => {
+                write!(out, "request {id} is refused")?;
+                code.map_or(Ok(()), |code| write!(out, ", code {code}"))?;
+                reason.map_or(Ok(()), |reason| write!(out, ": {reason:?}"))
+            }
+            Self::Timeout { id, attempts } => {
+                write!(out, "no answer to request {id}, asked {attempts} times")
+            }
+            Self::Procedure(end) => write!(out, "the procedure failed: {end:?}"),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+type OnEvent = Box<dyn FnMut(&Event<'_>)>;
+
+/// Asks, and waits for the outcome, over a UART or whatever carries its bytes; `N` is the node's
+/// `LONGEST`.
+///
+/// The port is yours. Its `read` must come back after a while, be it with nothing (`WouldBlock` or
+/// `TimedOut`), for the clock is looked at in between: set a time-out of some milliseconds.
+pub struct Session<P, const N: usize> {
+    client: Client<N>,
+    port: P,
+    began: Instant,
+    on_event: OnEvent,
+}
+
+impl<P: Read + Write, const N: usize> Session<P, N> {
+    /// A session with the node.
+    ///
+    /// # Errors
+    ///
+    /// As [`Client::uart`].
+    pub fn new(link: &'static Link, port: P) -> Result<Self, Error> {
+        Ok(Self {
+            client: Client::uart(link)?,
+            port,
+            began: Instant::now(),
+            on_event: Box::new(|_| {}),
+        })
+    }
+
+    /// The same with checksums, where the ICD has them for the bus.
+    #[must_use]
+    pub fn with_checksums(mut self) -> Self {
+        self.client = self.client.with_checksums();
+        self
+    }
+
+    /// The same with other times than those of the ICD.
+    #[must_use]
+    pub fn with_settings(mut self, settings: Settings) -> Self {
+        self.client = self.client.with_settings(settings);
+        self
+    }
+
+    /// The same with someone to tell all that comes, such as logs.
+    #[must_use]
+    pub fn with_events(mut self, on_event: impl FnMut(&Event<'_>) + 'static) -> Self {
+        self.on_event = Box::new(on_event);
+        self
+    }
+
+    /// Requests telemetry, or reads a setting.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure`]
+    pub fn get<M: Telemetry>(&mut self) -> Result<M, Failure> {
+        self.client.request::<M>(self.now())?;
+        Ok(M::from_frame(&self.outcome()?)?)
+    }
+
+    /// Sends a telecommand or a setting, and waits until it is acknowledged, if it is at all.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure`]
+    pub fn send<M: Telecommand>(&mut self, message: &M) -> Result<(), Failure> {
+        match self.client.send(self.now(), message)? {
+            Started::Done => self.flushed(),
+            Started::Waiting => self.outcome().map(|_| ()),
+        }
+    }
+
+    /// Makes any request; the frame that came.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure`]
+    pub fn start(&mut self, request: &Request<'_>) -> Result<Vec<u8>, Failure> {
+        match self.client.start(self.now(), request)? {
+            Started::Done => self.flushed().map(|()| Vec::new()),
+            Started::Waiting => self.outcome(),
+        }
+    }
+
+    /// Runs a procedure to its end.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure`]
+    pub fn run(&mut self, procedure: &mut (impl Procedure + ?Sized)) -> Result<(), Failure> {
+        let ended = self.driven(procedure);
+        self.cancelled(ended)
+    }
+
+    fn driven(&mut self, procedure: &mut (impl Procedure + ?Sized)) -> Result<(), Failure> {
+        loop {
+            while self.client.advance(self.now(), procedure)? {
+                self.flush()?;
+            }
+            match procedure.result() {
+                Some(End::Done) => return Ok(()),
+                Some(end) => return Err(Failure::Procedure(end)),
+                None => self.wait(|now, event| procedure.event(now, event))?,
+            }
+        }
+    }
+
+    /// Takes what has come unasked, after as long as the port's `read` waits.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Port`]
+    pub fn listen(&mut self) -> Result<(), Failure> {
+        self.wait(|_, _| {})
+    }
+
+    fn outcome(&mut self) -> Result<Vec<u8>, Failure> {
+        let outcome = self.awaited();
+        self.cancelled(outcome)
+    }
+
+    fn awaited(&mut self) -> Result<Vec<u8>, Failure> {
+        let mut found = None;
+        loop {
+            self.wait(|_, event| found = found.take().or_else(|| outcome_of(event)))?;
+            if let Some(outcome) = found {
+                return outcome;
+            }
+        }
+    }
+
+    fn flushed(&mut self) -> Result<(), Failure> {
+        let sent = self.flush();
+        self.cancelled(sent)
+    }
+
+    /// A request that failed with its port must not be in the way of the next one.
+    fn cancelled<T>(&mut self, result: Result<T, Failure>) -> Result<T, Failure> {
+        if result.is_err() {
+            self.client.cancel();
+        }
+        result
+    }
+
+    fn wait(&mut self, mut on_event: impl FnMut(u32, &Event<'_>)) -> Result<(), Failure> {
+        self.flush()?;
+        let mut input = [0; 512];
+        let bytes = match self.port.read(&mut input) {
+            Ok(0) => return Err(io::Error::from(ErrorKind::UnexpectedEof).into()),
+            Ok(count) => super::bits::head(&input, count),
+            Err(error) if came_to_nothing(&error) => &[],
+            Err(error) => return Err(error.into()),
+        };
+        let now = self.now();
+        let told = &mut self.on_event;
+        self.client.received(now, bytes, |event| {
+            on_event(now, &event);
+            told(&event);
+        });
+        self.flush()
+    }
+
+    fn flush(&mut self) -> Result<(), Failure> {
+        let mut line = Vec::new();
+        while let Some(bytes) = self.client.output() {
+            line.extend_from_slice(bytes);
+        }
+        if !line.is_empty() {
+            self.port.write_all(&line)?;
+            self.port.flush()?;
+        }
+        Ok(())
+    }
+
+    /// Milliseconds, which may wrap.
+    #[allow(clippy::cast_possible_truncation)]
+    fn now(&self) -> u32 {
+        self.began.elapsed().as_millis() as u32
+    }
+}
+
+fn came_to_nothing(error: &io::Error) -> bool {
+    use ErrorKind::{Interrupted, TimedOut, WouldBlock};
+    matches!(error.kind(), Interrupted | TimedOut | WouldBlock)
+}
+
+/// What the event says of the request.
+fn outcome_of(event: &Event<'_>) -> Option<Result<Vec<u8>, Failure>> {
+    match *event {
+        Event::Done { data, .. } => Some(Ok(data.to_vec())),
+        Event::Refused {
+            id, code, reason, ..
+        } => Some(Err(Failure::Refused { id, code, reason })),
+        Event::Timeout { id, attempts } => Some(Err(Failure::Timeout { id, attempts })),
+        _ => None,
+    }
+}

@@ -1,0 +1,307 @@
+//! UART: messages, id first, and a stream of bytes.
+
+use super::bits::part;
+use super::link::{Framing, Link};
+use super::Error;
+
+/// Bytes of the message on the line.
+#[must_use]
+pub fn encoded_length(framing: &Framing, message: &[u8]) -> usize {
+    let escapes = message.iter().enumerate().filter(|(position, byte)| {
+        **byte == framing.escape && (*position > 0 || framing.escapes_id)
+    });
+    message.len() + escapes.count() + 4
+}
+
+/// Writes the message as it is on the line, and says how many bytes it has.
+///
+/// # Errors
+///
+/// [`Error::Length`] if there is no message or `out` is too small, [`Error::Unsupported`] if the ICD
+/// describes no framing.
+pub fn encode(link: &Link, message: &[u8], out: &mut [u8]) -> Result<usize, Error> {
+    let framing = link.framing.as_ref().ok_or(Error::Unsupported)?;
+    if message.is_empty() {
+        return Err(Error::Length {
+            expected: 1,
+            actual: 0,
+        });
+    }
+    let expected = encoded_length(framing, message);
+    let actual = out.len();
+    let mut encoder = Encoder::new(framing);
+    let count = encoder.next(message, out);
+    if count == expected {
+        Ok(count)
+    } else {
+        Err(Error::Length { expected, actual })
+    }
+}
+
+/// Writes a message piece by piece.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Encoder<'a> {
+    framing: &'a Framing,
+    position: usize, // of the next byte; one more than those of the message: all is written
+    begun: bool,
+}
+
+impl<'a> Encoder<'a> {
+    pub(crate) fn new(framing: &'a Framing) -> Self {
+        Self {
+            framing,
+            position: 0,
+            begun: false,
+        }
+    }
+
+    /// The next bytes that fit, of which no escape is cut; none when all are written.
+    pub(crate) fn next(&mut self, message: &[u8], out: &mut [u8]) -> usize {
+        let framing = self.framing;
+        let mut count = 0;
+        let mut put = |first: u8, second: Option<u8>| {
+            let places = out.get_mut(count..).unwrap_or(&mut []);
+            match (places, second) {
+                ([place, ..], None) => {
+                    *place = first;
+                    count += 1;
+                    true
+                }
+                ([place, next, ..], Some(second)) => {
+                    *place = first;
+                    *next = second;
+                    count += 2;
+                    true
+                }
+                _ => false,
+            }
+        };
+        if !self.begun {
+            if !put(framing.escape, Some(framing.start)) {
+                return 0;
+            }
+            self.begun = true;
+        }
+        while let Some(&byte) = message.get(self.position) {
+            let escaped = byte == framing.escape && (self.position > 0 || framing.escapes_id);
+            if !put(byte, escaped.then_some(framing.escaped)) {
+                return count;
+            }
+            self.position += 1;
+        }
+        if self.position == message.len() && put(framing.escape, Some(framing.end)) {
+            self.position += 1;
+        }
+        count
+    }
+}
+
+/// What a decoder found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event<'a> {
+    /// A message, id first.
+    Message(&'a [u8]),
+    /// A message began within another one, which is dropped.
+    UnexpectedStart,
+    /// The escape byte before a byte that has no meaning there.
+    ProtocolError,
+    /// A message longer than the buffer.
+    Overrun,
+    /// A message without an id.
+    Empty,
+}
+
+/// Finds the messages in a stream; `N` is the size of its buffer.
+#[derive(Clone, Debug)]
+pub struct Decoder<const N: usize> {
+    framing: &'static Framing,
+    limit: usize,
+    buffer: [u8; N],
+    length: usize,
+    inside: bool,
+    escaped: bool,
+    run: u64, // bytes of the stream since the last decision
+    discarded: u64,
+}
+
+impl<const N: usize> Decoder<N> {
+    /// A decoder for messages of at most `N` bytes.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unsupported`] if the ICD describes no framing.
+    pub fn new(link: &'static Link) -> Result<Self, Error> {
+        Self::with_limit(link, N)
+    }
+
+    /// A decoder for messages of at most `limit` bytes, and of `N`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unsupported`] if the ICD describes no framing.
+    pub fn with_limit(link: &'static Link, limit: usize) -> Result<Self, Error> {
+        Ok(Self {
+            framing: link.framing.as_ref().ok_or(Error::Unsupported)?,
+            limit: limit.min(N),
+            buffer: [0; N],
+            length: 0,
+            inside: false,
+            escaped: false,
+            run: 0,
+            discarded: 0,
+        })
+    }
+
+    /// Bytes of the stream that became part of no message.
+    #[must_use]
+    pub const fn discarded(&self) -> u64 {
+        self.discarded
+    }
+
+    /// Bytes of the stream about which nothing is decided yet.
+    #[must_use]
+    pub const fn pending(&self) -> u64 {
+        self.run
+    }
+
+    /// Takes the next bytes of the stream.
+    pub fn feed(&mut self, bytes: &[u8], mut on_event: impl FnMut(Event<'_>)) {
+        for &byte in bytes {
+            self.byte(byte, &mut on_event);
+        }
+    }
+
+    fn byte(&mut self, byte: u8, on_event: &mut dyn FnMut(Event<'_>)) {
+        let framing = self.framing;
+        self.run = self.run.wrapping_add(1);
+        if !self.inside {
+            if self.escaped && byte == framing.start {
+                self.start();
+            } else {
+                self.outside(byte == framing.escape);
+            }
+        } else if self.escaped {
+            self.escaped = false;
+            if byte == framing.start {
+                on_event(Event::UnexpectedStart);
+                self.start();
+            } else if byte == framing.end {
+                self.end(on_event);
+            } else if byte == framing.escaped {
+                self.data(framing.escape, on_event);
+            } else if !framing.ignores_other {
+                on_event(Event::ProtocolError);
+                self.outside(byte == framing.escape);
+            }
+        } else if byte == framing.escape && (self.length > 0 || framing.escapes_id) {
+            self.escaped = true;
+        } else {
+            self.data(byte, on_event);
+        }
+    }
+
+    fn start(&mut self) {
+        // All but the two bytes of the start itself.
+        self.discarded = self.discarded.wrapping_add(self.run.wrapping_sub(2));
+        self.run = 2;
+        self.inside = true;
+        self.escaped = false;
+        self.length = 0;
+    }
+
+    /// Drops what was decided to be no message; an escape byte may still begin one.
+    fn outside(&mut self, escaped: bool) {
+        let kept = u64::from(escaped);
+        self.discarded = self.discarded.wrapping_add(self.run.wrapping_sub(kept));
+        self.run = kept;
+        self.inside = false;
+        self.escaped = escaped;
+        self.length = 0;
+    }
+
+    fn data(&mut self, byte: u8, on_event: &mut dyn FnMut(Event<'_>)) {
+        let free = self.length < self.limit;
+        match self.buffer.get_mut(self.length) {
+            Some(place) if free => {
+                *place = byte;
+                self.length += 1;
+            }
+            _ => {
+                on_event(Event::Overrun);
+                self.outside(false);
+            }
+        }
+    }
+
+    fn end(&mut self, on_event: &mut dyn FnMut(Event<'_>)) {
+        match self.buffer.get(..self.length) {
+            Some(message) if !message.is_empty() => {
+                on_event(Event::Message(message));
+                self.run = 0;
+            }
+            _ => on_event(Event::Empty),
+        }
+        self.outside(false);
+    }
+}
+
+/// What a message from the node is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// A telemetry frame.
+    Reply,
+    /// The acknowledge of a telecommand.
+    Acknowledge,
+    /// A packet of a file.
+    Packet,
+    /// An unsolicited log.
+    Log,
+    /// Anything else.
+    Other,
+}
+
+/// What a message from the node is, as far as its id and its length tell.
+#[must_use]
+pub fn kind(link: &Link, message: &[u8]) -> Kind {
+    let id = match message.first() {
+        Some(id) => *id,
+        None => return Kind::Other,
+    };
+    if let (Some(form), Some(layout)) = (&link.log_message, &link.mask) {
+        if id == form.id {
+            let mask = message.get(form.mask_at..).unwrap_or(&[]);
+            let slots = layout
+                .selected(super::bits::head(mask, layout.bytes))
+                .count();
+            let whole = form.frames_at + slots * layout.slot_bytes;
+            return if message.len() == whole {
+                Kind::Log
+            } else {
+                Kind::Other
+            };
+        }
+    }
+    if link.telemetry_ids.contains(id) {
+        return Kind::Reply;
+    }
+    if let Some(form) = &link.acknowledge {
+        if message.len() == form.length {
+            return Kind::Acknowledge;
+        }
+    }
+    if let Some(files) = &link.files {
+        let length = 1 + files.counter_bytes + files.packet_bytes;
+        if Some(id) == files.packet_ids.uart && message.len() == length {
+            return Kind::Packet;
+        }
+    }
+    Kind::Other
+}
+
+/// Id of the telecommand and error code of an acknowledge.
+pub(crate) fn acknowledged(link: &Link, message: &[u8]) -> Option<(u8, u8)> {
+    let form = link.acknowledge.as_ref()?;
+    let id = part(message, form.id_at, 1).first()?;
+    let code = part(message, form.error_at, 1).first()?;
+    Some((*id, *code))
+}

@@ -1,0 +1,64 @@
+"""The runtimes are source: compilers, linters, type checkers and formatters take them as they lie."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+
+import pytest
+
+from tests.conftest import ROOT
+from tests.rust.tools import STD, Toolchain, run, toolchains
+
+C, PYTHON, RUST = (ROOT / "runtime" / name for name in ("c", "python", "rust"))
+STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only")
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("black", "--check", "--quiet", "."),
+        ("ruff", "check", "--no-cache", "."),
+        ("mypy", "--strict", "--cache-dir={}", "."),
+    ],
+    ids=lambda command: command[0],
+)
+def test_python_is_formatted_linted_and_typed(command, tmp_path):
+    run(sys.executable, "-m", *(word.format(tmp_path) for word in command), cwd=PYTHON)
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+@pytest.mark.parametrize("header", ["icdgen.h", "icdgen_wire.h"])
+def test_c_compiles_without_a_warning(compiler, header):
+    run(compiler, "-std=c99", *STRICT, "-x", "c", C / header)
+    run(compiler, "-std=c++11", *STRICT, "-x", "c++", C / header)
+
+
+@pytest.mark.skipif(not shutil.which("clang-format"), reason="needs clang-format")
+def test_c_is_as_clang_format_lays_it_out():
+    run("clang-format", "--dry-run", "-Werror", *sorted(C.rglob("*.h")))
+
+
+@pytest.mark.parametrize("options", [(), STD], ids=["core", "std"])
+@pytest.mark.parametrize("name", list(toolchains()))
+def test_rust_is_formatted_linted_and_documented(name, options, tmp_path):
+    toolchain, main = Toolchain(name), RUST / "src" / "lib.rs"
+    toolchain.formatted(main)
+    toolchain.linted(
+        main,
+        tmp_path,
+        "--crate-type",
+        "lib",
+        "--crate-name",
+        "icdgen_runtime",
+        *options,
+    )
+    toolchain.documented(main, tmp_path, *options)
+
+
+def test_no_template_is_left_in_them():
+    files = [
+        path for folder in (C, PYTHON, RUST) for path in folder.rglob("*.*") if path.suffix in (".h", ".py", ".rs")
+    ]
+    assert len(files) > 70
+    assert [path for path in files if any(mark in path.read_text("utf-8") for mark in ("{{ ", "{% ", "{# "))] == []
