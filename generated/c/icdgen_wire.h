@@ -1869,6 +1869,7 @@ typedef struct {
     uint8_t poll_id;
     bool poll;        /* to be sent: the request for the acknowledge frame ... */
     uint32_t pending; /* ... and the request, so many times */
+    uint32_t owed;    /* I2C: transactions taken of which icd_client_transferred() was not told */
     icd_uart_encoder_t encoder;
     icd_can_splitter_t splitter;
     uint8_t chunk[32];
@@ -2046,6 +2047,25 @@ static inline icd_status_t icd_client_start(
     return ICD_OK;
 }
 
+/**
+ * Gives up the request, without an event, and what of it has not been taken: the next one may begin. A late reply to
+ * this one is ICD_EVENT_STRAY.
+ */
+static inline void icd_client_cancel(icd_client_t *client)
+{
+    client->pending = 0;
+    client->poll = false;
+    client->encoder.ended = true;
+    client->encoder.pending = 0;
+    client->splitter.next = client->splitter.count;
+    if (client->state != ICD_CLIENT_IDLE && client->attempts != 0u) {
+        client->echo = true;
+        client->echo_id = client->message->id;
+        client->echo_end = client->until + client->settings.reply_timeout;
+    }
+    client->state = ICD_CLIENT_IDLE;
+}
+
 static inline void icdgen_client_ignore(void *context, const icd_event_t *event)
 {
     (void)context;
@@ -2123,12 +2143,16 @@ static inline bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t
     return icd_can_next(&client->splitter, packet);
 }
 
-/** The next transaction on I2C: bytes to write, and how many to read then; false when there is none. */
+/**
+ * The next transaction on I2C: bytes to write, and how many to read then; false when there is none.
+ * icd_client_transferred() is told of each that was taken, once and in this order.
+ */
 static inline bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read)
 {
     *read = 0;
     if (client->bus == ICD_BUS_I2C && client->poll) {
         client->poll = false;
+        client->owed++;
         *bytes = &client->poll_id;
         *count = 1;
         return icd_i2c_read_length(client->link, client->poll_id, client->checks_telemetry, read) == ICD_OK;
@@ -2137,6 +2161,7 @@ static inline bool icd_client_transfer(icd_client_t *client, const uint8_t **byt
         return false;
     }
     client->pending--;
+    client->owed++;
     *bytes = client->whole;
     *count = client->whole_length;
     if (client->direction == ICD_TELEMETRY) {
@@ -2388,22 +2413,32 @@ static inline void icdgen_client_polled(
     }
 }
 
+/* I2C: whether the last transaction was taken, and is that of the request. */
+static inline bool icdgen_client_awaits_transfer(const icd_client_t *client, uint32_t owed)
+{
+    return client->owed == owed && (client->state == ICD_CLIENT_WAIT || client->state == ICD_CLIENT_POLL) &&
+        !icdgen_client_has_output(client);
+}
+
 /**
- * I2C: takes what was read in the transaction; `bytes` NULL: it failed. Of a write without reading, anything but NULL.
+ * I2C: takes what was read in the oldest transaction that was taken and not told of; `bytes` NULL: it failed. Of a write
+ * without reading, anything but NULL. What a request owed that is over is ICD_EVENT_STRAY.
  */
 static inline void icd_client_transferred(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
     size_t length = 0;
-    icd_client_tick(client, now, on_event, context);
-    if (client->state == ICD_CLIENT_POLL) {
+    const bool awaited = icdgen_client_awaits_transfer(client, 1);
+    client->owed -= client->owed != 0u ? 1u : 0u;
+    icd_client_tick(client, now, on_event, context); /* may end that request, and begin the next one */
+    if (!awaited || !icdgen_client_awaits_transfer(client, 0)) {
+        icdgen_client_tell(ICD_EVENT_STRAY, 0, bytes, bytes != NULL ? count : 0u, on_event, context);
+    } else if (client->state == ICD_CLIENT_POLL) {
         if (bytes == NULL) {
             icdgen_client_again(client, now, on_event, context);
         } else {
             icdgen_client_polled(client, now, bytes, count, on_event, context);
         }
-    } else if (client->state != ICD_CLIENT_WAIT) {
-        icdgen_client_tell(ICD_EVENT_STRAY, 0, bytes, bytes != NULL ? count : 0u, on_event, context);
     } else if (bytes == NULL) {
         icdgen_client_no_reply(client, now, on_event, context);
     } else if (client->direction == ICD_TELEMETRY) {
@@ -3158,11 +3193,8 @@ static inline void icdgen_upload_packet(const icd_upload_t *upload, uint32_t pos
     memcpy(packet, upload->file + upload->sent + at, left < files->packet_bytes ? left : files->packet_bytes);
 }
 
-/* Reads the next piece of the hole map, or the checksum once no packet is missing. */
-static inline void icdgen_upload_map(icd_upload_t *upload);
-
-/* Sends the next packet that is missing, or reads the hole map. */
-static inline void icdgen_upload_next(icd_upload_t *upload)
+/* Sends the next packet that is missing; false if there is none behind those that were sent. */
+static inline bool icdgen_upload_send(icd_upload_t *upload)
 {
     icd_procedure_t *const procedure = &upload->procedure;
     const icd_link_t *const link = procedure->link;
@@ -3172,16 +3204,16 @@ static inline void icdgen_upload_next(icd_upload_t *upload)
         upload->next++;
     }
     if (upload->next == upload->count) {
-        upload->next = 0;
-        icdgen_upload_map(upload);
-        return;
+        return false;
     }
     icdgen_command(procedure, step, false, ICDGEN_UPLOAD_PACKET);
     icdgen_put(link, step, procedure->data, ICD_ROLE_NUMBER, link->files->first_packet + upload->next);
     icdgen_upload_packet(upload, upload->next, procedure->data + (bytes->at / 8u));
     upload->next++;
+    return true;
 }
 
+/* Begins another round, or reads the checksum if no packet is missing. */
 static inline void icdgen_upload_round(icd_upload_t *upload)
 {
     icd_procedure_t *const procedure = &upload->procedure;
@@ -3199,9 +3231,10 @@ static inline void icdgen_upload_round(icd_upload_t *upload)
     }
     upload->rounds++;
     upload->next = 0;
-    icdgen_upload_next(upload);
+    (void)icdgen_upload_send(upload);
 }
 
+/* Reads the next piece of the hole map, and what it tells once all is read. */
 static inline void icdgen_upload_map(icd_upload_t *upload)
 {
     const icd_hole_map_form_t *const form = upload->procedure.link->hole_map;
@@ -3209,6 +3242,15 @@ static inline void icdgen_upload_map(icd_upload_t *upload)
         icdgen_upload_round(upload);
     } else {
         icdgen_ask(&upload->procedure, form->messages[upload->next].telemetry, ICDGEN_UPLOAD_MAP);
+    }
+}
+
+/* Sends the next packet that is missing, or reads the hole map. */
+static inline void icdgen_upload_next(icd_upload_t *upload)
+{
+    if (!icdgen_upload_send(upload)) {
+        upload->next = 0;
+        icdgen_upload_map(upload);
     }
 }
 

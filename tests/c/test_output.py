@@ -122,7 +122,7 @@ def test_no_two_names_of_the_shipped_icds_clash():
         ("/*/", "/ * /"),
         ("what??/", "what? ?/"),
         ("a\nb\t c", "a b c"),
-        ("a\x07b\u202ec", "a<U+0007>b<U+202E>c"),
+        ("a\x07b\u202ec", "aU+0007bU+202Ec"),
         ("Größe °", "Größe °"),
     ],
 )

@@ -97,6 +97,8 @@ def _client(known: Facts, source: random.Random) -> dict:
                 row |= {"telecommand": asked[1], "bytes": source.randbytes(size).hex(), "repeat": source.random() < 0.5}
         elif kind < 0.85:
             row["receive"] = _heard(known, bus, checked, asked, source)
+        elif kind < 0.9:
+            row["cancel"] = True
         script.append(row)
     settings = {"reply_timeout": source.choice([30, 500]), "retries": source.choice([0, 2]), "poll_timeout": 200}
     more = {"settings": settings} if source.random() < 0.7 else {}

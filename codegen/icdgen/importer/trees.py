@@ -129,6 +129,8 @@ def _field(one: ReadField, prose: bool) -> dict:
         made["formula_for"] = said.formula_for
     if said.const:
         made["const"] = Spelled(said.const)
+    if one.bitfields:
+        made["bitfields"] = [{"at": bits.at, "bits": bits.bits, "name": bits.name} for bits in one.bitfields]
     return made | _prose(one.name, said.rest, prose)
 
 

@@ -49,6 +49,8 @@ def _client_step(machine: Machine, row: dict) -> dict:
             events = machine.start(now, Request(TELEMETRY, number(row, "telemetry", 0, 255)))
         elif "receive" in row:
             events = _receive(machine, now, row)
+        elif flag(row, "cancel"):
+            machine.cancel()
         else:
             events = machine.tick(now)
     except NotNow:

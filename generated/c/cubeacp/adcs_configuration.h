@@ -3650,7 +3650,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_
         INT16_MAX);
 }
 
-/** Star Tracker Error Margin in %: 0 to 2.55. */
+/** Star Tracker Error Margin in \%: 0 to 2.55. */
 static inline double cubeacp_adcs_configuration_star_tracker_error_margin_percent(
     const cubeacp_adcs_configuration_t *message)
 {

@@ -8,7 +8,7 @@
  * ADCS Measurements: telemetry 191, 72 bytes. Table 150.
  * Calibrated measurements of all sensors in one frame.
  * Repeats Magnetic Field Vector from byte 0. Repeats Coarse Sun Vector from byte 6. Repeats Fine Sun Vector from byte
- * 12. Repeats Nadir Vector from byte 18. Repeats Rate Sensor Rates from byte 24. Repeats Wheel Speed from byte 30.
+ * 12\. Repeats Nadir Vector from byte 18. Repeats Rate Sensor Rates from byte 24. Repeats Wheel Speed from byte 30.
  * Repeats Star 1 Body Vector from byte 36. Repeats Star 1 Orbit Vector from byte 42. Repeats Star 2 Body Vector from
  * byte 48. Repeats Star 2 Orbit Vector from byte 54. Repeats Star 3 Body Vector from byte 60. Repeats Star 3 Orbit
  * Vector from byte 66.

@@ -9,7 +9,7 @@
  * Models, innovation and covariance of the estimator in one frame.
  * Repeats IGRF Modelled Magnetic Field Vector from byte 0. Repeats Modelled Sun Vector from byte 6. Repeats Estimated
  * Gyro Bias from byte 12. Repeats Estimation Innovation Vector from byte 18. Repeats Quaternion Error Vector from byte
- * 24. Repeats Quaternion Covariance from byte 30. Repeats Angular Rate Covariance from byte 36.
+ * 24\. Repeats Quaternion Covariance from byte 30. Repeats Angular Rate Covariance from byte 36.
  */
 
 #include "../icdgen.h"

@@ -6,7 +6,7 @@
 /**
  * @file
  * Redundant Magnetometer Configuration: configuration, set by telecommand 36, got by telemetry 205, 30 bytes. Table
- * 191.
+ * 191\.
  * @note Erratum ACP-051 (certain): Magnetometers have four names for two.
  */
 

@@ -6,7 +6,7 @@
 /**
  * @file
  * Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, got by telemetry 217, 13 bytes. Table
- * 197.
+ * 197\.
  * Gains and reference of the reaction-wheel mode.
  * @note Erratum ACP-125 (certain): Eight messages are named Set and can be read.
  */

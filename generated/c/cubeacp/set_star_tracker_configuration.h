@@ -447,7 +447,7 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_track
         INT16_MAX);
 }
 
-/** Star Tracker Error Margin in %: 0 to 2.55. */
+/** Star Tracker Error Margin in \%: 0 to 2.55. */
 static inline double cubeacp_set_star_tracker_configuration_star_tracker_error_margin_percent(
     const cubeacp_set_star_tracker_configuration_t *message)
 {

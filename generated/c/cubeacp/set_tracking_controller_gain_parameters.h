@@ -6,7 +6,7 @@
 /**
  * @file
  * Set Tracking Controller Gain Parameters: configuration, set by telecommand 54, got by telemetry 221, 13 bytes. Table
- * 198.
+ * 198\.
  * Gains of the tracking mode.
  * @note Erratum ACP-125 (certain): Eight messages are named Set and can be read.
  */

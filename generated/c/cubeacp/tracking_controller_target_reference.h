@@ -6,7 +6,7 @@
 /**
  * @file
  * Tracking Controller Target Reference: configuration, set by telecommand 55, got by telemetry 200, 12 bytes. Table
- * 187.
+ * 187\.
  * Target of the tracking control mode.
  */
 

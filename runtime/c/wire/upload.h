@@ -61,11 +61,8 @@ static inline void icdgen_upload_packet(const icd_upload_t *upload, uint32_t pos
     memcpy(packet, upload->file + upload->sent + at, left < files->packet_bytes ? left : files->packet_bytes);
 }
 
-/* Reads the next piece of the hole map, or the checksum once no packet is missing. */
-static inline void icdgen_upload_map(icd_upload_t *upload);
-
-/* Sends the next packet that is missing, or reads the hole map. */
-static inline void icdgen_upload_next(icd_upload_t *upload)
+/* Sends the next packet that is missing; false if there is none behind those that were sent. */
+static inline bool icdgen_upload_send(icd_upload_t *upload)
 {
     icd_procedure_t *const procedure = &upload->procedure;
     const icd_link_t *const link = procedure->link;
@@ -75,16 +72,16 @@ static inline void icdgen_upload_next(icd_upload_t *upload)
         upload->next++;
     }
     if (upload->next == upload->count) {
-        upload->next = 0;
-        icdgen_upload_map(upload);
-        return;
+        return false;
     }
     icdgen_command(procedure, step, false, ICDGEN_UPLOAD_PACKET);
     icdgen_put(link, step, procedure->data, ICD_ROLE_NUMBER, link->files->first_packet + upload->next);
     icdgen_upload_packet(upload, upload->next, procedure->data + (bytes->at / 8u));
     upload->next++;
+    return true;
 }
 
+/* Begins another round, or reads the checksum if no packet is missing. */
 static inline void icdgen_upload_round(icd_upload_t *upload)
 {
     icd_procedure_t *const procedure = &upload->procedure;
@@ -102,9 +99,10 @@ static inline void icdgen_upload_round(icd_upload_t *upload)
     }
     upload->rounds++;
     upload->next = 0;
-    icdgen_upload_next(upload);
+    (void)icdgen_upload_send(upload);
 }
 
+/* Reads the next piece of the hole map, and what it tells once all is read. */
 static inline void icdgen_upload_map(icd_upload_t *upload)
 {
     const icd_hole_map_form_t *const form = upload->procedure.link->hole_map;
@@ -112,6 +110,15 @@ static inline void icdgen_upload_map(icd_upload_t *upload)
         icdgen_upload_round(upload);
     } else {
         icdgen_ask(&upload->procedure, form->messages[upload->next].telemetry, ICDGEN_UPLOAD_MAP);
+    }
+}
+
+/* Sends the next packet that is missing, or reads the hole map. */
+static inline void icdgen_upload_next(icd_upload_t *upload)
+{
+    if (!icdgen_upload_send(upload)) {
+        upload->next = 0;
+        icdgen_upload_map(upload);
     }
 }
 

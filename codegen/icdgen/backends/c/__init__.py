@@ -14,7 +14,7 @@ from icdgen.backends.c.dispatch import dispatchers
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import header
 from icdgen.backends.c.statement import head
-from icdgen.backends.c.text import comment, described, literal, noted, plain
+from icdgen.backends.c.text import comment, described, literal, noted, prose
 from icdgen.backends.lines import STEP
 from icdgen.describe import EnumDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.comments import sentence, words
@@ -118,7 +118,7 @@ def _link(node: NodeDescription, known: Facts) -> dict[str, object]:
         "node": node.name,
         "guard": _guard(node.name, "link"),
         "about": comment(["@file", f"{title}: how its messages travel."]),
-        "title": plain(title),
+        "title": prose(title),
         "constants": sizes(known),
         "aliases": aliases(node.messages),
         "tables": LinkTables(known).all(),
@@ -130,7 +130,7 @@ def _enums(node: NodeDescription) -> dict[str, object]:
         "version": __version__,
         "node": node.name,
         "guard": _guard(node.name, "enums"),
-        "title": plain(node.node.title),
+        "title": prose(words(node.node.title)),
         "enums": [_enum(enum) for enum in node.enums],
     }
 
@@ -167,7 +167,7 @@ def _node(node: NodeDescription) -> dict[str, object]:
         "guard": _guard(node.name),
         "about": comment(["@file", f"{words(node.node.title)}: all messages.", sentence(node.node.summary)]),
         "includes": ["icdgen.h", *headers],
-        "title": plain(node.node.title),
+        "title": prose(words(node.node.title)),
         "upper": node.name.upper(),
         "digest": node.node.digest[:16],
         "constants": constants.of_node(node.node),

@@ -99,6 +99,5 @@ def listed(icd: Icd) -> dict[str, object]:
     return {
         "imports": [imported(4, ".", name, name) for name in found],
         "nodes": display(0, "NODES = (", [f'"{name}"' for name in found], ")"),
-        "order": display(0, "(", [f'"{node.name}"' for node in icd.nodes], ")"),
         "titles": [(node.name, prose(node.title)) for node in icd.nodes],
     }

@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from .logs import LogMessage as LogMessage
     from .logs import LogReader as LogReader
     from .logs import LogWriter as LogWriter
+    from .ports import serial_port as serial_port
     from .procedures import Procedure as Procedure
     from .session import Session as Session
     from .times import DosTime as DosTime
@@ -99,6 +100,7 @@ _HOMES = {
     "identity": ("Identity", "identify"),
     "link": ("Link", "Settings"),
     "logs": ("LogEntry", "LogFrame", "LogMessage", "LogReader", "LogWriter"),
+    "ports": ("serial_port",),
     "procedures": ("Procedure",),
     "session": ("Session",),
     "times": ("DosTime", "dos_time_pack", "dos_time_unpack"),

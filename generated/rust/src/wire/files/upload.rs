@@ -106,12 +106,13 @@ impl<'a> Upload<'a> {
         self.first = true;
     }
 
-    fn round(&mut self) {
+    /// Begins a round with the first packet that is missing.
+    fn round(&mut self, first: usize) {
         if self.rounds == self.form.rounds {
             return self.core.end(End::Rounds);
         }
         self.rounds += 1;
-        self.send_packet(0);
+        self.send_packet(first);
     }
 
     /// The first packet from a position on that the node has not.
@@ -130,11 +131,14 @@ impl<'a> Upload<'a> {
     }
 
     /// Sends the next packet from a position on, or asks which ones arrived.
-    fn send_packet(&mut self, from: usize) {
-        let position = match self.missing(from) {
-            Some(position) => position,
-            None => return self.ask_map(0),
-        };
+    fn send_next(&mut self, from: usize) {
+        match self.missing(from) {
+            Some(position) => self.send_packet(position),
+            None => self.ask_map(0),
+        }
+    }
+
+    fn send_packet(&mut self, position: usize) {
         let number = self.files.first_packet.wrapping_add(count(position));
         let step = &self.form.packet;
         self.core.send(step, false, &[(Role::Number, number)]);
@@ -159,8 +163,8 @@ impl<'a> Upload<'a> {
             }
             _ => {
                 self.first = false;
-                if self.missing(0).is_some() {
-                    self.round();
+                if let Some(position) = self.missing(0) {
+                    self.round(position);
                 } else {
                     self.core.ask(self.form.checksum.id);
                     self.state = State::Checksum;
@@ -272,8 +276,8 @@ impl Run for Upload<'_> {
                 if let Some(frame) = self.core.frame(answer) {
                     match state {
                         State::Initiate => self.poll(true),
-                        State::Block => self.round(),
-                        State::Packet(position) => self.send_packet(position + 1),
+                        State::Block => self.round(0),
+                        State::Packet(position) => self.send_next(position + 1),
                         State::Map(piece) => self.take_map(piece, frame),
                         State::Checksum => self.checksum(frame),
                         _ => self.poll(false),

@@ -227,7 +227,8 @@ impl<const N: usize> Client<N> {
         }
     }
 
-    /// I2C: the next transaction, if there is one; [`Client::transferred`] is told what came of it.
+    /// I2C: the next transaction, if there is one; [`Client::transferred`] is told what came of each, once
+    /// and in this order.
     pub fn output_transaction(&mut self) -> Option<Transaction<'_>> {
         let machine = &mut self.machine;
         if machine.bus != Bus::I2c {
@@ -235,7 +236,14 @@ impl<const N: usize> Client<N> {
         }
         let output = machine.first()?;
         machine.sent();
+        machine.owed = machine.owed.saturating_add(1);
         Some(machine.transaction(output))
+    }
+
+    /// Gives up the request, without an event, and what of it has not been taken: the next one may begin. A
+    /// late reply to this one is [`Event::Stray`].
+    pub fn cancel(&mut self) {
+        self.machine.cancel();
     }
 
     /// Lets time pass.
@@ -270,15 +278,19 @@ impl<const N: usize> Client<N> {
         }
     }
 
-    /// I2C: takes what was read in a transaction; None: it failed.
+    /// I2C: takes what was read in the oldest transaction that was taken and not told of; None: it failed.
+    /// What a request owed that is over is [`Event::Stray`].
     pub fn transferred(
         &mut self,
         now: u32,
         bytes: Option<&[u8]>,
         mut on_event: impl FnMut(Event<'_>),
     ) {
-        self.pass(now, &mut on_event);
-        self.machine.transferred(now, bytes, &mut on_event);
+        let awaited = self.machine.owed == 1 && self.machine.awaits_transfer();
+        self.machine.owed = self.machine.owed.saturating_sub(1);
+        self.pass(now, &mut on_event); // may end that request
+        let awaited = awaited && self.machine.awaits_transfer();
+        self.machine.transferred(now, bytes, awaited, &mut on_event);
     }
 
     fn pass(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
