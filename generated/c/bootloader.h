@@ -23,11 +23,7 @@
 #include "bootloader/link.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-<<<<<<< HEAD
-#define BOOTLOADER_ICD_DIGEST "93e981fb1cf387e8"
-=======
-#define BOOTLOADER_ICD_DIGEST "ceafa92c3f6f802e"
->>>>>>> main
+#define BOOTLOADER_ICD_DIGEST "e778543921ad2816"
 /** What the node answers when asked for its type. */
 #define BOOTLOADER_NODE_TYPE 110u
 /** Version of the interface that it reports. */

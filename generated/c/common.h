@@ -55,11 +55,7 @@
 #include "common/link.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-<<<<<<< HEAD
-#define COMMON_ICD_DIGEST "76423950e605d9a2"
-=======
-#define COMMON_ICD_DIGEST "b5cd023fef06fa33"
->>>>>>> main
+#define COMMON_ICD_DIGEST "e691f2edac8c474e"
 
 /** Any telemetry of Common messages: the member of `as` that goes with the id. */
 typedef struct {

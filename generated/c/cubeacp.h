@@ -130,11 +130,7 @@
 #include "cubeacp/link.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-<<<<<<< HEAD
-#define CUBEACP_ICD_DIGEST "c08f685a47ab9e32"
-=======
-#define CUBEACP_ICD_DIGEST "f6c0a29d5d4c74f8"
->>>>>>> main
+#define CUBEACP_ICD_DIGEST "31f43ffef370a641"
 /** What the node answers when asked for its type. */
 #define CUBEACP_NODE_TYPE 10u
 /** Version of the interface that it reports. */

@@ -27,7 +27,9 @@ def attribute(module: dict[str, Any], homes: dict[str, str], name: str) -> Any:
 class Messages:
     """The messages of a node by id: ``TELEMETRY[146]`` is a class."""
 
-    def __init__(self, module: dict[str, Any], node: str, kind: str, names: dict[int, str]) -> None:
+    def __init__(
+        self, module: dict[str, Any], node: str, kind: str, names: dict[int, str]
+    ) -> None:
         self._module, self._node, self._kind, self._names = module, node, kind, names
         self._loaded: dict[int, type[Message]] = {}
 

@@ -65,7 +65,9 @@ class Session:
         """Any request; its outcome. Raises what `Client.start` does."""
         return self._outcome(self.client.start(self._now(), request))
 
-    def run(self, procedure: P, progress: Callable[[int, int | None], object] | None = None) -> P:
+    def run(
+        self, procedure: P, progress: Callable[[int, int | None], object] | None = None
+    ) -> P:
         """Runs a procedure to its end; ``progress`` is told of bytes, and of how many.
 
         A request that is refused with a code that the ICD does not have is sent again, if
