@@ -546,6 +546,7 @@ const MAX_LAG: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for AugmentedSgp4Parameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 28;
 
     #[inline]
@@ -555,6 +556,7 @@ impl crate::wire::Telecommand for AugmentedSgp4Parameters {
 }
 
 impl crate::wire::Telemetry for AugmentedSgp4Parameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 227;
 
     #[inline]

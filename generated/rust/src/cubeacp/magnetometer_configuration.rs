@@ -633,6 +633,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S32: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for MagnetometerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 26;
 
     #[inline]
@@ -642,6 +643,7 @@ impl crate::wire::Telecommand for MagnetometerConfiguration {
 }
 
 impl crate::wire::Telemetry for MagnetometerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 204;
 
     #[inline]
