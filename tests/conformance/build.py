@@ -15,7 +15,7 @@ from pathlib import Path
 from icdgen import backends
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
-from tests.conformance import ROOT
+from tests.conformance import ROOT, testees  # noqa: F401  (it registers the testees' backends)
 from tests.conformance.languages import Language
 
 BOARD = ROOT / "tests" / "conformance" / "board"  # what the self-tests are linked with
@@ -54,15 +54,14 @@ def generated(language: Language, icd: Icd) -> dict[str, bytes]:
     """What the language's backends make of the ICDs: path, beginning with the backend's name -> content."""
     files = {}
     for name in language.backends:
-        backend = backends.get(name)
-        for path, text in backend.files(icd, renderer(backend.name)):
+        for path, text in backends.get(name).files(icd, renderer(name)):
             files[f"{name}/{path}"] = text.encode("utf-8")
     return files
 
 
 @cache
 def renderer(name: str) -> Renderer:
-    return Renderer(name)
+    return Renderer.of(backends.get(name))
 
 
 def execute(*command: str | Path, cwd: Path | None = None, env: dict[str, str] | None = None) -> str:

@@ -20,11 +20,8 @@ _BUILT_IN = {
     "python": "icdgen.backends.python:PythonBackend",
     "rust": "icdgen.backends.rust:RustBackend",
     "vectors": "icdgen.backends.vectors:VectorsBackend",
-    "c-selftest": "icdgen.backends.c_conformance:CSelftestBackend",
-    "c-testee": "icdgen.backends.c_conformance:CTesteeBackend",
-    "rust-testee": "icdgen.backends.rust_testee:RustTesteeBackend",
+    "c-selftest": "icdgen.backends.c_selftest:CSelftestBackend",
     "html": "icdgen.backends.html:HtmlBackend",
-    "js-testee": "icdgen.backends.js_testee:JsTesteeBackend",
 }
 
 
@@ -43,6 +40,9 @@ class Backend(Protocol):
     name: str  # as in ``--lang``, and the name of its template folder
     reserved: frozenset[str]  # words that can't be identifiers
 
+    # Optional: `templates` and `runtime`, the folders (`Path`) of its templates and of what it copies into the output, for backends
+    # that are not part of icdgen. `--templates` goes before both.
+
     def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
         """Every file as relative path and text, in a fixed order."""
 
@@ -54,6 +54,14 @@ class UnknownBackend(LookupError):
     """No backend of that name; the message lists those there are."""
 
 
+_registered: dict[str, str] = {}
+
+
+def register(name: str, target: str) -> None:
+    """Makes a backend known to this process: ``target`` is ``module:Class``, as an entry point would say it."""
+    _registered[name] = target
+
+
 def names() -> tuple[str, ...]:
     """Names of the built-in backends."""
     return tuple(_BUILT_IN)
@@ -61,8 +69,9 @@ def names() -> tuple[str, ...]:
 
 def get(name: str) -> Backend:
     """The backend called ``name``. Raises `UnknownBackend`."""
-    if name in _BUILT_IN:
-        return _load(_BUILT_IN[name])
+    known = _registered | _BUILT_IN
+    if name in known:
+        return _load(known[name])
     from importlib.metadata import entry_points
 
     found = {point.name: point for point in entry_points(group=GROUP)}

@@ -48,7 +48,7 @@ def run(job: Job) -> Outcome:
         return outcome
     outcome.inputs = outcome.loaded.inputs | job.configs
     for backend in chosen:
-        render = Renderer(backend.name, job.templates)
+        render = Renderer.of(backend, job.templates)
         out = job.out / backend.name if len(chosen) > 1 else job.out
         outcome.plans.append(write.plan(out, backend.name, backend.files(outcome.loaded.icd, render)))
         outcome.inputs |= render.looked_at

@@ -1,6 +1,6 @@
 """The languages that the conformance run drives: one module each, which offers ``LANGUAGES``.
 
-A further language brings a module here and a testee among its backend's templates; nothing else is touched.
+A further language brings a module here and a testee in ``testees/``; nothing else is touched.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ use crate::support::{Coded, Error};
 pub struct SetBootIndex {
     /// Program Index (bits 0 to 7).
     ///
-    /// Erratum BOOT-007 (certain): Set Boot Index selects among one.
+    /// Note BOOT-007 (certain): Set Boot Index selects among one.
     pub program_index: Coded<enums::BootSetProgramsList>,
 }
 

@@ -8,7 +8,7 @@ use crate::support::Error;
 ///
 /// Resets the boot counter, boot state and boot cause.
 ///
-/// Erratum COM-032 (likely): Reset Boot Registers: a Boot State that no frame has, and no values to
+/// Note COM-032 (likely): Reset Boot Registers: a Boot State that no frame has, and no values to
 /// reset to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

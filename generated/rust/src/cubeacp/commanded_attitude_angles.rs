@@ -6,25 +6,19 @@ use crate::support::{put, take, Error, Scale};
 
 /// Commanded Attitude Angles: configuration, set by 15 and got by 199, 6 bytes. Table 186.
 ///
-/// Erratum ACP-066 (open): Attitude angles: order of rotation and frame.
+/// Note ACP-066 (open): Attitude angles: order of rotation and frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CommandedAttitudeAngles {
     /// Commanded Roll Angle (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub commanded_roll_angle: i16,
     /// Commanded Pitch Angle (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub commanded_pitch_angle: i16,
     /// Commanded Yaw Angle (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub commanded_yaw_angle: i16,
 }
 

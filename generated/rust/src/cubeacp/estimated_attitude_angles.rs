@@ -6,7 +6,7 @@ use crate::support::{put, take, Error, Scale};
 
 /// Estimated Attitude Angles: telemetry 146, 6 bytes. Table 102.
 ///
-/// Erratum ACP-066 (open): Attitude angles: order of rotation and frame.
+/// Note ACP-066 (open): Attitude angles: order of rotation and frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -14,17 +14,17 @@ use crate::support::{put, take, Error};
 pub struct TrackingControllerTargetReference {
     /// Geocentric longitude of target (bits 0 to 31): 32-bit float, in deg.
     ///
-    /// Erratum ACP-138 (open): Target is geocentric, position is geodetic.
+    /// Note ACP-138 (open): Target is geocentric, position is geodetic.
     pub geocentric_longitude_of_target: f32,
     /// Geocentric latitude of target (bits 32 to 63): 32-bit float, in deg.
     ///
-    /// Erratum ACP-138 (open): Target is geocentric, position is geodetic.
+    /// Note ACP-138 (open): Target is geocentric, position is geodetic.
     pub geocentric_latitude_of_target: f32,
     /// Geocentric altitude of target (bits 64 to 95): 32-bit float, in m.
     ///
-    /// Erratum ACP-138 (open): Target is geocentric, position is geodetic.
-    ///
     /// Erratum ACP-139 (certain): meter is m.
+    ///
+    /// Note ACP-138 (open): Target is geocentric, position is geodetic.
     pub geocentric_altitude_of_target: f32,
 }
 

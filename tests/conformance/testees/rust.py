@@ -18,6 +18,7 @@ from icdgen.backends.rust.nodes import id_type
 from icdgen.backends.rust.text import string
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts
+from tests.conformance.testees import RUNTIME, TEMPLATES
 
 WIRE = ("ask", "client", "file", "logs", "wire")  # what answers requests about the protocol
 
@@ -127,10 +128,12 @@ def _field(row: FieldRow, node: Node) -> FieldEntry:
 
 
 class RustTesteeBackend:
-    """``icdgen --lang rust-testee``"""
+    """A package of one program, beside the crate."""
 
     name = "rust-testee"
     reserved: frozenset[str] = frozenset()
+    templates = TEMPLATES / name
+    runtime = RUNTIME / name
 
     def __init__(self, crate: str = CRATE) -> None:
         self.crate = crate

@@ -13,13 +13,16 @@ from icdgen.backends import Identifier
 from icdgen.backends.html.plan import enum_plan, message_plan
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.render import Renderer
+from tests.conformance.testees import RUNTIME, TEMPLATES
 
 
 class JsTesteeBackend:
-    """``icdgen --lang js-testee``"""
+    """A program for Node, and the plans of the pages."""
 
     name = "js-testee"
     reserved: frozenset[str] = frozenset()
+    templates = TEMPLATES / name
+    runtime = RUNTIME / name
 
     def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
         """``testee.js`` and what it needs."""

@@ -1,7 +1,6 @@
-{{ header }}
 """Answers questions about the messages: one JSON object a line in, one out.
 
-    python -m {{ package }}.testee
+    python -m PACKAGE._testee
 
 The protocol is described with icdgen's conformance tests.
 """
@@ -11,8 +10,9 @@ from __future__ import annotations
 import json
 import re
 import sys
+from collections.abc import Callable
 from importlib import import_module
-from typing import Any, Callable
+from typing import Any
 
 from . import NODES, _codec, _floats
 from ._base import FieldInfo, Message
@@ -102,7 +102,7 @@ def _message(request: dict[str, Any]) -> type[Message]:
         found = node.TELEMETRY[id]
     else:
         for messages in (node.TELECOMMANDS, node.TELEMETRY):
-            if id in messages and messages[id].KIND == kind:
+            if id in messages and kind == messages[id].KIND:
                 return messages[id]  # type: ignore[no-any-return]
         raise UnknownIdError(node.NAME, kind, id)
     return found
