@@ -309,6 +309,8 @@ typedef struct {
 
 /** Everything about the protocol of a node. What the ICD does not describe is NULL. */
 typedef struct {
+    const char *const *nodes; /**< Whose messages it has: its own, then those of the nodes that it includes. */
+    uint16_t node_count;
     bool little; /**< Byte order of numbers. */
     bool msb0;   /**< Bit 0 of a byte is the most significant one. */
     uint8_t telemetry_first, telemetry_last;
@@ -348,6 +350,26 @@ typedef struct {
     const icd_operation_form_t *program_information;
     const icd_step_t *identification;
 } icd_link_t;
+
+static inline bool icdgen_same_name(const char *one, const char *other)
+{
+    while (*one != '\0' && *one == *other) {
+        ++one;
+        ++other;
+    }
+    return *one == *other;
+}
+
+/** Whether the node has the messages of that one, which is so of itself and of those that it includes. */
+static inline bool icd_has_messages_of(const icd_link_t *link, const char *node)
+{
+    for (size_t i = 0; i < link->node_count; ++i) {
+        if (icdgen_same_name(link->nodes[i], node)) {
+            return true;
+        }
+    }
+    return false;
+}
 
 /** The message of an id; NULL if the node has none. */
 static inline const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, unsigned id)
@@ -2124,8 +2146,19 @@ static inline icd_status_t icd_client_send(
     return icd_client_start(client, now, &request, on_event, context);
 }
 
-/** Requests the telemetry of that name, such as ICD_REQUEST(&client, now, NODE_IDENTIFICATION). */
-#define ICD_REQUEST(client, now, name) icd_client_request(client, now, ICDGEN_U8(name##_TELEMETRY))
+static inline icd_status_t icdgen_client_request_of(icd_client_t *client, uint32_t now, const char *node, unsigned id)
+{
+    if (!icd_has_messages_of(client->link, node)) {
+        return ICD_ERROR_UNKNOWN_ID;
+    }
+    return icd_client_request(client, now, ICDGEN_U8(id));
+}
+
+/**
+ * Requests the telemetry of that name, such as ICD_REQUEST(&client, now, NODE_IDENTIFICATION); ICD_ERROR_UNKNOWN_ID if
+ * it is a message of another node, whatever its id.
+ */
+#define ICD_REQUEST(client, now, name) icdgen_client_request_of(client, now, name##_TELEMETRY)
 
 /** The next bytes for the UART; false when there are none. They last until the next call. */
 static inline bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count)
@@ -2442,8 +2475,8 @@ static inline bool icdgen_client_awaits_transfer(const icd_client_t *client, uin
 }
 
 /**
- * I2C: takes what was read in the oldest transaction that was taken and not told of; `bytes` NULL: it failed. Of a write
- * without reading, anything but NULL. What a request owed that is over is ICD_EVENT_STRAY.
+ * I2C: takes what was read in the oldest transaction that was taken and not told of; `bytes` NULL: it failed. Of a
+ * write without reading, anything but NULL. What a request owed that is over is ICD_EVENT_STRAY.
  */
 static inline void icd_client_transferred(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)

@@ -290,6 +290,12 @@ class Facts:
     assumptions: tuple[Assumption, ...]
 
     @property
+    def owners(self) -> list[str]:
+        """The nodes whose messages the node has: itself first, then those that it includes."""
+        others = {message.node for message in (*self.telecommands.values(), *self.telemetry.values())}
+        return [self.node.name, *sorted(others - {self.node.name})]
+
+    @property
     def longest_telecommand(self) -> int:
         """Bytes of the longest telecommand with its id and checksum."""
         extra = self.checksum.bytes if self.checksum else 0

@@ -10,6 +10,8 @@
 
 #include "../icdgen_wire.h"
 
+/** The node whose messages these are. */
+#define BOOTLOADER_NODE "bootloader"
 /** Bytes of the longest message of either direction, with id and checksum. */
 #define BOOTLOADER_LONGEST 23u
 /** Bytes that joining CAN packets takes for each sender at once. */
@@ -21,15 +23,19 @@
 /** Bytes of a bit for each packet of such a block. */
 #define BOOTLOADER_BLOCK_BITMAP_BYTES 128u
 
-/* Ids for ICD_REQUEST(). */
-#define BOOTLOADER_BOOTLOADER_STATE_TELEMETRY 132u
-#define BOOTLOADER_PROGRAM_INFORMATION_TELEMETRY 232u
-#define BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_TELEMETRY 233u
+/* Messages for ICD_REQUEST(): whose they are, and their ids. */
+#define BOOTLOADER_BOOTLOADER_STATE_TELEMETRY BOOTLOADER_NODE, 132u
+#define BOOTLOADER_PROGRAM_INFORMATION_TELEMETRY BOOTLOADER_NODE, 232u
+#define BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_TELEMETRY BOOTLOADER_NODE, 233u
 
 /** What the wire layer needs to know about Bootloader. */
 static inline const icd_link_t *bootloader_link(void)
 {
     /* clang-format off */
+    static const char *const nodes[] = {
+        "bootloader",
+        "common",
+    };
     static const icd_message_t telecommands[] = {
         /*
          * Reset. Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for,
@@ -413,6 +419,8 @@ static inline const icd_link_t *bootloader_link(void)
      * given.
      */
     static const icd_link_t link = {
+        nodes,
+        2u,                   /* how many */
         true,                 /* byte order: little */
         false,                /* bit 0 is the most significant one */
         128u, 255u,           /* ids of telemetry */

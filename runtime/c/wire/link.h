@@ -8,6 +8,8 @@ typedef struct {
 
 /** Everything about the protocol of a node. What the ICD does not describe is NULL. */
 typedef struct {
+    const char *const *nodes; /**< Whose messages it has: its own, then those of the nodes that it includes. */
+    uint16_t node_count;
     bool little; /**< Byte order of numbers. */
     bool msb0;   /**< Bit 0 of a byte is the most significant one. */
     uint8_t telemetry_first, telemetry_last;
@@ -47,6 +49,26 @@ typedef struct {
     const icd_operation_form_t *program_information;
     const icd_step_t *identification;
 } icd_link_t;
+
+static inline bool icdgen_same_name(const char *one, const char *other)
+{
+    while (*one != '\0' && *one == *other) {
+        ++one;
+        ++other;
+    }
+    return *one == *other;
+}
+
+/** Whether the node has the messages of that one, which is so of itself and of those that it includes. */
+static inline bool icd_has_messages_of(const icd_link_t *link, const char *node)
+{
+    for (size_t i = 0; i < link->node_count; ++i) {
+        if (icdgen_same_name(link->nodes[i], node)) {
+            return true;
+        }
+    }
+    return false;
+}
 
 /** The message of an id; NULL if the node has none. */
 static inline const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, unsigned id)

@@ -120,6 +120,7 @@ def _link(known: Facts) -> Struct:
         "Link",
         (
             Part("node", node.name),
+            Part("nodes", Rows(known.owners)),
             Part("node_type", Optional(node.node_type)),
             Part("interface_version", Optional(node.interface_version)),
             Part("longest", known.longest),

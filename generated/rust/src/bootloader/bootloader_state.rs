@@ -126,6 +126,7 @@ impl BootloaderState {
 }
 
 impl crate::wire::Telemetry for BootloaderState {
+    const NODE: &'static str = "bootloader";
     const TELEMETRY_ID: u8 = 132;
 
     #[inline]

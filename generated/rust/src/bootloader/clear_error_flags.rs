@@ -55,6 +55,7 @@ impl ClearErrorFlags {
 }
 
 impl crate::wire::Telecommand for ClearErrorFlags {
+    const NODE: &'static str = "bootloader";
     const TELECOMMAND_ID: u8 = 7;
 
     #[inline]

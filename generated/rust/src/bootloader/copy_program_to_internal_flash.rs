@@ -69,6 +69,7 @@ impl CopyProgramToInternalFlash {
 }
 
 impl crate::wire::Telecommand for CopyProgramToInternalFlash {
+    const NODE: &'static str = "bootloader";
     const TELECOMMAND_ID: u8 = 103;
 
     #[inline]

@@ -62,6 +62,7 @@ impl CopyToInternalFlashProgress {
 }
 
 impl crate::wire::Telemetry for CopyToInternalFlashProgress {
+    const NODE: &'static str = "bootloader";
     const TELEMETRY_ID: u8 = 233;
 
     #[inline]

@@ -83,6 +83,7 @@ impl ProgramInformation {
 }
 
 impl crate::wire::Telemetry for ProgramInformation {
+    const NODE: &'static str = "bootloader";
     const TELEMETRY_ID: u8 = 232;
 
     #[inline]

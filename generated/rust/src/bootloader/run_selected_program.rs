@@ -51,6 +51,7 @@ impl RunSelectedProgram {
 }
 
 impl crate::wire::Telecommand for RunSelectedProgram {
+    const NODE: &'static str = "bootloader";
     const TELECOMMAND_ID: u8 = 101;
 
     #[inline]

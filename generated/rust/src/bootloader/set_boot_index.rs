@@ -59,6 +59,7 @@ impl SetBootIndex {
 }
 
 impl crate::wire::Telecommand for SetBootIndex {
+    const NODE: &'static str = "bootloader";
     const TELECOMMAND_ID: u8 = 100;
 
     #[inline]

@@ -51,6 +51,7 @@ impl AdvanceFileListReadPointer {
 }
 
 impl crate::wire::Telecommand for AdvanceFileListReadPointer {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 113;
 
     #[inline]

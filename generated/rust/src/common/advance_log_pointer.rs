@@ -53,6 +53,7 @@ impl AdvanceLogPointer {
 }
 
 impl crate::wire::Telecommand for AdvanceLogPointer {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 5;
 
     #[inline]

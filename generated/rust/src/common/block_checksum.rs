@@ -60,6 +60,7 @@ impl BlockChecksum {
 }
 
 impl crate::wire::Telemetry for BlockChecksum {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 246;
 
     #[inline]

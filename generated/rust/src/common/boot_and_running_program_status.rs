@@ -131,6 +131,7 @@ const BOOT_CAUSE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for BootAndRunningProgramStatus {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 129;
 
     #[inline]

@@ -65,6 +65,7 @@ impl BootIndexAndStatus {
 }
 
 impl crate::wire::Telemetry for BootIndexAndStatus {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 130;
 
     #[inline]

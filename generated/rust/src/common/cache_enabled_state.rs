@@ -60,6 +60,7 @@ impl CacheEnabledState {
 }
 
 impl crate::wire::Telecommand for CacheEnabledState {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 3;
 
     #[inline]
@@ -69,6 +70,7 @@ impl crate::wire::Telecommand for CacheEnabledState {
 }
 
 impl crate::wire::Telemetry for CacheEnabledState {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 131;
 
     #[inline]

@@ -132,6 +132,7 @@ impl CommunicationStatus {
 }
 
 impl crate::wire::Telemetry for CommunicationStatus {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 144;
 
     #[inline]

@@ -68,6 +68,7 @@ impl CurrentUnixTime {
 }
 
 impl crate::wire::Telecommand for CurrentUnixTime {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 2;
 
     #[inline]
@@ -77,6 +78,7 @@ impl crate::wire::Telecommand for CurrentUnixTime {
 }
 
 impl crate::wire::Telemetry for CurrentUnixTime {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 140;
 
     #[inline]

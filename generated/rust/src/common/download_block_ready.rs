@@ -76,6 +76,7 @@ impl DownloadBlockReady {
 }
 
 impl crate::wire::Telemetry for DownloadBlockReady {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 242;
 
     #[inline]

@@ -74,6 +74,7 @@ impl EdacErrorCounters {
 }
 
 impl crate::wire::Telemetry for EdacErrorCounters {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 143;
 
     #[inline]

@@ -72,6 +72,7 @@ impl EraseFile {
 }
 
 impl crate::wire::Telecommand for EraseFile {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 108;
 
     #[inline]

@@ -74,6 +74,7 @@ impl FileDownloadBufferWithFileContents {
 }
 
 impl crate::wire::Telemetry for FileDownloadBufferWithFileContents {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 241;
 
     #[inline]

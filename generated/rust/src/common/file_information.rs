@@ -123,6 +123,7 @@ const FILE_TYPE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for FileInformation {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 243;
 
     #[inline]

@@ -71,6 +71,7 @@ impl FileUploadPacket {
 }
 
 impl crate::wire::Telecommand for FileUploadPacket {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 115;
 
     #[inline]

@@ -75,6 +75,7 @@ impl FinalizeUploadBlock {
 }
 
 impl crate::wire::Telecommand for FinalizeUploadBlock {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 116;
 
     #[inline]

@@ -71,6 +71,7 @@ impl HoleMap1 {
 }
 
 impl crate::wire::Telecommand for HoleMap1 {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 120;
 
     #[inline]
@@ -80,6 +81,7 @@ impl crate::wire::Telecommand for HoleMap1 {
 }
 
 impl crate::wire::Telemetry for HoleMap1 {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 247;
 
     #[inline]

@@ -71,6 +71,7 @@ impl HoleMap2 {
 }
 
 impl crate::wire::Telecommand for HoleMap2 {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 121;
 
     #[inline]
@@ -80,6 +81,7 @@ impl crate::wire::Telecommand for HoleMap2 {
 }
 
 impl crate::wire::Telemetry for HoleMap2 {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 248;
 
     #[inline]

@@ -71,6 +71,7 @@ impl HoleMap3 {
 }
 
 impl crate::wire::Telecommand for HoleMap3 {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 122;
 
     #[inline]
@@ -80,6 +81,7 @@ impl crate::wire::Telecommand for HoleMap3 {
 }
 
 impl crate::wire::Telemetry for HoleMap3 {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 249;
 
     #[inline]

@@ -71,6 +71,7 @@ impl HoleMap4 {
 }
 
 impl crate::wire::Telecommand for HoleMap4 {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 123;
 
     #[inline]
@@ -80,6 +81,7 @@ impl crate::wire::Telecommand for HoleMap4 {
 }
 
 impl crate::wire::Telemetry for HoleMap4 {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 250;
 
     #[inline]

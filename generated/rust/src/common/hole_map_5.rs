@@ -71,6 +71,7 @@ impl HoleMap5 {
 }
 
 impl crate::wire::Telecommand for HoleMap5 {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 124;
 
     #[inline]
@@ -80,6 +81,7 @@ impl crate::wire::Telecommand for HoleMap5 {
 }
 
 impl crate::wire::Telemetry for HoleMap5 {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 251;
 
     #[inline]

@@ -71,6 +71,7 @@ impl HoleMap6 {
 }
 
 impl crate::wire::Telecommand for HoleMap6 {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 125;
 
     #[inline]
@@ -80,6 +81,7 @@ impl crate::wire::Telecommand for HoleMap6 {
 }
 
 impl crate::wire::Telemetry for HoleMap6 {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 252;
 
     #[inline]

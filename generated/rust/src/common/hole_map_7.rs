@@ -71,6 +71,7 @@ impl HoleMap7 {
 }
 
 impl crate::wire::Telecommand for HoleMap7 {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 126;
 
     #[inline]
@@ -80,6 +81,7 @@ impl crate::wire::Telecommand for HoleMap7 {
 }
 
 impl crate::wire::Telemetry for HoleMap7 {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 253;
 
     #[inline]

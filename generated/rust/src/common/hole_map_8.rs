@@ -71,6 +71,7 @@ impl HoleMap8 {
 }
 
 impl crate::wire::Telecommand for HoleMap8 {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 127;
 
     #[inline]
@@ -80,6 +81,7 @@ impl crate::wire::Telecommand for HoleMap8 {
 }
 
 impl crate::wire::Telemetry for HoleMap8 {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 254;
 
     #[inline]

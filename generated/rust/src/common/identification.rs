@@ -93,6 +93,7 @@ impl Identification {
 }
 
 impl crate::wire::Telemetry for Identification {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 128;
 
     #[inline]

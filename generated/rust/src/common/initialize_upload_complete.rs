@@ -66,6 +66,7 @@ impl InitializeUploadComplete {
 }
 
 impl crate::wire::Telemetry for InitializeUploadComplete {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 244;
 
     #[inline]

@@ -71,6 +71,7 @@ impl InitiateDownloadBurst {
 }
 
 impl crate::wire::Telecommand for InitiateDownloadBurst {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 119;
 
     #[inline]

@@ -69,6 +69,7 @@ impl InitiateFileUpload {
 }
 
 impl crate::wire::Telecommand for InitiateFileUpload {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 114;
 
     #[inline]

@@ -72,6 +72,7 @@ impl LastLoggedEvent {
 }
 
 impl crate::wire::Telemetry for LastLoggedEvent {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 141;
 
     #[inline]

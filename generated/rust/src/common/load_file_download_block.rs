@@ -87,6 +87,7 @@ impl LoadFileDownloadBlock {
 }
 
 impl crate::wire::Telecommand for LoadFileDownloadBlock {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 112;
 
     #[inline]

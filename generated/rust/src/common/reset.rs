@@ -70,6 +70,7 @@ impl Default for Reset {
 }
 
 impl crate::wire::Telecommand for Reset {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 1;
 
     #[inline]

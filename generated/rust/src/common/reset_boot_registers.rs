@@ -52,6 +52,7 @@ impl ResetBootRegisters {
 }
 
 impl crate::wire::Telecommand for ResetBootRegisters {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 6;
 
     #[inline]

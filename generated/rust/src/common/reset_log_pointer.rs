@@ -53,6 +53,7 @@ impl ResetLogPointer {
 }
 
 impl crate::wire::Telecommand for ResetLogPointer {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 4;
 
     #[inline]

@@ -53,6 +53,7 @@ impl ResetUploadBlock {
 }
 
 impl crate::wire::Telecommand for ResetUploadBlock {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 117;
 
     #[inline]

@@ -66,6 +66,7 @@ impl SdCardFormatEraseProgress {
 }
 
 impl crate::wire::Telemetry for SdCardFormatEraseProgress {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 234;
 
     #[inline]

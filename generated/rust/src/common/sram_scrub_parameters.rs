@@ -60,6 +60,7 @@ impl SramScrubParameters {
 }
 
 impl crate::wire::Telecommand for SramScrubParameters {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 8;
 
     #[inline]
@@ -69,6 +70,7 @@ impl crate::wire::Telecommand for SramScrubParameters {
 }
 
 impl crate::wire::Telemetry for SramScrubParameters {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 134;
 
     #[inline]

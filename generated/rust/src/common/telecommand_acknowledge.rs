@@ -90,6 +90,7 @@ impl TelecommandAcknowledge {
 }
 
 impl crate::wire::Telemetry for TelecommandAcknowledge {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 240;
 
     #[inline]

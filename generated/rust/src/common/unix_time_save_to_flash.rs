@@ -84,6 +84,7 @@ impl UnixTimeSaveToFlash {
 }
 
 impl crate::wire::Telecommand for UnixTimeSaveToFlash {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 9;
 
     #[inline]
@@ -93,6 +94,7 @@ impl crate::wire::Telecommand for UnixTimeSaveToFlash {
 }
 
 impl crate::wire::Telemetry for UnixTimeSaveToFlash {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 145;
 
     #[inline]

@@ -74,6 +74,7 @@ impl UploadBlockComplete {
 }
 
 impl crate::wire::Telemetry for UploadBlockComplete {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 245;
 
     #[inline]

@@ -100,6 +100,7 @@ impl ActuatorCommands {
 }
 
 impl crate::wire::Telemetry for ActuatorCommands {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 192;
 
     #[inline]

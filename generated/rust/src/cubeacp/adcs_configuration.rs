@@ -3554,6 +3554,7 @@ const MAX_LAG: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for AdcsConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 20;
 
     #[inline]
@@ -3563,6 +3564,7 @@ impl crate::wire::Telecommand for AdcsConfiguration {
 }
 
 impl crate::wire::Telemetry for AdcsConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 206;
 
     #[inline]

@@ -71,6 +71,7 @@ impl AdcsExecutionTimes {
 }
 
 impl crate::wire::Telemetry for AdcsExecutionTimes {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 196;
 
     #[inline]

@@ -146,6 +146,7 @@ const CUBESTAR_MCU_TEMPERATURE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for AdcsMiscCurrentMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 198;
 
     #[inline]

@@ -245,6 +245,7 @@ const GPS_POWER: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for AdcsPowerControl {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 11;
 
     #[inline]
@@ -254,6 +255,7 @@ impl crate::wire::Telecommand for AdcsPowerControl {
 }
 
 impl crate::wire::Telemetry for AdcsPowerControl {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 197;
 
     #[inline]

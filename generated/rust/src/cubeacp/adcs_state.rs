@@ -917,6 +917,7 @@ const ALTITUDE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for AdcsState {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 190;
 
     #[inline]

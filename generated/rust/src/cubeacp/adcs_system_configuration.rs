@@ -684,6 +684,7 @@ const CUBEWHEEL3_ENABLE_PIN: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for AdcsSystemConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 30;
 
     #[inline]
@@ -693,6 +694,7 @@ impl crate::wire::Telecommand for AdcsSystemConfiguration {
 }
 
 impl crate::wire::Telemetry for AdcsSystemConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 225;
 
     #[inline]

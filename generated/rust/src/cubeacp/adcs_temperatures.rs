@@ -128,6 +128,7 @@ const REDUNDANT_MAGNETOMETER_TEMPERATURE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for AdcsTemperatures {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 174;
 
     #[inline]

@@ -146,6 +146,7 @@ const Z_ANGULAR_RATE_COVARIANCE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for AngularRateCovariance {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 165;
 
     #[inline]

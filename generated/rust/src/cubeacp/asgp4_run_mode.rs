@@ -59,6 +59,7 @@ impl Asgp4RunMode {
 }
 
 impl crate::wire::Telecommand for Asgp4RunMode {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 31;
 
     #[inline]

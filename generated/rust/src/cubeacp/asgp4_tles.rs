@@ -161,6 +161,7 @@ const ASGP4_ERROR: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for Asgp4Tles {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 228;
 
     #[inline]

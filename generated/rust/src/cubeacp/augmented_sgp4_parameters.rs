@@ -520,6 +520,7 @@ const MAX_LAG: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for AugmentedSgp4Parameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 28;
 
     #[inline]
@@ -529,6 +530,7 @@ impl crate::wire::Telecommand for AugmentedSgp4Parameters {
 }
 
 impl crate::wire::Telemetry for AugmentedSgp4Parameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 227;
 
     #[inline]

@@ -68,6 +68,7 @@ impl ClearErrors {
 }
 
 impl crate::wire::Telecommand for ClearErrors {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 12;
 
     #[inline]

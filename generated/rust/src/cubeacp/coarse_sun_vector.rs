@@ -144,6 +144,7 @@ const COARSE_SUN_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for CoarseSunVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 152;
 
     #[inline]

@@ -144,6 +144,7 @@ const COMMANDED_YAW_ANGLE: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for CommandedAttitudeAngles {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 15;
 
     #[inline]
@@ -153,6 +154,7 @@ impl crate::wire::Telecommand for CommandedAttitudeAngles {
 }
 
 impl crate::wire::Telemetry for CommandedAttitudeAngles {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 199;
 
     #[inline]

@@ -70,6 +70,7 @@ impl ConvertToJpgFile {
 }
 
 impl crate::wire::Telecommand for ConvertToJpgFile {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 57;
 
     #[inline]

@@ -391,6 +391,7 @@ const CSS10_RELATIVE_SCALE: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for CssConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 24;
 
     #[inline]
@@ -400,6 +401,7 @@ impl crate::wire::Telecommand for CssConfiguration {
 }
 
 impl crate::wire::Telemetry for CssConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 139;
 
     #[inline]

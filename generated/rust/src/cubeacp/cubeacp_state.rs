@@ -91,6 +91,7 @@ impl CubeacpState {
 }
 
 impl crate::wire::Telemetry for CubeacpState {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 135;
 
     #[inline]

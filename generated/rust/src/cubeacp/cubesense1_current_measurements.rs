@@ -111,6 +111,7 @@ const CUBESENSE1_CAM_SRAM_CURRENT: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for Cubesense1CurrentMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 171;
 
     #[inline]

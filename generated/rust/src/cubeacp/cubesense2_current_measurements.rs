@@ -113,6 +113,7 @@ const CUBESENSE2_CAM_SRAM_CURRENT: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for Cubesense2CurrentMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 232;
 
     #[inline]

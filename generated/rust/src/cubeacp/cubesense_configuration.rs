@@ -732,6 +732,7 @@ const CAM2_BORESIGHT_Y: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for CubesenseConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 25;
 
     #[inline]
@@ -741,6 +742,7 @@ impl crate::wire::Telecommand for CubesenseConfiguration {
 }
 
 impl crate::wire::Telemetry for CubesenseConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 203;
 
     #[inline]

@@ -151,6 +151,7 @@ const Q2: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for CubestarEstimatedQuaternion {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 230;
 
     #[inline]

@@ -151,6 +151,7 @@ const Z_AXIS_RATE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for CubestarEstimatedRates {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 229;
 
     #[inline]

@@ -335,6 +335,7 @@ const ASGP4_MODE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for CurrentAdcsState {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 132;
 
     #[inline]

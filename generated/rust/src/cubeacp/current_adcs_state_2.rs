@@ -172,6 +172,7 @@ const CURRENT_MAGNETOMETER_SAMPLING_MODE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for CurrentAdcsState2 {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 224;
 
     #[inline]

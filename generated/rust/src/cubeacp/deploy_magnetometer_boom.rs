@@ -58,6 +58,7 @@ impl DeployMagnetometerBoom {
 }
 
 impl crate::wire::Telecommand for DeployMagnetometerBoom {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 7;
 
     #[inline]

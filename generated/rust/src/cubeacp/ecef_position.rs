@@ -74,6 +74,7 @@ impl EcefPosition {
 }
 
 impl crate::wire::Telemetry for EcefPosition {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 219;
 
     #[inline]

@@ -142,6 +142,7 @@ const ESTIMATED_YAW_ANGLE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for EstimatedAttitudeAngles {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 146;
 
     #[inline]

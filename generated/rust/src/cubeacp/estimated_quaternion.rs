@@ -70,6 +70,7 @@ impl EstimatedQuaternion {
 }
 
 impl crate::wire::Telemetry for EstimatedQuaternion {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 218;
 
     #[inline]

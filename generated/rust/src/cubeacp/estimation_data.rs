@@ -703,6 +703,7 @@ const Z_ANGULAR_RATE_COVARIANCE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for EstimationData {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 193;
 
     #[inline]

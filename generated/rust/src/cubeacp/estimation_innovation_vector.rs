@@ -152,6 +152,7 @@ const INNOVATION_VECTOR_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for EstimationInnovationVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 162;
 
     #[inline]

@@ -235,6 +235,7 @@ const CAM2_PERIOD: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for EstimationParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 27;
 
     #[inline]
@@ -244,6 +245,7 @@ impl crate::wire::Telecommand for EstimationParameters {
 }
 
 impl crate::wire::Telemetry for EstimationParameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 223;
 
     #[inline]

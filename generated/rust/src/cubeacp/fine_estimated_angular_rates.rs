@@ -154,6 +154,7 @@ const ESTIMATED_Z_ANGULAR_RATE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for FineEstimatedAngularRates {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 201;
 
     #[inline]

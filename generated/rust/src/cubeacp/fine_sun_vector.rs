@@ -141,6 +141,7 @@ const SUN_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for FineSunVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 153;
 
     #[inline]

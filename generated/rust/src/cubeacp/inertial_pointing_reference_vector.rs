@@ -152,6 +152,7 @@ const INERTIAL_REFERENCE_Z: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for InertialPointingReferenceVector {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 34;
 
     #[inline]
@@ -161,6 +162,7 @@ impl crate::wire::Telecommand for InertialPointingReferenceVector {
 }
 
 impl crate::wire::Telemetry for InertialPointingReferenceVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 238;
 
     #[inline]

@@ -144,6 +144,7 @@ const MAGNETIC_FIELD_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for MagneticFieldVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 151;
 
     #[inline]

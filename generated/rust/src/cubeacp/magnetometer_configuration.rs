@@ -603,6 +603,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S32: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for MagnetometerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 26;
 
     #[inline]
@@ -612,6 +613,7 @@ impl crate::wire::Telecommand for MagnetometerConfiguration {
 }
 
 impl crate::wire::Telemetry for MagnetometerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 204;
 
     #[inline]

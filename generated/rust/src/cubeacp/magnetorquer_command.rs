@@ -80,6 +80,7 @@ impl MagnetorquerCommand {
 }
 
 impl crate::wire::Telemetry for MagnetorquerCommand {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 157;
 
     #[inline]

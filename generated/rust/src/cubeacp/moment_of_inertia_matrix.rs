@@ -84,6 +84,7 @@ impl MomentOfInertiaMatrix {
 }
 
 impl crate::wire::Telecommand for MomentOfInertiaMatrix {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 41;
 
     #[inline]
@@ -93,6 +94,7 @@ impl crate::wire::Telecommand for MomentOfInertiaMatrix {
 }
 
 impl crate::wire::Telemetry for MomentOfInertiaMatrix {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 222;
 
     #[inline]

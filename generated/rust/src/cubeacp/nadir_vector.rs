@@ -141,6 +141,7 @@ const NADIR_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for NadirVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 154;
 
     #[inline]

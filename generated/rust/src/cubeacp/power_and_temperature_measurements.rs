@@ -546,6 +546,7 @@ const REDUNDANT_MAGNETOMETER_TEMPERATURE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for PowerAndTemperatureMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 195;
 
     #[inline]

@@ -149,6 +149,7 @@ const QUATERNION_COVARIANCE_Q3_RMS: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for QuaternionCovariance {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 164;
 
     #[inline]

@@ -148,6 +148,7 @@ const QUATERNION_ERROR_Q3: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for QuaternionErrorVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 163;
 
     #[inline]

@@ -144,6 +144,7 @@ const Z_ANGULAR_RATE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for RateSensorRates {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 155;
 
     #[inline]

@@ -74,6 +74,7 @@ impl RateSensorTemperatures {
 }
 
 impl crate::wire::Telemetry for RateSensorTemperatures {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 175;
 
     #[inline]

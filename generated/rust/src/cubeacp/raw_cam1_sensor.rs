@@ -79,6 +79,7 @@ impl RawCam1Sensor {
 }
 
 impl crate::wire::Telemetry for RawCam1Sensor {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 167;
 
     #[inline]

@@ -79,6 +79,7 @@ impl RawCam2Sensor {
 }
 
 impl crate::wire::Telemetry for RawCam2Sensor {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 166;
 
     #[inline]

@@ -98,6 +98,7 @@ impl RawCss1To6 {
 }
 
 impl crate::wire::Telemetry for RawCss1To6 {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 168;
 
     #[inline]

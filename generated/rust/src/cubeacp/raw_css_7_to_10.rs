@@ -84,6 +84,7 @@ impl RawCss7To10 {
 }
 
 impl crate::wire::Telemetry for RawCss7To10 {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 169;
 
     #[inline]

@@ -235,6 +235,7 @@ const Z_POS_STANDARD_DEVIATION: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for RawGpsMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 210;
 
     #[inline]

@@ -84,6 +84,7 @@ impl RawGpsStatus {
 }
 
 impl crate::wire::Telemetry for RawGpsStatus {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 176;
 
     #[inline]

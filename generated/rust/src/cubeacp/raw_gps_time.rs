@@ -60,6 +60,7 @@ impl RawGpsTime {
 }
 
 impl crate::wire::Telemetry for RawGpsTime {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 177;
 
     #[inline]

@@ -66,6 +66,7 @@ impl RawGpsX {
 }
 
 impl crate::wire::Telemetry for RawGpsX {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 178;
 
     #[inline]

@@ -66,6 +66,7 @@ impl RawGpsY {
 }
 
 impl crate::wire::Telemetry for RawGpsY {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 179;
 
     #[inline]

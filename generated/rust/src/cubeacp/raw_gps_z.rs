@@ -66,6 +66,7 @@ impl RawGpsZ {
 }
 
 impl crate::wire::Telemetry for RawGpsZ {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 180;
 
     #[inline]

@@ -74,6 +74,7 @@ impl RawMagnetometer {
 }
 
 impl crate::wire::Telemetry for RawMagnetometer {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 170;
 
     #[inline]

@@ -74,6 +74,7 @@ impl RawRateSensor {
 }
 
 impl crate::wire::Telemetry for RawRateSensor {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 216;
 
     #[inline]

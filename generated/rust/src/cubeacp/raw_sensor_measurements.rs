@@ -213,6 +213,7 @@ impl RawSensorMeasurements {
 }
 
 impl crate::wire::Telemetry for RawSensorMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 194;
 
     #[inline]

@@ -436,6 +436,7 @@ const Q2: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for RawStarTracker {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 211;
 
     #[inline]

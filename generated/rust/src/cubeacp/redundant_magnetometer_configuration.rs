@@ -643,6 +643,7 @@ const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S32: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for RedundantMagnetometerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 36;
 
     #[inline]
@@ -652,6 +653,7 @@ impl crate::wire::Telecommand for RedundantMagnetometerConfiguration {
 }
 
 impl crate::wire::Telemetry for RedundantMagnetometerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 205;
 
     #[inline]

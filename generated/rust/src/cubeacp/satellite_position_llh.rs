@@ -143,6 +143,7 @@ const ALTITUDE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for SatellitePositionLlh {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 150;
 
     #[inline]

@@ -51,6 +51,7 @@ impl SaveConfiguration {
 }
 
 impl crate::wire::Telecommand for SaveConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 63;
 
     #[inline]

@@ -63,6 +63,7 @@ impl SaveImage {
 }
 
 impl crate::wire::Telecommand for SaveImage {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 80;
 
     #[inline]

@@ -51,6 +51,7 @@ impl SaveOrbitParameters {
 }
 
 impl crate::wire::Telecommand for SaveOrbitParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 64;
 
     #[inline]

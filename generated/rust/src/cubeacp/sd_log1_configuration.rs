@@ -82,6 +82,7 @@ impl SdLog1Configuration {
 }
 
 impl crate::wire::Telecommand for SdLog1Configuration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 104;
 
     #[inline]
@@ -91,6 +92,7 @@ impl crate::wire::Telecommand for SdLog1Configuration {
 }
 
 impl crate::wire::Telemetry for SdLog1Configuration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 235;
 
     #[inline]

@@ -82,6 +82,7 @@ impl SdLog2Configuration {
 }
 
 impl crate::wire::Telecommand for SdLog2Configuration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 105;
 
     #[inline]
@@ -91,6 +92,7 @@ impl crate::wire::Telecommand for SdLog2Configuration {
 }
 
 impl crate::wire::Telemetry for SdLog2Configuration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 236;
 
     #[inline]

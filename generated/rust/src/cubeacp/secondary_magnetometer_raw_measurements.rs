@@ -78,6 +78,7 @@ impl SecondaryMagnetometerRawMeasurements {
 }
 
 impl crate::wire::Telemetry for SecondaryMagnetometerRawMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 215;
 
     #[inline]

@@ -63,6 +63,7 @@ impl SetAdcsRunMode {
 }
 
 impl crate::wire::Telecommand for SetAdcsRunMode {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 10;
 
     #[inline]

@@ -67,6 +67,7 @@ impl SetAttitudeControlMode {
 }
 
 impl crate::wire::Telecommand for SetAttitudeControlMode {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 13;
 
     #[inline]

@@ -116,6 +116,7 @@ const REFERENCE_SPIN_RATE: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for SetDetumblingControlParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 38;
 
     #[inline]
@@ -125,6 +126,7 @@ impl crate::wire::Telecommand for SetDetumblingControlParameters {
 }
 
 impl crate::wire::Telemetry for SetDetumblingControlParameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 208;
 
     #[inline]

@@ -73,6 +73,7 @@ impl SetMagnetorquerConfiguration {
 }
 
 impl crate::wire::Telecommand for SetMagnetorquerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 21;
 
     #[inline]
@@ -82,6 +83,7 @@ impl crate::wire::Telecommand for SetMagnetorquerConfiguration {
 }
 
 impl crate::wire::Telemetry for SetMagnetorquerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 136;
 
     #[inline]

@@ -171,6 +171,7 @@ const COMMANDED_Z_MAGNETORQUER_DUTY_CYCLE: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for SetMagnetorquerOutput {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 16;
 
     #[inline]

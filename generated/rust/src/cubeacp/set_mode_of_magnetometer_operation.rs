@@ -61,6 +61,7 @@ impl SetModeOfMagnetometerOperation {
 }
 
 impl crate::wire::Telecommand for SetModeOfMagnetometerOperation {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 56;
 
     #[inline]

@@ -173,6 +173,7 @@ const Z_RATE_SENSOR_OFFSET: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for SetRateGyroConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 23;
 
     #[inline]
@@ -182,6 +183,7 @@ impl crate::wire::Telecommand for SetRateGyroConfiguration {
 }
 
 impl crate::wire::Telemetry for SetRateGyroConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 138;
 
     #[inline]

@@ -122,6 +122,7 @@ const SUN_POINTING_FACET: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for SetReactionWheelControlParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 40;
 
     #[inline]
@@ -131,6 +132,7 @@ impl crate::wire::Telecommand for SetReactionWheelControlParameters {
 }
 
 impl crate::wire::Telemetry for SetReactionWheelControlParameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 217;
 
     #[inline]

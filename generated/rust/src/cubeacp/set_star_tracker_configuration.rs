@@ -428,6 +428,7 @@ const STAR_TRACKING_SEARCH_WIDTH: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for SetStarTrackerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 37;
 
     #[inline]
@@ -437,6 +438,7 @@ impl crate::wire::Telecommand for SetStarTrackerConfiguration {
 }
 
 impl crate::wire::Telemetry for SetStarTrackerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 202;
 
     #[inline]

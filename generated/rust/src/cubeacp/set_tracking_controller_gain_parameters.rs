@@ -90,6 +90,7 @@ impl SetTrackingControllerGainParameters {
 }
 
 impl crate::wire::Telecommand for SetTrackingControllerGainParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 54;
 
     #[inline]
@@ -99,6 +100,7 @@ impl crate::wire::Telecommand for SetTrackingControllerGainParameters {
 }
 
 impl crate::wire::Telemetry for SetTrackingControllerGainParameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 221;
 
     #[inline]

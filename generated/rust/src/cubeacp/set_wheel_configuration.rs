@@ -83,6 +83,7 @@ impl SetWheelConfiguration {
 }
 
 impl crate::wire::Telecommand for SetWheelConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 22;
 
     #[inline]
@@ -92,6 +93,7 @@ impl crate::wire::Telecommand for SetWheelConfiguration {
 }
 
 impl crate::wire::Telemetry for SetWheelConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 137;
 
     #[inline]

@@ -66,6 +66,7 @@ impl SetWheelSpeed {
 }
 
 impl crate::wire::Telecommand for SetWheelSpeed {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 17;
 
     #[inline]

@@ -102,6 +102,7 @@ impl SetYWheelControlParameters {
 }
 
 impl crate::wire::Telecommand for SetYWheelControlParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 39;
 
     #[inline]
@@ -111,6 +112,7 @@ impl crate::wire::Telecommand for SetYWheelControlParameters {
 }
 
 impl crate::wire::Telemetry for SetYWheelControlParameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 209;
 
     #[inline]

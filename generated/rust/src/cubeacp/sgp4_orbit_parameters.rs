@@ -91,6 +91,7 @@ impl Sgp4OrbitParameters {
 }
 
 impl crate::wire::Telecommand for Sgp4OrbitParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 45;
 
     #[inline]
@@ -100,6 +101,7 @@ impl crate::wire::Telecommand for Sgp4OrbitParameters {
 }
 
 impl crate::wire::Telemetry for Sgp4OrbitParameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 207;
 
     #[inline]

@@ -149,6 +149,7 @@ const STAR1_BODY_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for Star1BodyVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 181;
 
     #[inline]

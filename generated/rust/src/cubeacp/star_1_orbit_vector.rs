@@ -149,6 +149,7 @@ const STAR1_ORBIT_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for Star1OrbitVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 184;
 
     #[inline]

@@ -72,6 +72,7 @@ impl Star1RawData {
 }
 
 impl crate::wire::Telemetry for Star1RawData {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 212;
 
     #[inline]

@@ -149,6 +149,7 @@ const STAR2_BODY_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for Star2BodyVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 182;
 
     #[inline]

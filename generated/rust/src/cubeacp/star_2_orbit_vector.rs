@@ -149,6 +149,7 @@ const STAR2_ORBIT_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for Star2OrbitVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 185;
 
     #[inline]

@@ -72,6 +72,7 @@ impl Star2RawData {
 }
 
 impl crate::wire::Telemetry for Star2RawData {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 213;
 
     #[inline]

@@ -149,6 +149,7 @@ const STAR3_BODY_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for Star3BodyVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 183;
 
     #[inline]

@@ -149,6 +149,7 @@ const STAR3_ORBIT_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for Star3OrbitVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 186;
 
     #[inline]

@@ -72,6 +72,7 @@ impl Star3RawData {
 }
 
 impl crate::wire::Telemetry for Star3RawData {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 214;
 
     #[inline]

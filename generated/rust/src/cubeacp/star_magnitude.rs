@@ -76,6 +76,7 @@ impl StarMagnitude {
 }
 
 impl crate::wire::Telemetry for StarMagnitude {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 187;
 
     #[inline]

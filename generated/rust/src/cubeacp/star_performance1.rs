@@ -102,6 +102,7 @@ impl StarPerformance1 {
 }
 
 impl crate::wire::Telemetry for StarPerformance1 {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 188;
 
     #[inline]

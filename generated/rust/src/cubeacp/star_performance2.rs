@@ -113,6 +113,7 @@ impl StarPerformance2 {
 }
 
 impl crate::wire::Telemetry for StarPerformance2 {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 231;
 
     #[inline]

@@ -63,6 +63,7 @@ impl StatusOfImageCaptureAndSaveOperation {
 }
 
 impl crate::wire::Telemetry for StatusOfImageCaptureAndSaveOperation {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 233;
 
     #[inline]

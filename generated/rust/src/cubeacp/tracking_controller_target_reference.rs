@@ -75,6 +75,7 @@ impl TrackingControllerTargetReference {
 }
 
 impl crate::wire::Telecommand for TrackingControllerTargetReference {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 55;
 
     #[inline]
@@ -84,6 +85,7 @@ impl crate::wire::Telecommand for TrackingControllerTargetReference {
 }
 
 impl crate::wire::Telemetry for TrackingControllerTargetReference {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 200;
 
     #[inline]

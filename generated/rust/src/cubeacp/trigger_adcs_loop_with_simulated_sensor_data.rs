@@ -556,6 +556,7 @@ const Z_POS_STANDARD_DEVIATION: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for TriggerAdcsLoopWithSimulatedSensorData {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 19;
 
     #[inline]

@@ -73,6 +73,7 @@ impl UartLogConfiguration {
 }
 
 impl crate::wire::Telecommand for UartLogConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 106;
 
     #[inline]
@@ -82,6 +83,7 @@ impl crate::wire::Telecommand for UartLogConfiguration {
 }
 
 impl crate::wire::Telemetry for UartLogConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 237;
 
     #[inline]

@@ -76,6 +76,7 @@ impl Default for UserCodedControllerAndEstimatorParameters {
 }
 
 impl crate::wire::Telecommand for UserCodedControllerAndEstimatorParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 29;
 
     #[inline]
@@ -85,6 +86,7 @@ impl crate::wire::Telecommand for UserCodedControllerAndEstimatorParameters {
 }
 
 impl crate::wire::Telemetry for UserCodedControllerAndEstimatorParameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 226;
 
     #[inline]

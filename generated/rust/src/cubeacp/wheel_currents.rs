@@ -151,6 +151,7 @@ const WHEEL3_CURRENT: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for WheelCurrents {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 173;
 
     #[inline]

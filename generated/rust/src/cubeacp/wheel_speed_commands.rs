@@ -68,6 +68,7 @@ impl WheelSpeedCommands {
 }
 
 impl crate::wire::Telemetry for WheelSpeedCommands {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 158;
 
     #[inline]

@@ -107,6 +107,7 @@ impl DeploymentStatus {
 }
 
 impl crate::wire::Telemetry for DeploymentStatus {
+    const NODE: &'static str = "cubemag";
     const TELEMETRY_ID: u8 = 190;
 
     #[inline]

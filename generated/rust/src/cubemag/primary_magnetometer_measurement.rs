@@ -90,6 +90,7 @@ impl PrimaryMagnetometerMeasurement {
 }
 
 impl crate::wire::Telemetry for PrimaryMagnetometerMeasurement {
+    const NODE: &'static str = "cubemag";
     const TELEMETRY_ID: u8 = 197;
 
     #[inline]

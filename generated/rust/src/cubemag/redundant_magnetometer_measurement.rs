@@ -90,6 +90,7 @@ impl RedundantMagnetometerMeasurement {
 }
 
 impl crate::wire::Telemetry for RedundantMagnetometerMeasurement {
+    const NODE: &'static str = "cubemag";
     const TELEMETRY_ID: u8 = 193;
 
     #[inline]

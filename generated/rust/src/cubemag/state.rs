@@ -83,6 +83,7 @@ impl State {
 }
 
 impl crate::wire::Telemetry for State {
+    const NODE: &'static str = "cubemag";
     const TELEMETRY_ID: u8 = 188;
 
     #[inline]

@@ -66,6 +66,7 @@ impl MotorPower {
 }
 
 impl crate::wire::Telemetry for MotorPower {
+    const NODE: &'static str = "cubewheel";
     const TELEMETRY_ID: u8 = 197;
 
     #[inline]

@@ -70,6 +70,7 @@ impl WheelReferenceSpeed {
 }
 
 impl crate::wire::Telemetry for WheelReferenceSpeed {
+    const NODE: &'static str = "cubewheel";
     const TELEMETRY_ID: u8 = 196;
 
     #[inline]

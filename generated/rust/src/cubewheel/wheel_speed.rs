@@ -71,6 +71,7 @@ impl WheelSpeed {
 }
 
 impl crate::wire::Telemetry for WheelSpeed {
+    const NODE: &'static str = "cubewheel";
     const TELEMETRY_ID: u8 = 188;
 
     #[inline]

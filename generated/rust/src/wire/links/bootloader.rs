@@ -25,6 +25,10 @@ pub const LONGEST: usize = 28;
 #[rustfmt::skip]
 pub static LINK: Link = Link {
     node: "bootloader",
+    nodes: &[
+        "bootloader",
+        "common",
+    ],
     node_type: Some(110),
     interface_version: Some(3),
     longest: 23,

@@ -35,6 +35,9 @@ pub const LONGEST: usize = 28;
 #[rustfmt::skip]
 pub static LINK: Link = Link {
     node: "common",
+    nodes: &[
+        "common",
+    ],
     node_type: None,
     interface_version: None,
     longest: 23,

@@ -39,6 +39,10 @@ pub const LONGEST: usize = 506;
 #[rustfmt::skip]
 pub static LINK: Link = Link {
     node: "cubeacp",
+    nodes: &[
+        "cubeacp",
+        "common",
+    ],
     node_type: Some(10),
     interface_version: Some(7),
     longest: 506,
