@@ -11,7 +11,7 @@ with socket.create_connection(("127.0.0.1", 4000)) as port:
     def read(seconds):
         return port.recv(4096) if select.select([port], [], [], seconds)[0] else b""
 
-    device = Session(LINK, port.sendall, read)  # a serial port's write and read do as well
+    device = Session(LINK, port.sendall, read)  # a port of pyserial: Session(LINK, *serial_port(port))
     device.send(SetAdcsRunMode(enabled=AdcsRunMode.ENABLED))  # returns when it is acknowledged
     angles = device.get(EstimatedAttitudeAngles)
     print(f"roll {angles.estimated_roll_angle_deg:.2f} deg")

@@ -68,3 +68,4 @@ def test_a_wheel_holds_templates_runtimes_icds_and_schemas_and_works_alone(tmp_p
     assert result.returncode == 0, result.stderr
     assert (tmp_path / "out" / "cubeacp.h").is_file()
     assert Path(site, "icdgen", "icd", "schema.json").is_file()
+    assert [path for path in site.rglob("*") if "testee" in path.name] == []

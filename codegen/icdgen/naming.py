@@ -7,6 +7,9 @@ import unicodedata
 from collections.abc import Iterable
 from functools import lru_cache
 
+DEVICES = ("aux", "con", "nul", "prn", *(f"{port}{number}" for port in ("com", "lpt") for number in range(1, 10)))
+"""What no file and no folder can be called on Windows, whatever its suffix."""
+
 _SEPARATORS = re.compile(r"[^A-Za-z0-9]+")
 _DIGITS = re.compile(r"[0-9]*")
 _HUMPS = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z0-9])(?=[A-Z][a-z])")

@@ -7,25 +7,32 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from icdgen import fingerprints, shipped
 from icdgen.errors import UserError
+
+if TYPE_CHECKING:
+    from icdgen.backends import Backend
 
 
 class Renderer:
     """Renders the templates of one backend and hands out its runtime; files in ``override`` (``--templates DIR``) win.
 
+    ``templates`` and ``runtime`` are the folders of both, where they are not ours.
     ``looked_at`` tells of every file below ``override`` that was read or looked for, with its fingerprint as of just before.
     """
 
-    def __init__(self, backend: str, override: Path | None = None) -> None:
+    def __init__(
+        self, backend: str, override: Path | None = None, templates: Path | None = None, runtime: Path | None = None
+    ) -> None:
         import jinja2
 
         self._own = [override / backend, override] if override else []
-        self._runtime = shipped.runtimes() / backend
+        self._runtime = runtime or shipped.runtimes() / backend
         self.looked_at: dict[Path, str] = {}
         self._environment = jinja2.Environment(
-            loader=_loader(self._own, shipped.templates() / backend, self.looked_at),
+            loader=_loader(self._own, templates or shipped.templates() / backend, self.looked_at),
             undefined=jinja2.StrictUndefined,
             autoescape=lambda template: template is not None and template.endswith(".html.j2"),
             trim_blocks=True,
@@ -33,6 +40,12 @@ class Renderer:
             keep_trailing_newline=True,
             auto_reload=False,
         )
+
+    @classmethod
+    def of(cls, backend: Backend, override: Path | None = None) -> Renderer:
+        """The renderer of a backend, which may say where its templates and its runtime lie."""
+        folders = (getattr(backend, "templates", None), getattr(backend, "runtime", None))
+        return cls(backend.name, override, *folders)
 
     def __call__(self, template: str, **values: object) -> str:
         """The text of ``template`` (its file name, such as ``message.h.j2``). Raises `UserError` for a bad template."""
@@ -52,7 +65,7 @@ class Renderer:
                 f"{_where(error, template)}: {type(error).__name__}: {error}", "mend the template"
             ) from error
 
-    def runtime(self, folder: str = ".") -> list[str]:
+    def runtime_files(self, folder: str = ".") -> list[str]:
         """The files of the backend's runtime below ``folder``, as paths within the runtime."""
         found = (path for path in (self._runtime / folder).rglob("*") if path.is_file() and path.suffix != ".pyc")
         return sorted(path.relative_to(self._runtime).as_posix() for path in found)

@@ -201,7 +201,8 @@ typedef enum {
     ICD_ROLE_INTERFACE_VERSION,
     ICD_ROLE_ID,
     ICD_ROLE_PROCESSED,
-    ICD_ROLE_PARAMETER
+    ICD_ROLE_PARAMETER,
+    ICD_ROLE_PROGRAM
 } icd_role_t;
 
 /** Where the field of a role lies, in bits. */
@@ -277,6 +278,9 @@ typedef struct {
     uint32_t finalize_timeout;
     uint32_t rounds;
     bool checksum_covers_fill;
+    uint32_t destination_bytes;  /**< That a destination holds, 0 if the ICD does not say. */
+    const uint8_t *destinations; /**< Those that are supported, NULL for all. */
+    uint16_t destination_count;
 } icd_upload_form_t;
 
 /** Erasing files, or formatting their medium. */
@@ -285,6 +289,15 @@ typedef struct {
     uint32_t poll_interval;
     uint32_t timeout;
 } icd_erase_form_t;
+
+/** What a telecommand starts for a stored program, and a frame tells the end of. */
+typedef struct {
+    icd_step_t request, progress;
+    uint32_t poll_interval;
+    uint32_t timeout;
+    const uint8_t *programs; /**< Those that it may be asked for, NULL for all. */
+    uint16_t program_count;
+} icd_operation_form_t;
 
 /** How a client waits and tries again, in milliseconds. */
 typedef struct {
@@ -296,6 +309,8 @@ typedef struct {
 
 /** Everything about the protocol of a node. What the ICD does not describe is NULL. */
 typedef struct {
+    const char *const *nodes; /**< Whose messages it has: its own, then those of the nodes that it includes. */
+    uint16_t node_count;
     bool little; /**< Byte order of numbers. */
     bool msb0;   /**< Bit 0 of a byte is the most significant one. */
     uint8_t telemetry_first, telemetry_last;
@@ -331,8 +346,30 @@ typedef struct {
     const icd_upload_form_t *upload;
     const icd_erase_form_t *erase;
     const icd_erase_form_t *format;
+    const icd_operation_form_t *program_copy;
+    const icd_operation_form_t *program_information;
     const icd_step_t *identification;
 } icd_link_t;
+
+static inline bool icdgen_same_name(const char *one, const char *other)
+{
+    while (*one != '\0' && *one == *other) {
+        ++one;
+        ++other;
+    }
+    return *one == *other;
+}
+
+/** Whether the node has the messages of that one, which is so of itself and of those that it includes. */
+static inline bool icd_has_messages_of(const icd_link_t *link, const char *node)
+{
+    for (size_t i = 0; i < link->node_count; ++i) {
+        if (icdgen_same_name(link->nodes[i], node)) {
+            return true;
+        }
+    }
+    return false;
+}
 
 /** The message of an id; NULL if the node has none. */
 static inline const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, unsigned id)
@@ -420,6 +457,12 @@ static inline void icdgen_put(
         below += link->little ? count : 0u;
         at += count;
     }
+}
+
+/* Whether a number is one of those that are allowed, of which NULL stands for all. */
+static inline bool icdgen_allowed(const uint8_t *allowed, size_t count, uint8_t number)
+{
+    return allowed == NULL || memchr(allowed, number, count) != NULL;
 }
 
 /** Who the node is. */
@@ -1869,6 +1912,7 @@ typedef struct {
     uint8_t poll_id;
     bool poll;        /* to be sent: the request for the acknowledge frame ... */
     uint32_t pending; /* ... and the request, so many times */
+    uint32_t owed;    /* I2C: transactions taken of which icd_client_transferred() was not told */
     icd_uart_encoder_t encoder;
     icd_can_splitter_t splitter;
     uint8_t chunk[32];
@@ -2046,6 +2090,25 @@ static inline icd_status_t icd_client_start(
     return ICD_OK;
 }
 
+/**
+ * Gives up the request, without an event, and what of it has not been taken: the next one may begin. A late reply to
+ * this one is ICD_EVENT_STRAY.
+ */
+static inline void icd_client_cancel(icd_client_t *client)
+{
+    client->pending = 0;
+    client->poll = false;
+    client->encoder.ended = true;
+    client->encoder.pending = 0;
+    client->splitter.next = client->splitter.count;
+    if (client->state != ICD_CLIENT_IDLE && client->attempts != 0u) {
+        client->echo = true;
+        client->echo_id = client->message->id;
+        client->echo_end = client->until + client->settings.reply_timeout;
+    }
+    client->state = ICD_CLIENT_IDLE;
+}
+
 static inline void icdgen_client_ignore(void *context, const icd_event_t *event)
 {
     (void)context;
@@ -2083,8 +2146,19 @@ static inline icd_status_t icd_client_send(
     return icd_client_start(client, now, &request, on_event, context);
 }
 
-/** Requests the telemetry of that name, such as ICD_REQUEST(&client, now, NODE_IDENTIFICATION). */
-#define ICD_REQUEST(client, now, name) icd_client_request(client, now, ICDGEN_U8(name##_TELEMETRY))
+static inline icd_status_t icdgen_client_request_of(icd_client_t *client, uint32_t now, const char *node, unsigned id)
+{
+    if (!icd_has_messages_of(client->link, node)) {
+        return ICD_ERROR_UNKNOWN_ID;
+    }
+    return icd_client_request(client, now, ICDGEN_U8(id));
+}
+
+/**
+ * Requests the telemetry of that name, such as ICD_REQUEST(&client, now, NODE_IDENTIFICATION); ICD_ERROR_UNKNOWN_ID if
+ * it is a message of another node, whatever its id.
+ */
+#define ICD_REQUEST(client, now, name) icdgen_client_request_of(client, now, name##_TELEMETRY)
 
 /** The next bytes for the UART; false when there are none. They last until the next call. */
 static inline bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count)
@@ -2123,12 +2197,16 @@ static inline bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t
     return icd_can_next(&client->splitter, packet);
 }
 
-/** The next transaction on I2C: bytes to write, and how many to read then; false when there is none. */
+/**
+ * The next transaction on I2C: bytes to write, and how many to read then; false when there is none.
+ * icd_client_transferred() is told of each that was taken, once and in this order.
+ */
 static inline bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read)
 {
     *read = 0;
     if (client->bus == ICD_BUS_I2C && client->poll) {
         client->poll = false;
+        client->owed++;
         *bytes = &client->poll_id;
         *count = 1;
         return icd_i2c_read_length(client->link, client->poll_id, client->checks_telemetry, read) == ICD_OK;
@@ -2137,6 +2215,7 @@ static inline bool icd_client_transfer(icd_client_t *client, const uint8_t **byt
         return false;
     }
     client->pending--;
+    client->owed++;
     *bytes = client->whole;
     *count = client->whole_length;
     if (client->direction == ICD_TELEMETRY) {
@@ -2388,22 +2467,32 @@ static inline void icdgen_client_polled(
     }
 }
 
+/* I2C: whether the last transaction was taken, and is that of the request. */
+static inline bool icdgen_client_awaits_transfer(const icd_client_t *client, uint32_t owed)
+{
+    return client->owed == owed && (client->state == ICD_CLIENT_WAIT || client->state == ICD_CLIENT_POLL) &&
+        !icdgen_client_has_output(client);
+}
+
 /**
- * I2C: takes what was read in the transaction; `bytes` NULL: it failed. Of a write without reading, anything but NULL.
+ * I2C: takes what was read in the oldest transaction that was taken and not told of; `bytes` NULL: it failed. Of a
+ * write without reading, anything but NULL. What a request owed that is over is ICD_EVENT_STRAY.
  */
 static inline void icd_client_transferred(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
     size_t length = 0;
-    icd_client_tick(client, now, on_event, context);
-    if (client->state == ICD_CLIENT_POLL) {
+    const bool awaited = icdgen_client_awaits_transfer(client, 1);
+    client->owed -= client->owed != 0u ? 1u : 0u;
+    icd_client_tick(client, now, on_event, context); /* may end that request, and begin the next one */
+    if (!awaited || !icdgen_client_awaits_transfer(client, 0)) {
+        icdgen_client_tell(ICD_EVENT_STRAY, 0, bytes, bytes != NULL ? count : 0u, on_event, context);
+    } else if (client->state == ICD_CLIENT_POLL) {
         if (bytes == NULL) {
             icdgen_client_again(client, now, on_event, context);
         } else {
             icdgen_client_polled(client, now, bytes, count, on_event, context);
         }
-    } else if (client->state != ICD_CLIENT_WAIT) {
-        icdgen_client_tell(ICD_EVENT_STRAY, 0, bytes, bytes != NULL ? count : 0u, on_event, context);
     } else if (bytes == NULL) {
         icdgen_client_no_reply(client, now, on_event, context);
     } else if (client->direction == ICD_TELEMETRY) {
@@ -2434,7 +2523,8 @@ typedef enum {
     ICD_PARAMETER, /**< The node cannot load this block. */
     ICD_LENGTH,    /**< The block, or a frame, has another length than was asked for. */
     ICD_ROUNDS,    /**< Packets were still missing after so many rounds. */
-    ICD_CHECKSUM   /**< After so many rounds the checksum was still wrong. */
+    ICD_CHECKSUM,  /**< After so many rounds the checksum was still wrong. */
+    ICD_FAILED     /**< The node tells that what it was asked for failed. */
 } icd_result_t;
 
 /** Bytes of the longest message that takes part in a procedure, of any node. */
@@ -2459,6 +2549,7 @@ struct icd_procedure {
     const icd_step_t *polled; /* the frame that is polled until a flag is as wanted */
     icd_role_t flag;
     bool wanted;
+    uint8_t program; /* of which the frame must be, if it says of which one it is */
     uint32_t interval;
     uint32_t poll_end;
     uint8_t state;
@@ -2528,6 +2619,14 @@ static inline void icdgen_poll(
     procedure->poll_end = procedure->now + timeout;
 }
 
+/* Whether the frame is about what was asked for. */
+static inline bool icdgen_is_meant(const icd_procedure_t *procedure, const uint8_t *frame)
+{
+    const icd_step_t *const step = procedure->polled;
+    return icdgen_place(step, ICD_ROLE_PROGRAM) == NULL ||
+        icdgen_get(procedure->link, step, frame, ICD_ROLE_PROGRAM) == procedure->program;
+}
+
 /* Whether polling goes on after this outcome. */
 static inline bool icdgen_polls_on(icd_procedure_t *procedure, const icd_event_t *outcome)
 {
@@ -2541,7 +2640,8 @@ static inline bool icdgen_polls_on(icd_procedure_t *procedure, const icd_event_t
         icdgen_end(procedure, ICD_LENGTH);
         return true;
     }
-    if ((icdgen_get(link, step, outcome->data, procedure->flag) != 0u) == procedure->wanted ||
+    if (((icdgen_get(link, step, outcome->data, procedure->flag) != 0u) == procedure->wanted &&
+         icdgen_is_meant(procedure, outcome->data)) ||
         icdgen_get(link, step, outcome->data, ICD_ROLE_ERROR) != 0u) {
         procedure->polled = NULL;
         return false;
@@ -2662,7 +2762,7 @@ static inline icd_status_t icdgen_procedure_init(
     procedure->link = link;
     procedure->resume = resume;
     procedure->result = ICD_RUNNING;
-    return supported && link->files != NULL ? ICD_OK : ICD_ERROR_UNSUPPORTED;
+    return supported ? ICD_OK : ICD_ERROR_UNSUPPORTED;
 }
 
 /** A file of the node; `time` is packed. */
@@ -3158,11 +3258,8 @@ static inline void icdgen_upload_packet(const icd_upload_t *upload, uint32_t pos
     memcpy(packet, upload->file + upload->sent + at, left < files->packet_bytes ? left : files->packet_bytes);
 }
 
-/* Reads the next piece of the hole map, or the checksum once no packet is missing. */
-static inline void icdgen_upload_map(icd_upload_t *upload);
-
-/* Sends the next packet that is missing, or reads the hole map. */
-static inline void icdgen_upload_next(icd_upload_t *upload)
+/* Sends the next packet that is missing; false if there is none behind those that were sent. */
+static inline bool icdgen_upload_send(icd_upload_t *upload)
 {
     icd_procedure_t *const procedure = &upload->procedure;
     const icd_link_t *const link = procedure->link;
@@ -3172,16 +3269,16 @@ static inline void icdgen_upload_next(icd_upload_t *upload)
         upload->next++;
     }
     if (upload->next == upload->count) {
-        upload->next = 0;
-        icdgen_upload_map(upload);
-        return;
+        return false;
     }
     icdgen_command(procedure, step, false, ICDGEN_UPLOAD_PACKET);
     icdgen_put(link, step, procedure->data, ICD_ROLE_NUMBER, link->files->first_packet + upload->next);
     icdgen_upload_packet(upload, upload->next, procedure->data + (bytes->at / 8u));
     upload->next++;
+    return true;
 }
 
+/* Begins another round, or reads the checksum if no packet is missing. */
 static inline void icdgen_upload_round(icd_upload_t *upload)
 {
     icd_procedure_t *const procedure = &upload->procedure;
@@ -3199,9 +3296,10 @@ static inline void icdgen_upload_round(icd_upload_t *upload)
     }
     upload->rounds++;
     upload->next = 0;
-    icdgen_upload_next(upload);
+    (void)icdgen_upload_send(upload);
 }
 
+/* Reads the next piece of the hole map, and what it tells once all is read. */
 static inline void icdgen_upload_map(icd_upload_t *upload)
 {
     const icd_hole_map_form_t *const form = upload->procedure.link->hole_map;
@@ -3209,6 +3307,15 @@ static inline void icdgen_upload_map(icd_upload_t *upload)
         icdgen_upload_round(upload);
     } else {
         icdgen_ask(&upload->procedure, form->messages[upload->next].telemetry, ICDGEN_UPLOAD_MAP);
+    }
+}
+
+/* Sends the next packet that is missing, or reads the hole map. */
+static inline void icdgen_upload_next(icd_upload_t *upload)
+{
+    if (!icdgen_upload_send(upload)) {
+        upload->next = 0;
+        icdgen_upload_map(upload);
     }
 }
 
@@ -3335,7 +3442,8 @@ static inline void icdgen_upload_resume(icd_procedure_t *procedure, const icd_ev
 
 /**
  * The file must stay where it is. `block`: bytes a block, 0 for those of the ICD. `bitmap` holds icd_block_bitmap()
- * bytes.
+ * bytes. ICD_ERROR_UNSUPPORTED if the node takes no uploads, ICD_ERROR_RANGE if the destination is not supported,
+ * ICD_ERROR_LENGTH if it holds less.
  */
 static inline icd_status_t icd_upload_init(
     icd_upload_t *upload,
@@ -3350,6 +3458,12 @@ static inline icd_status_t icd_upload_init(
     memset(upload, 0, sizeof *upload);
     if (icdgen_procedure_init(&upload->procedure, link, known, icdgen_upload_resume) != ICD_OK) {
         return ICD_ERROR_UNSUPPORTED;
+    }
+    if (!icdgen_allowed(link->upload->destinations, link->upload->destination_count, destination)) {
+        return ICD_ERROR_RANGE;
+    }
+    if (link->upload->destination_bytes != 0u && size > link->upload->destination_bytes) {
+        return ICD_ERROR_LENGTH;
     }
     upload->destination = destination;
     upload->file = file;
@@ -3409,6 +3523,80 @@ static inline icd_status_t icd_format_init(icd_format_t *format, const icd_link_
     format->form = link->format;
     format->all = true;
     return icdgen_procedure_init(&format->procedure, link, link->format != NULL, icdgen_erase_resume);
+}
+
+/** What a node does with a stored program. `procedure` goes to the functions of icd_procedure_t. */
+typedef struct {
+    icd_procedure_t procedure;
+    const icd_operation_form_t *form;
+    uint32_t size;     /**< Of the program in bytes, once the information is ICD_DONE. */
+    uint32_t checksum; /**< Likewise. */
+} icd_program_operation_t;
+
+typedef icd_program_operation_t icd_program_copy_t;
+typedef icd_program_operation_t icd_program_information_t;
+
+enum { ICDGEN_PROGRAM_START, ICDGEN_PROGRAM_BEGUN, ICDGEN_PROGRAM_ENDED };
+
+/* The node says that it is done, or that it failed. */
+static inline void icdgen_program_ended(icd_program_operation_t *operation, const uint8_t *frame)
+{
+    const icd_link_t *const link = operation->procedure.link;
+    const icd_step_t *const step = &operation->form->progress;
+    if (icdgen_get(link, step, frame, ICD_ROLE_ERROR) != 0u) {
+        icdgen_end(&operation->procedure, ICD_FAILED);
+    } else {
+        operation->size = icdgen_get(link, step, frame, ICD_ROLE_SIZE);
+        operation->checksum = icdgen_get(link, step, frame, ICD_ROLE_CHECKSUM);
+        icdgen_end(&operation->procedure, ICD_DONE);
+    }
+}
+
+static inline void icdgen_program_resume(icd_procedure_t *procedure, const icd_event_t *outcome)
+{
+    icd_program_operation_t *const operation = ICDGEN_CAST(icd_program_operation_t *, ICDGEN_CAST(void *, procedure));
+    const icd_operation_form_t *const form = operation->form;
+    const bool tells_ready = icdgen_place(&form->progress, ICD_ROLE_READY) != NULL;
+    if (procedure->state == ICDGEN_PROGRAM_START) {
+        icdgen_command(procedure, &form->request, true, ICDGEN_PROGRAM_BEGUN);
+        icdgen_put(procedure->link, &form->request, procedure->data, ICD_ROLE_PROGRAM, procedure->program);
+    } else if (procedure->state == ICDGEN_PROGRAM_BEGUN) {
+        icdgen_poll(
+            procedure, &form->progress, tells_ready ? ICD_ROLE_READY : ICD_ROLE_BUSY, tells_ready, form->poll_interval,
+            form->timeout, ICDGEN_PROGRAM_ENDED);
+    } else {
+        icdgen_program_ended(operation, outcome->data);
+    }
+}
+
+static inline icd_status_t icdgen_program_init(
+    icd_program_operation_t *operation, const icd_link_t *link, const icd_operation_form_t *form, uint8_t program)
+{
+    const icd_status_t status = icdgen_procedure_init(&operation->procedure, link, form != NULL, icdgen_program_resume);
+    operation->form = form;
+    operation->size = 0;
+    operation->checksum = 0;
+    operation->procedure.program = program;
+    if (status == ICD_OK && !icdgen_allowed(form->programs, form->program_count, program)) {
+        return ICD_ERROR_RANGE;
+    }
+    return status;
+}
+
+/**
+ * Copies a stored program to where it can run. ICD_ERROR_RANGE if it may not be asked for, ICD_ERROR_UNSUPPORTED if the
+ * node has no such operation.
+ */
+static inline icd_status_t icd_program_copy_init(icd_program_copy_t *copy, const icd_link_t *link, uint8_t program)
+{
+    return icdgen_program_init(copy, link, link->program_copy, program);
+}
+
+/** Reads `size` and `checksum` of a stored program; refuses as icd_program_copy_init() does. */
+static inline icd_status_t icd_program_information_init(
+    icd_program_information_t *information, const icd_link_t *link, uint8_t program)
+{
+    return icdgen_program_init(information, link, link->program_information, program);
 }
 
 #endif /* ICDGEN_WIRE_H */

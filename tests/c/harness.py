@@ -9,8 +9,10 @@ from pathlib import Path
 
 import jinja2
 
-from icdgen.backends.c import CBackend, encoding
-from icdgen.backends.c.plan import Plan, Planner
+from icdgen.backends.c import CBackend
+from icdgen.backends.c.names import stem
+from icdgen.backends.c.types import type_of
+from icdgen.describe import MessageDescription, describe
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from tests.conformance.icds import SHIPPED, read, shipped  # noqa: F401  (tests take them from here)
@@ -62,10 +64,10 @@ def compile_all(icd: Icd, folder: Path, compiler: str, standard: str, *options: 
 def wrappers(icd: Icd) -> str:
     """A source that calls every decode and encode function, each from a function of its own."""
     text = "".join(f'#include "{node.name}.h"\n' for node in icd.nodes)
-    for stem in (target.plan.stem for target in targets(icd)):
+    for name in (stem(target.message) for target in targets(icd)):
         for head, call in (
-            (f"d_{stem}({stem}_t *m, const uint8_t *b, size_t n)", f"{stem}_decode(m, b, n)"),
-            (f"e_{stem}(const {stem}_t *m, uint8_t *b, size_t n)", f"{stem}_encode(m, b, n)"),
+            (f"d_{name}({name}_t *m, const uint8_t *b, size_t n)", f"{name}_decode(m, b, n)"),
+            (f"e_{name}(const {name}_t *m, uint8_t *b, size_t n)", f"{name}_encode(m, b, n)"),
         ):
             text += f"icd_status_t {head};\nicd_status_t {head} {{ return {call}; }}\n"
     return text
@@ -75,22 +77,21 @@ def wrappers(icd: Icd) -> str:
 class Target:
     """A message with where each raw value stands in the record that the test program reads and writes."""
 
-    plan: Plan
+    message: MessageDescription
     places: tuple[int, ...]
     size: int
 
 
 def targets(icd: Icd) -> list[Target]:
     """All messages, in the order of the test program."""
-    planner = Planner(icd)
     found = []
-    for node in icd.nodes:
+    for node in describe(icd).nodes:
         for message in node.messages:
             places, at = [], 0
-            for field in message.fields:
+            for field in message.message.fields:
                 places.append(at)
                 at += field.bits // 8 if field.type == "bytes" else 8
-            found.append(Target(planner.plan(message), tuple(places), at))
+            found.append(Target(message, tuple(places), at))
     return found
 
 
@@ -103,9 +104,10 @@ def frames_source(icd: Icd) -> str:
 
 
 def _row(target: Target) -> dict[str, object]:
-    plan = target.plan
+    message = target.message
     collect, assign, fields = [], [], []
-    for (field, name, storage), place in zip(plan.members, target.places, strict=True):
+    for one, place in zip(message.fields, target.places, strict=True):
+        field, name = one.field, one.name
         fields.append({"at": field.at, "bits": field.bits, "type": _TYPES[field.type], "place": place})
         if field.type == "bytes":
             collect.append(f"memcpy(record + {place}, message.{name}, {field.bits // 8});")
@@ -117,14 +119,14 @@ def _row(target: Target) -> dict[str, object]:
             assign.append(f"{{ {get} memcpy(&message.{name}, &b, sizeof b); }}")
         else:
             collect.append(f"record_put(record, {place}, (uint64_t)message.{name});")
-            assign.append(f"message.{name} = ({storage.type})record_get(record, {place});")
+            assign.append(f"message.{name} = ({type_of(one)})record_get(record, {place});")
     return {
-        "stem": plan.stem,
-        "big_endian": str(plan.node.byte_order == "big").lower(),
-        "msb_first": str(plan.node.bit_order == "msb0").lower(),
-        "length": plan.message.length,
+        "stem": stem(message),
+        "big_endian": str(message.node.byte_order == "big").lower(),
+        "msb_first": str(message.node.bit_order == "msb0").lower(),
+        "length": message.message.length,
         "record": target.size,
-        "misfit": bool(encoding.excess(plan)),
+        "misfit": message.is_narrow,
         "fields": fields,
         "collect": collect,
         "assign": assign,

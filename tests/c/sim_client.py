@@ -10,7 +10,8 @@ from pathlib import Path
 
 import jinja2
 
-from icdgen.backends.c.plan import Plan, Planner
+from icdgen.backends.c.names import stem
+from icdgen.describe import MessageDescription, describe
 from icdgen.icd.model import CONFIGURATION, Icd
 from icdgen.protocol import facts
 from tests.c import harness
@@ -21,17 +22,21 @@ NODE = "cubeacp"
 
 def source(icd: Icd, node_name: str = NODE) -> str:
     """The client's source."""
-    node, planner = icd.node(node_name), Planner(icd)
+    node = icd.node(node_name)
     known = facts.of(icd, node)
-    plans = {m.name: planner.plan(m) for m in icd.messages_of(node)}
+    plans = {one.message.name: one for one in describe(icd).node(node).spoken}
     telecommands = [plans[m.name] for m in known.telecommands.values()]
     starters = [one.name for one in icd.nodes if one.protocol.get("program_start", {}).get("application") == node.name]
+    boot = icd.node(starters[0])
+    name = boot.protocol["program_start"]["message"]
+    start = next(one for one in describe(icd).node(boot).spoken if one.message.name == name)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(harness.HERE),
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
+    environment.globals["stem"] = stem
     return environment.get_template("sim_client.c.j2").render(
         node=node.name,
         telemetry=[plans[m.name] for m in known.telemetry.values()],
@@ -42,15 +47,17 @@ def source(icd: Icd, node_name: str = NODE) -> str:
         ),
         log=plans[icd.protocol_of(node)["unsolicited_log"]["configured_by"]["message"]],
         last=plans[known.polled.message.name],
-        last_id=next(m.name for m in plans[known.polled.message.name].members if m.field.name == known.polled.id),
+        last_id=next(m.name for m in plans[known.polled.message.name].fields if m.field.name == known.polled.id),
         identification=plans[known.identification.message.name],
-        restarted=(starters or [node.name])[0],
+        restarted=starters[0],
+        start=stem(start).upper(),
+        running=icd.protocol_of(boot)["program_copy"]["destination"],
     )
 
 
-def _ones(plan: Plan) -> list[str]:
+def _ones(plan: MessageDescription) -> list[str]:
     """Members that are set to 1, which any of them can hold."""
-    return [m.name for m in plan.members if m.field.type in ("uint", "int", "bool") and m.field.const is None]
+    return [m.name for m in plan.fields if m.field.type in ("uint", "int", "bool") and m.field.const is None]
 
 
 def build(folder: Path) -> Path:

@@ -75,7 +75,7 @@ def test_cortex_m(headers, cpu, option):
 def test_cortex_m4_needs_at_most_12_bytes_of_code_a_field(headers, tmp_path):
     source = tmp_path / "size.c"
     source.write_text(harness.wrappers(harness.shipped()))
-    fields = sum(len(target.plan.members) for target in harness.targets(harness.shipped()))
+    fields = sum(len(target.message.fields) for target in harness.targets(harness.shipped()))
     options = ("-mcpu=cortex-m4", "-mthumb", "-Os", "-std=c99", "-c", f"-I{headers}")
     harness.compile(source, *options, compiler="arm-none-eabi-gcc", output=tmp_path / "size.o")
     text = subprocess.run(["arm-none-eabi-size", tmp_path / "size.o"], capture_output=True, text=True).stdout

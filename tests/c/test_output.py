@@ -67,7 +67,9 @@ def test_output_is_the_same_every_time_and_says_nothing_of_the_machine(shipped):
 def test_lines_keep_to_the_width_where_names_allow_it(shipped):
     for path, text in shipped.items():
         for line in text.splitlines():
-            assert len(line) <= 120 or re.fullmatch(r"\w+\(|#define \w+ \S+", line), f"{path}: {line}"
+            assert len(line) <= 120 or re.fullmatch(
+                r"(static inline [\w ]+\*?)?\w+\(|#define \w+ \S+", line
+            ), f"{path}: {line}"
 
 
 @pytest.mark.skipif(not shutil.which("clang-format"), reason="needs clang-format")
@@ -120,7 +122,7 @@ def test_no_two_names_of_the_shipped_icds_clash():
         ("/*/", "/ * /"),
         ("what??/", "what? ?/"),
         ("a\nb\t c", "a b c"),
-        ("a\x07b\u202ec", "a<U+0007>b<U+202E>c"),
+        ("a\x07b\u202ec", "aU+0007bU+202Ec"),
         ("Größe °", "Größe °"),
     ],
 )

@@ -20,9 +20,10 @@ import pytest
 
 from icdgen import codec
 from icdgen.backends.c import physical
-from icdgen.backends.c.names import accessor_unit
-from icdgen.backends.c.plan import Member, Plan, Planner
-from icdgen.backends.c.prefixes import part_of_unit
+from icdgen.backends.c.accessors import whole_name
+from icdgen.backends.c.names import stem
+from icdgen.backends.c.types import type_of
+from icdgen.describe import FieldDescription, describe
 from icdgen.icd.model import Field, Icd
 from tests.c import harness, odd
 
@@ -43,28 +44,23 @@ def test_odd_scales_with_any_arithmetic_of_the_compiler(tmp_path, option):
 
 def compare(icd: Icd, folder: Path, *options: str, wide: int = 4000) -> int:
     """The number of comparisons; fails on any difference."""
-    scaled = [
-        (plan, member)
-        for plan in (Planner(icd).plan(m) for node in icd.nodes for m in node.messages)
-        for member in plan.members
-        if member.field.scale
-    ]
+    scaled = [f for node in describe(icd).nodes for message in node.messages for f in message.fields if f.steps]
     harness.generate(icd, folder)
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(harness.HERE), trim_blocks=True, lstrip_blocks=True)
     template = environment.get_template("physical.c.j2")
     nodes = [node.name for node in icd.nodes]
     source = folder / "physical.c"
-    source.write_text(template.render(nodes=nodes, fields=[row(plan, member) for plan, member in scaled]))
+    source.write_text(template.render(nodes=nodes, fields=[row(field) for field in scaled]))
     program = harness.compile(
         source, "-std=c99", "-O2", *options, "-fsanitize=undefined", "-fno-sanitize-recover=all",
         f"-I{folder}", output=folder / "physical",
     )  # fmt: skip
     alike = defaultdict(list)
-    for number, (_, (field, _, storage)) in enumerate(scaled):
-        alike[field.scale, field.bits, field.signed, storage.bits].append(number)
+    for number, one in enumerate(scaled):
+        alike[one.steps, one.field.bits, one.storage].append(number)
     with subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         for numbers in alike.values():
-            field = scaled[numbers[0]][1].field
+            field = scaled[numbers[0]].field
             process.stdin.write(struct.pack(f"<H{len(numbers)}H", len(numbers), *numbers))
             for table in tables(field, wide):
                 process.stdin.write(table)
@@ -73,23 +69,20 @@ def compare(icd: Icd, folder: Path, *options: str, wide: int = 4000) -> int:
     return int(out.split()[0])
 
 
-def row(plan: Plan, member: Member) -> dict[str, object]:
-    field, name, storage = member
-    whole = physical.scaled(field, storage).whole
-    end = f"{name}_{accessor_unit(field)}"
+def row(field: FieldDescription) -> dict[str, object]:
+    whole, name = physical.scaled(field).whole, stem(field.message)
     found = {
-        "type": plan.type,
-        "name": name,
-        "storage": storage.type,
-        "exact": str(_survives(field)).lower(),
-        "getter": f"{plan.stem}_{end}",
-        "setter": f"{plan.stem}_set_{end}",
+        "type": f"{name}_t",
+        "name": field.name,
+        "storage": type_of(field),
+        "exact": str(_survives(field.field)).lower(),
+        "getter": f"{name}_{field.physical_name}",
+        "setter": f"{name}_set_{field.physical_name}",
         "get_whole": None,
     }
     if whole:
-        suffix, _ = part_of_unit(field, whole.prefix)
-        found["get_whole"] = f"{plan.stem}_{name}_{suffix}"
-        found["set_whole"] = f"{plan.stem}_set_{name}_{suffix}"
+        found["get_whole"] = f"{name}_{whole_name(field, whole)}"
+        found["set_whole"] = f"{name}_set_{whole_name(field, whole)}"
         found["whole"] = whole.type
     return found
 

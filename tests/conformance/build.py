@@ -15,8 +15,8 @@ from pathlib import Path
 from icdgen import backends
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
-from tests.conformance import ROOT
-from tests.conformance.languages import Language
+from tests.conformance import ROOT, testees  # noqa: F401  (it registers the testees' backends)
+from tests.conformance.languages import Language, version
 
 BOARD = ROOT / "tests" / "conformance" / "board"  # what the self-tests are linked with
 
@@ -54,15 +54,14 @@ def generated(language: Language, icd: Icd) -> dict[str, bytes]:
     """What the language's backends make of the ICDs: path, beginning with the backend's name -> content."""
     files = {}
     for name in language.backends:
-        backend = backends.get(name)
-        for path, text in backend.files(icd, renderer(backend.name)):
+        for path, text in backends.get(name).files(icd, renderer(name)):
             files[f"{name}/{path}"] = text.encode("utf-8")
     return files
 
 
 @cache
 def renderer(name: str) -> Renderer:
-    return Renderer(name)
+    return Renderer.of(backends.get(name))
 
 
 def execute(*command: str | Path, cwd: Path | None = None, env: dict[str, str] | None = None) -> str:
@@ -80,14 +79,8 @@ def _key(language: Language, files: dict[str, bytes]) -> str:
     recipe = Path(inspect.getfile(getattr(language.build, "func", language.build)))
     for file in (recipe, *sorted(BOARD.glob("*"))):
         digest.update(file.read_bytes() + b"\0")
-    for part in (language.name, *(_version(tool) for tool in language.tools)):
+    for part in (language.name, *(version(tool) or tool for tool in language.tools)):
         digest.update(part.encode() + b"\0")
     for name, data in files.items():
         digest.update(f"{name}\0{len(data)}\0".encode() + data)
     return digest.hexdigest()[:16]
-
-
-@cache
-def _version(tool: str) -> str:
-    path = shutil.which(tool) or tool
-    return path + subprocess.run([path, "--version"], capture_output=True, text=True).stdout

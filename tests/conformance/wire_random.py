@@ -97,6 +97,8 @@ def _client(known: Facts, source: random.Random) -> dict:
                 row |= {"telecommand": asked[1], "bytes": source.randbytes(size).hex(), "repeat": source.random() < 0.5}
         elif kind < 0.85:
             row["receive"] = _heard(known, bus, checked, asked, source)
+        elif kind < 0.9:
+            row["cancel"] = True
         script.append(row)
     settings = {"reply_timeout": source.choice([30, 500]), "retries": source.choice([0, 2]), "poll_timeout": 200}
     more = {"settings": settings} if source.random() < 0.7 else {}
@@ -141,13 +143,18 @@ def _heard(known: Facts, bus: str, checked: bool, asked: tuple[str, int], source
 
 
 def _transfer(known: Facts, source: random.Random) -> dict:
-    what = source.choice(["list", "download", "download", "download", "upload", "upload", "erase", "format"])
+    known_steps = known.files.steps if known.files else {}
+    uploads = ["upload", "upload"] if "upload.initiate" in known_steps else []
+    operations = ["program_copy", "program_information"] if known.program_copy and known.program_information else []
+    what = source.choice(["list", "download", "download", "download", "erase", "format", *uploads, *operations])
     request: dict = {"op": "file", "do": what}
     if what == "download":
         request |= {"bus": source.choice(["uart", "uart", "i2c", "can"]), "type": 2, "counter": 1}
         request |= source.choice([{}, {"size": source.choice([0, 5, 60, 90])}])
     if what == "upload":
         request |= {"destination": 3, "bytes": source.randbytes(source.choice([0, 1, 30, 85])).hex()}
+    if what in operations:
+        request["program"] = source.choice([3, 9])
     if what == "erase":
         request |= {"type": 1, "counter": 2, "all": source.random() < 0.5}
     if source.random() < 0.6:

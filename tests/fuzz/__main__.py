@@ -193,7 +193,7 @@ def python_streams(icd: Icd, folder: Path) -> tuple[list[str], dict[str, str]]:
 
 def atheris(icd: Icd, folder: Path, target: str) -> tuple[list[str], dict[str, str]]:
     source = sources(Language("python", ("python",), (), lambda source, out: []), icd, folder)
-    package = sorted((source / "python").rglob("testee.py"))[0].parent
+    package = sorted((source / "python").glob("*/__init__.py"))[0].parent
     command = [sys.executable, str(HERE / target), package.name]
     return command, {"PYTHONPATH": str(package.parent)}
 

@@ -59,7 +59,7 @@ def test_the_c_harnesses_find_nothing(icd, target, kind, request, tmp_path):
 def package(icd, tmp_path, monkeypatch):
     """The generated package, imported afresh."""
     source = sources(Language("python", ("python",), (), lambda source, out: []), icd, tmp_path)
-    package = sorted((source / "python").rglob("testee.py"))[0].parent
+    package = sorted((source / "python").glob("*/__init__.py"))[0].parent
     monkeypatch.syspath_prepend(str(package.parent))
     for name in [name for name in sys.modules if name.split(".")[0] == package.name]:
         monkeypatch.delitem(sys.modules, name)

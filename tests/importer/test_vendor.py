@@ -21,7 +21,7 @@ def test_the_manual_gives_the_shipped_vendor_layer(vendor, form):
     result, trees = imported(vendor / f"firmware-reference-manual-7.2.{form}", "cubeadcs")
     assert {n: differences(shipped(n), trees[n]) for n in trees} == {"common": [], "bootloader": [], "cubeacp": []}
     assert len([one for one in result.survey.found if one.table.number is not None]) == 216
-    assert not [one for one in result.survey.found if one.what == UNKNOWN]
+    assert not [one for one in result.survey.found if one.what == UNKNOWN and one.table.number is not None]
     assert sum(one.what == BACKGROUND for one in result.survey.found) == 8
     assert result.sureness()[DOUBTFUL] == 0
     assert not result.failed
@@ -41,10 +41,3 @@ def test_without_a_profile_only_the_damage_of_the_text_shows(vendor, form):
     groups = [line for line in found if "group: 'Power and Temperature Measurements'" in line]
     assert (len(inertia), len(groups)) == (24, 8)
     assert len(found) == 32
-
-
-def test_page_numbers_of_the_shipped_icds_are_those_of_the_manual(vendor):
-    _, trees = imported(vendor / "firmware-reference-manual-7.2.pdf", "cubeadcs")
-    for name, tree in trees.items():
-        pages = {item["name"]: item["source"] for key in ("messages", "enums") for item in shipped(name)[key]}
-        assert pages == {item["name"]: item["source"] for key in ("messages", "enums") for item in tree[key]}

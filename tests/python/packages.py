@@ -13,6 +13,7 @@ from icdgen.backends.python import PythonBackend
 from icdgen.icd.load import load
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
+from tests.conformance.testees.python import PythonTesteeBackend
 from tests.conftest import ROOT
 
 ODD = Path(__file__).with_name("odd")
@@ -53,9 +54,15 @@ def files(icd: Icd, name: str = "icdgen_messages") -> dict[str, str]:
     return {str(path): text for path, text in PythonBackend(name).files(icd, renderer())}
 
 
+def testee(icd: Icd, name: str) -> dict[str, str]:
+    """What answers questions about the package, from within."""
+    backend = PythonTesteeBackend(name)
+    return {str(path): text for path, text in backend.files(icd, Renderer.of(backend))}
+
+
 def write(icd: Icd, folder: Path, name: str) -> Package:
     """The package in ``folder``, ready to be imported under ``name``."""
-    for path, text in files(icd, name).items():
+    for path, text in (files(icd, name) | testee(icd, name)).items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_text(text, encoding="utf-8")
     sys.path.insert(0, str(folder))

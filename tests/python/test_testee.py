@@ -12,7 +12,7 @@ import pytest
 @pytest.fixture(scope="module")
 def ask(shipped):
     """Answers a request, through the package that is imported."""
-    testee = shipped.module("testee")
+    testee = shipped.module("_testee")
     return lambda **request: testee.answer(json.dumps(request).encode())
 
 
@@ -54,7 +54,7 @@ def test_configuration_takes_either_id(ask):
     ],
 )
 def test_what_is_no_request_is_refused(shipped, line):
-    answer = shipped.module("testee").answer(line)
+    answer = shipped.module("_testee").answer(line)
     assert (answer["ok"], answer["error"]) == (False, "request")
     assert json.dumps(answer)
 
@@ -62,7 +62,7 @@ def test_what_is_no_request_is_refused(shipped, line):
 def test_it_answers_a_line_a_line_until_the_end(shipped):
     lines = [b"nonsense", json.dumps({"op": "node", "node": "cubeacp"}).encode(), b""]
     done = subprocess.run(
-        [sys.executable, "-B", "-m", "icdgen_messages.testee"],
+        [sys.executable, "-B", "-m", "icdgen_messages._testee"],
         cwd=shipped.folder,
         input=b"\n".join(lines) + b"\n",
         capture_output=True,

@@ -83,7 +83,7 @@ def scripts(draw) -> dict:
     bus = draw(st.sampled_from(["uart", "i2c", "can"]))
     heard = {"uart": from_uart(), "i2c": from_i2c(), "can": from_can()}[bus]
     rows, now = [], 0
-    for row in draw(st.lists(asked() | heard | heard | st.just({}), max_size=25)):
+    for row in draw(st.lists(asked() | heard | heard | st.just({}) | st.just({"cancel": True}), max_size=25)):
         now += draw(st.sampled_from([0, 1, 5, 10, 49, 60, 100, 150]))
         rows.append({"at": now, **row})
     return {"op": "client", "node": "cubeacp", "bus": bus, "crc": draw(st.booleans()), "address": OURS, "settings": QUICK,
@@ -93,7 +93,7 @@ def scripts(draw) -> dict:
 @given(request=scripts())
 @settings(max_examples=300, suppress_health_check=[HealthCheck.too_slow])
 def test_whatever_happens_it_does_what_the_reference_does(shipped, request):
-    made = shipped.module("testee").answer(json.dumps(request).encode())
+    made = shipped.module("_testee").answer(json.dumps(request).encode())
     assert made == ops.answer(packages.shipped(), request)
 
 

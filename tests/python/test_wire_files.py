@@ -39,7 +39,7 @@ def node_of(seed: int, bus: str, loss: float) -> nodes.FileNode:
 
 def compare(shipped, request: dict) -> dict:
     """The answer of the package, which must be that of the reference."""
-    made = shipped.module("testee").answer(json.dumps(request).encode())
+    made = shipped.module("_testee").answer(json.dumps(request).encode())
     assert made == ops.answer(packages.shipped(), request)
     return made
 

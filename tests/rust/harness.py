@@ -24,7 +24,7 @@ BACKENDS = ("rust", "rust-testee")
 
 @cache
 def _renderer(name: str) -> Renderer:
-    return Renderer(name)
+    return Renderer.of(backends.get(name))
 
 
 def texts(icd: Icd, backend: str = "rust") -> dict[str, str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.icd import hostile_words
 from tests.rust import harness, odd
 from tests.rust.harness import main_of_testee
 from tests.rust.tools import STD, Toolchain, toolchains
@@ -32,6 +33,12 @@ def test_nor_with_the_standard_library(shipped, toolchain, tmp_path):
 
 def test_rustdoc_has_nothing_to_say(subject, toolchain, tmp_path):
     toolchain.documented(subject.crate, tmp_path)
+
+
+def test_rustdoc_takes_no_word_of_an_icd_for_markup(toolchain, tmp_path):
+    crate = harness.generate(harness.read(hostile_words.write(tmp_path)), tmp_path)
+    toolchain.documented(crate, tmp_path, "-D", "rustdoc::all")
+    toolchain.formatted(crate)
 
 
 def test_it_compiles_without_a_warning_and_with_names_of_any_length(toolchain, tmp_path):

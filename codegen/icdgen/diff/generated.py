@@ -270,13 +270,13 @@ def _stem(language: str, scope: str) -> str:
 
 def _types(cut: Icd) -> Types:
     """A function that tells the type of a field's raw value in a language."""
-    from icdgen.backends.c.names import Names as CNames
-    from icdgen.backends.c.storage import Storages
+    from icdgen.backends.c.types import type_of
     from icdgen.backends.python.names import class_name
     from icdgen.backends.rust.fields import raw_type
     from icdgen.backends.rust.names import Enums
+    from icdgen.describe import describe
 
-    rust, c = Enums(cut), Storages(cut, CNames(cut))
+    rust, description = Enums(cut), describe(cut)
     nodes = {node.name: node for node in cut.nodes}
 
     def of(language: str, node: Node, message: Message, field: Field) -> str:
@@ -288,6 +288,7 @@ def _types(cut: Icd) -> Types:
             return raw_type(field, home, rust) if field.type != "enum" or field.enum else f"u{field.bits}"
         if field.type == "bytes":
             return f"uint8_t[{field.bits // 8}]"
-        return c.of(field).type
+        fields = description.message(message).fields
+        return next(type_of(one) for one in fields if one.field is field)
 
     return of

@@ -39,16 +39,16 @@ class Outcome:
 
 
 def run(job: Job) -> Outcome:
-    """Writes nothing if the ICDs have errors or ``job.check`` is set. Raises `UserError`, `backends.UnknownBackend`."""
+    """Writes nothing if the ICDs have errors or ``job.check`` is set. Raises `UserError`."""
     chosen = [backends.get(name) for name in dict.fromkeys(job.languages)]
     if job.templates is not None and not os.path.isdir(job.templates):
         raise UserError(f"there is no folder {job.templates}", "--templates names a folder of templates")
-    outcome = Outcome(load_checked(job.icds))
+    outcome = Outcome(load_checked(job.icds, [backend for backend in chosen if backend.name not in backends.names()]))
     if not outcome.loaded.ok:
         return outcome
     outcome.inputs = outcome.loaded.inputs | job.configs
     for backend in chosen:
-        render = Renderer(backend.name, job.templates)
+        render = Renderer.of(backend, job.templates)
         out = job.out / backend.name if len(chosen) > 1 else job.out
         outcome.plans.append(write.plan(out, backend.name, backend.files(outcome.loaded.icd, render)))
         outcome.inputs |= render.looked_at

@@ -52,13 +52,16 @@ class Session:
     def ask(self, request: Request) -> dict:
         """Sends a request and waits for its end: ``done``, ``refused`` or ``timeout``. Raises `PortError`."""
         events = self.machine.start(self.now, request)
-        while True:
-            self._write()
-            for event in events:
-                if event["event"] in OUTCOMES:
-                    return event
-                self.on_event(event)
-            events = self._wait(self.machine.deadline)
+        try:
+            while True:
+                self._write()
+                for event in events:
+                    if event["event"] in OUTCOMES:
+                        return event
+                    self.on_event(event)
+                events = self._wait(self.machine.deadline)
+        finally:
+            self.machine.cancel()  # else a port that fails leaves it busy
 
     def telemetry(self, message: Message) -> bytes | None:
         """The frame; None if there was no answer."""
@@ -88,6 +91,12 @@ class Session:
         A refusal with a code that the ICD does not have is a damaged acknowledge, which tells nothing: what may be repeated is
         asked again, and else it is as if none had come. ``on_event`` is told of each, with its code.
         """
+        try:
+            return self._driven(procedure, progress)
+        finally:
+            self.machine.cancel()
+
+    def _driven(self, procedure: Procedure, progress: Callable[[], None] | None) -> str:
         waiting: list[dict] = []
         asked: Request | None = None
         left, again = 0, False

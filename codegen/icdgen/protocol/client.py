@@ -60,6 +60,7 @@ class Machine:
         else:
             need(known.i2c_address, "i2c")
         self.out: list = []  # UART: bytes; CAN: packets; I2C: (bytes to write, count to read)
+        self._asked_for = self._told_of = 0  # I2C: transactions that went to `out`, and those that came back
         self.state = IDLE
         self.request: Request | None = None
         self.attempts = 0
@@ -124,9 +125,11 @@ class Machine:
         return events
 
     def transferred(self, now: int, data: bytes | None) -> list[Event]:
-        """I2C: what was read in the transaction that `out` asked for; None: it failed."""
+        """I2C: what was read in the oldest transaction that `out` asked for and nothing was told of; None: it failed."""
+        awaited = self._owed == 1 and self._awaits_transfer  # before time passes, which may end that request
+        self._told_of += self._owed > 0
         events = self.tick(now)
-        if self.state not in (WAIT, POLL):
+        if not (awaited and self._awaits_transfer):
             return [*events, {"event": "stray", "bytes": (data or b"").hex()}]
         if self.state == POLL:
             return events + (self._again(now) if data is None else self._polled(now, data))
@@ -144,6 +147,25 @@ class Machine:
         self._sent_whole = True
         self.give_up = now + self.settings.poll_timeout
         return events + self._again(now)
+
+    def cancel(self) -> None:
+        """Gives up the request, without an event, and what of it has not been taken; a late reply to it is ``stray``."""
+        if self.bus == I2C:
+            self._asked_for -= len(self.out)
+        self.out.clear()
+        if self.state != IDLE and self.attempts:
+            self.echo = (self._now.id, self.until + self.settings.reply_timeout)
+        self.state, self.request = IDLE, None
+
+    @property
+    def _owed(self) -> int:
+        """I2C: transactions that were taken and of which nothing was told, whoever asked for them."""
+        return self._asked_for - len(self.out) - self._told_of
+
+    @property
+    def _awaits_transfer(self) -> bool:
+        """I2C: whether the last transaction that was asked for is taken, and that of the request."""
+        return self.state in (WAIT, POLL) and not self.out
 
     @property
     def _now(self) -> Request:
@@ -173,7 +195,7 @@ class Machine:
             self.out += can.split(self.known, can.Message(kind, request.id, self.address, node, whole[1:]))
         else:
             size = i2c.read_length(self.known, message, self.checks_telemetry) if request.kind == TELEMETRY else 0
-            self.out.append((whole, size))
+            self._transact(whole, size)
         if self.bus != I2C and request.kind == TELECOMMAND and not message.acknowledge:
             return self._done(now)
         return []
@@ -246,7 +268,11 @@ class Machine:
         polled = need(self.known.polled, "i2c.acknowledge")
         self.state, self.until = POLL, now + self.settings.reply_timeout
         size = i2c.read_length(self.known, polled.message, self.checks_telemetry)
-        self.out.append((bytes([polled.message.ids[0]]), size))
+        self._transact(bytes([polled.message.ids[0]]), size)
+
+    def _transact(self, write: bytes, read: int) -> None:
+        self._asked_for += 1
+        self.out.append((write, read))
 
     def _again(self, now: int) -> list[Event]:
         """Polls once more after a while."""

@@ -45,6 +45,7 @@ typedef struct {
     uint8_t poll_id;
     bool poll;        /* to be sent: the request for the acknowledge frame ... */
     uint32_t pending; /* ... and the request, so many times */
+    uint32_t owed;    /* I2C: transactions taken of which icd_client_transferred() was not told */
     icd_uart_encoder_t encoder;
     icd_can_splitter_t splitter;
     uint8_t chunk[32];
@@ -222,6 +223,25 @@ static inline icd_status_t icd_client_start(
     return ICD_OK;
 }
 
+/**
+ * Gives up the request, without an event, and what of it has not been taken: the next one may begin. A late reply to
+ * this one is ICD_EVENT_STRAY.
+ */
+static inline void icd_client_cancel(icd_client_t *client)
+{
+    client->pending = 0;
+    client->poll = false;
+    client->encoder.ended = true;
+    client->encoder.pending = 0;
+    client->splitter.next = client->splitter.count;
+    if (client->state != ICD_CLIENT_IDLE && client->attempts != 0u) {
+        client->echo = true;
+        client->echo_id = client->message->id;
+        client->echo_end = client->until + client->settings.reply_timeout;
+    }
+    client->state = ICD_CLIENT_IDLE;
+}
+
 static inline void icdgen_client_ignore(void *context, const icd_event_t *event)
 {
     (void)context;
@@ -259,8 +279,19 @@ static inline icd_status_t icd_client_send(
     return icd_client_start(client, now, &request, on_event, context);
 }
 
-/** Requests the telemetry of that name, such as ICD_REQUEST(&client, now, NODE_IDENTIFICATION). */
-#define ICD_REQUEST(client, now, name) icd_client_request(client, now, ICDGEN_U8(name##_TELEMETRY))
+static inline icd_status_t icdgen_client_request_of(icd_client_t *client, uint32_t now, const char *node, unsigned id)
+{
+    if (!icd_has_messages_of(client->link, node)) {
+        return ICD_ERROR_UNKNOWN_ID;
+    }
+    return icd_client_request(client, now, ICDGEN_U8(id));
+}
+
+/**
+ * Requests the telemetry of that name, such as ICD_REQUEST(&client, now, NODE_IDENTIFICATION); ICD_ERROR_UNKNOWN_ID if
+ * it is a message of another node, whatever its id.
+ */
+#define ICD_REQUEST(client, now, name) icdgen_client_request_of(client, now, name##_TELEMETRY)
 
 /** The next bytes for the UART; false when there are none. They last until the next call. */
 static inline bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count)
@@ -299,12 +330,16 @@ static inline bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t
     return icd_can_next(&client->splitter, packet);
 }
 
-/** The next transaction on I2C: bytes to write, and how many to read then; false when there is none. */
+/**
+ * The next transaction on I2C: bytes to write, and how many to read then; false when there is none.
+ * icd_client_transferred() is told of each that was taken, once and in this order.
+ */
 static inline bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read)
 {
     *read = 0;
     if (client->bus == ICD_BUS_I2C && client->poll) {
         client->poll = false;
+        client->owed++;
         *bytes = &client->poll_id;
         *count = 1;
         return icd_i2c_read_length(client->link, client->poll_id, client->checks_telemetry, read) == ICD_OK;
@@ -313,6 +348,7 @@ static inline bool icd_client_transfer(icd_client_t *client, const uint8_t **byt
         return false;
     }
     client->pending--;
+    client->owed++;
     *bytes = client->whole;
     *count = client->whole_length;
     if (client->direction == ICD_TELEMETRY) {

@@ -241,22 +241,32 @@ static inline void icdgen_client_polled(
     }
 }
 
+/* I2C: whether the last transaction was taken, and is that of the request. */
+static inline bool icdgen_client_awaits_transfer(const icd_client_t *client, uint32_t owed)
+{
+    return client->owed == owed && (client->state == ICD_CLIENT_WAIT || client->state == ICD_CLIENT_POLL) &&
+        !icdgen_client_has_output(client);
+}
+
 /**
- * I2C: takes what was read in the transaction; `bytes` NULL: it failed. Of a write without reading, anything but NULL.
+ * I2C: takes what was read in the oldest transaction that was taken and not told of; `bytes` NULL: it failed. Of a
+ * write without reading, anything but NULL. What a request owed that is over is ICD_EVENT_STRAY.
  */
 static inline void icd_client_transferred(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
 {
     size_t length = 0;
-    icd_client_tick(client, now, on_event, context);
-    if (client->state == ICD_CLIENT_POLL) {
+    const bool awaited = icdgen_client_awaits_transfer(client, 1);
+    client->owed -= client->owed != 0u ? 1u : 0u;
+    icd_client_tick(client, now, on_event, context); /* may end that request, and begin the next one */
+    if (!awaited || !icdgen_client_awaits_transfer(client, 0)) {
+        icdgen_client_tell(ICD_EVENT_STRAY, 0, bytes, bytes != NULL ? count : 0u, on_event, context);
+    } else if (client->state == ICD_CLIENT_POLL) {
         if (bytes == NULL) {
             icdgen_client_again(client, now, on_event, context);
         } else {
             icdgen_client_polled(client, now, bytes, count, on_event, context);
         }
-    } else if (client->state != ICD_CLIENT_WAIT) {
-        icdgen_client_tell(ICD_EVENT_STRAY, 0, bytes, bytes != NULL ? count : 0u, on_event, context);
     } else if (bytes == NULL) {
         icdgen_client_no_reply(client, now, on_event, context);
     } else if (client->direction == ICD_TELEMETRY) {

@@ -61,11 +61,8 @@ static inline void icdgen_upload_packet(const icd_upload_t *upload, uint32_t pos
     memcpy(packet, upload->file + upload->sent + at, left < files->packet_bytes ? left : files->packet_bytes);
 }
 
-/* Reads the next piece of the hole map, or the checksum once no packet is missing. */
-static inline void icdgen_upload_map(icd_upload_t *upload);
-
-/* Sends the next packet that is missing, or reads the hole map. */
-static inline void icdgen_upload_next(icd_upload_t *upload)
+/* Sends the next packet that is missing; false if there is none behind those that were sent. */
+static inline bool icdgen_upload_send(icd_upload_t *upload)
 {
     icd_procedure_t *const procedure = &upload->procedure;
     const icd_link_t *const link = procedure->link;
@@ -75,16 +72,16 @@ static inline void icdgen_upload_next(icd_upload_t *upload)
         upload->next++;
     }
     if (upload->next == upload->count) {
-        upload->next = 0;
-        icdgen_upload_map(upload);
-        return;
+        return false;
     }
     icdgen_command(procedure, step, false, ICDGEN_UPLOAD_PACKET);
     icdgen_put(link, step, procedure->data, ICD_ROLE_NUMBER, link->files->first_packet + upload->next);
     icdgen_upload_packet(upload, upload->next, procedure->data + (bytes->at / 8u));
     upload->next++;
+    return true;
 }
 
+/* Begins another round, or reads the checksum if no packet is missing. */
 static inline void icdgen_upload_round(icd_upload_t *upload)
 {
     icd_procedure_t *const procedure = &upload->procedure;
@@ -102,9 +99,10 @@ static inline void icdgen_upload_round(icd_upload_t *upload)
     }
     upload->rounds++;
     upload->next = 0;
-    icdgen_upload_next(upload);
+    (void)icdgen_upload_send(upload);
 }
 
+/* Reads the next piece of the hole map, and what it tells once all is read. */
 static inline void icdgen_upload_map(icd_upload_t *upload)
 {
     const icd_hole_map_form_t *const form = upload->procedure.link->hole_map;
@@ -112,6 +110,15 @@ static inline void icdgen_upload_map(icd_upload_t *upload)
         icdgen_upload_round(upload);
     } else {
         icdgen_ask(&upload->procedure, form->messages[upload->next].telemetry, ICDGEN_UPLOAD_MAP);
+    }
+}
+
+/* Sends the next packet that is missing, or reads the hole map. */
+static inline void icdgen_upload_next(icd_upload_t *upload)
+{
+    if (!icdgen_upload_send(upload)) {
+        upload->next = 0;
+        icdgen_upload_map(upload);
     }
 }
 
@@ -238,7 +245,8 @@ static inline void icdgen_upload_resume(icd_procedure_t *procedure, const icd_ev
 
 /**
  * The file must stay where it is. `block`: bytes a block, 0 for those of the ICD. `bitmap` holds icd_block_bitmap()
- * bytes.
+ * bytes. ICD_ERROR_UNSUPPORTED if the node takes no uploads, ICD_ERROR_RANGE if the destination is not supported,
+ * ICD_ERROR_LENGTH if it holds less.
  */
 static inline icd_status_t icd_upload_init(
     icd_upload_t *upload,
@@ -253,6 +261,12 @@ static inline icd_status_t icd_upload_init(
     memset(upload, 0, sizeof *upload);
     if (icdgen_procedure_init(&upload->procedure, link, known, icdgen_upload_resume) != ICD_OK) {
         return ICD_ERROR_UNSUPPORTED;
+    }
+    if (!icdgen_allowed(link->upload->destinations, link->upload->destination_count, destination)) {
+        return ICD_ERROR_RANGE;
+    }
+    if (link->upload->destination_bytes != 0u && size > link->upload->destination_bytes) {
+        return ICD_ERROR_LENGTH;
     }
     upload->destination = destination;
     upload->file = file;

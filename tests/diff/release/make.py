@@ -50,7 +50,7 @@ def make(folder: Path) -> Path:
     for path in sorted((SHIPPED / "errata").glob("*.yaml")):
         overlay = yaml.safe_load(path.read_text(encoding="utf-8"))
         for number, name in enumerate(longer.get(path.stem, ()), 1):
-            overlay["entries"] += yaml.safe_load(_LONGER.format(id=f"OLD-{number:03}", name=name))
+            overlay.setdefault("entries", []).extend(yaml.safe_load(_LONGER.format(id=f"OLD-{number:03}", name=name)))
         _write(folder / "errata" / path.name, overlay)
     _settle(folder)
     return folder
@@ -110,21 +110,40 @@ def _accept(folder: Path, fault: Finding, texts: dict[str, str]) -> None:
 
 
 def _mend(path: Path, lines: set[int]) -> None:
-    """Leaves the entries with faults out, but counts places anew where only their number is wrong."""
-    texts = re.split(r"(?m)^(?=- )", path.read_text(encoding="utf-8"))
+    """Leaves the entries with faults out; only those places where there are others, and counts `places` anew."""
+    texts = re.split(r"(?m)^(?=- |[a-z])", path.read_text(encoding="utf-8"))
     line, kept = 1, []
     for text in texts:
         end = line + text.count("\n")
-        hit = any(line <= one < end for one in lines)
-        if hit and "\n  places: " in text:
+        hits = {one - line for one in lines if line <= one < end}
+        if hits and "\n  places: " in text:
             kept.append(re.sub(r"(?m)^  places: ([0-9]+)$", lambda m: f"  places: {int(m[1]) - 1}", text))
-        elif not hit:
+        elif hits:
+            kept.append(_without_places(text, hits))
+        else:
             kept.append(text)
         line = end
     path.write_text("".join(kept), encoding="utf-8")
 
 
+def _without_places(entry: str, hits: set[int]) -> str:
+    """The entry without the places in these lines of it; nothing if none is left, or the fault is no place's."""
+    parts = re.split(r"(?m)^(?=  (?:- |[a-z]))", entry)  # keys of the entry, and items of a list of places
+    at, key, left, kept, found = 0, "", 0, [], set()
+    for part in parts:
+        is_place = key == "where" and part.startswith("  - ")
+        here = {hit for hit in hits if at <= hit < at + part.count("\n")}
+        if here and is_place:
+            found |= here
+        else:
+            kept.append(part)
+            left += is_place
+        key = key if part.startswith("  - ") else part.split(":")[0].strip()
+        at += part.count("\n")
+    return "".join(kept) if found == hits and left else ""
+
+
 def _write(path: Path, overlay: dict) -> None:
-    entries = overlay.pop("entries")
+    entries = overlay.pop("entries", [])
     dump = lambda value: yaml.safe_dump(value, sort_keys=False, allow_unicode=True, width=10_000)  # noqa: E731
     path.write_text(f"# {_MARK}\n{dump(overlay)}entries:\n{dump(entries)}", encoding="utf-8")

@@ -1,15 +1,16 @@
-"""Rows of the accessors of physical values."""
+"""Accessors of physical values."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from icdgen.backends.c import about, physical
-from icdgen.backends.c.names import accessor_unit
-from icdgen.backends.c.plan import Member, Plan
+from icdgen.backends.c import physical
+from icdgen.backends.c.names import stem
 from icdgen.backends.c.prefixes import part_of_unit
 from icdgen.backends.c.statement import call, head
-from icdgen.backends.c.text import comment, plain
+from icdgen.backends.c.text import comment
+from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe.comments import physical_text, span_text, words
 
 
 class Accessor(NamedTuple):
@@ -24,59 +25,65 @@ class Accessor(NamedTuple):
     test: str = ""
 
 
-def accessors(plan: Plan) -> list[Accessor]:
+def accessors(message: MessageDescription) -> list[Accessor]:
     """In double precision."""
-    return [_double(plan, member) for member in plan.members if member.field.scale is not None]
+    return [_double(field) for field in message.fields if field.steps is not None]
 
 
-def _double(plan: Plan, member: Member) -> Accessor:
-    field, name, storage = member
-    scaled = physical.scaled(field, storage)
-    unit = accessor_unit(field)
-    what = plain(field.name) + (f" in {plain(field.unit.symbol)}" if field.unit else "")
+def _double(field: FieldDescription) -> Accessor:
+    assert field.steps is not None
+    scaled = physical.scaled(field)
+    what = physical_text(field.field)
     function, *arguments = scaled.setter
     return _accessor(
-        plan,
-        (f"{name}_{unit}", "double"),
-        (f"{what}: {about.formula(field)}, {about.physical_range(field)}.", what),
-        scaled.getter.format(raw=f"message->{name}"),
-        call(f"return {function}", (f"&message->{name}", *arguments)),
+        field,
+        (field.physical_name, "double"),
+        (f"{what}: {span_text(field.steps)}.", what),
+        scaled.getter,
+        call(f"return {function}", (f"&message->{field.name}", *arguments)),
     )
 
 
-def whole_accessors(plan: Plan) -> list[Accessor]:
+def whole_accessors(message: MessageDescription) -> list[Accessor]:
     """In whole thousandths or millionths of the unit."""
-    scaled = (m for m in plan.members if m.field.scale is not None)
-    wholes = ((m, physical.scaled(m.field, m.storage).whole) for m in scaled)
-    return [_whole(plan, member, whole) for member, whole in wholes if whole is not None]
+    wholes = ((field, physical.scaled(field).whole) for field in message.fields if field.steps is not None)
+    return [_whole(field, whole) for field, whole in wholes if whole is not None]
 
 
-def _whole(plan: Plan, member: Member, whole: physical.Whole) -> Accessor:
-    field, name, _ = member
-    suffix, words = part_of_unit(field, whole.prefix)
-    what = f"{plain(field.name)} in {plain(words)}"
+def whole_name(field: FieldDescription, whole: physical.Whole) -> str:
+    """``estimated_roll_angle_mdeg``"""
+    return f"{field.name}_{part_of_unit(field.field, whole.prefix)[0]}"
+
+
+def _whole(field: FieldDescription, whole: physical.Whole) -> Accessor:
+    what = f"{words(field.field.name)} in {words(part_of_unit(field.field, whole.prefix)[1])}"
     tests = [f"value < {whole.least}"] if whole.least is not None else []
     tests += [f"value > {whole.most}"] if whole.most is not None else []
     return _accessor(
-        plan,
-        (f"{name}_{suffix}", whole.type),
+        field,
+        (whole_name(field, whole), whole.type),
         (f"{what}, exact: {whole.low} to {whole.high}.", what),
-        whole.getter.format(raw=f"message->{name}"),
-        f"message->{name} = {whole.setter};",
+        whole.getter,
+        f"message->{field.name} = {whole.setter};",
         " || ".join(tests),
     )
 
 
 def _accessor(
-    plan: Plan, ends: tuple[str, str], texts: tuple[str, str], expression: str, assignment: str, test: str = ""
+    field: FieldDescription,
+    ends: tuple[str, str],
+    texts: tuple[str, str],
+    getter: str,
+    assignment: str,
+    test: str = "",
 ) -> Accessor:
-    (end, type_name), (get_text, what) = ends, texts
+    (end, type_name), (get_text, what), name = ends, texts, stem(field.message)
     return Accessor(
         get_comment=comment([get_text]),
-        get_head=head(f"{type_name} ", f"{plan.stem}_{end}", f"const {plan.type} *message"),
+        get_head=head(f"{type_name} ", f"{name}_{end}", f"const {name}_t *message"),
         set_comment=comment([f"Sets {what} to the nearest raw value; ICD_ERROR_RANGE if there is none."]),
-        set_head=head("icd_status_t ", f"{plan.stem}_set_{end}", f"{plan.type} *message, {type_name} value"),
-        expression=expression,
+        set_head=head("icd_status_t ", f"{name}_set_{end}", f"{name}_t *message", f"{type_name} value"),
+        expression=getter.format(raw=f"message->{field.name}"),
         assignment=assignment,
         test=test,
     )

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from icdgen import layout
 from icdgen.backends.c.statement import grouped, joined
-from icdgen.backends.c.storage import Storage, cast, mask
-from icdgen.icd.model import Field, Node
+from icdgen.backends.c.types import cast, mask
+from icdgen.describe import FieldDescription
+from icdgen.icd.model import Node
 from icdgen.layout import Piece
 
 BITS = "{bits}"  # stands for the bits of the field in the expressions made here
 
 
-def is_word(field: Field) -> bool:
+def is_word(field: FieldDescription) -> bool:
     """Whether the field is a byte, or a word of 2, 4 or 8 whole bytes that is loaded and stored as one."""
-    return field.type != "bytes" and field.at % 8 == 0 and field.bits in (8, 16, 32, 64)
+    one = field.field
+    return one.type != "bytes" and one.at % 8 == 0 and one.bits in (8, 16, 32, 64)
 
 
 def order(node: Node) -> str:
@@ -36,35 +37,35 @@ class Read(NamedTuple):
         return self.value.format(bits=joined(self.terms))
 
 
-def read(field: Field, node: Node, storage: Storage) -> Read:
+def read(field: FieldDescription) -> Read:
     """The raw value of an integer, enum or bool field (the bits of a float) over ``buffer``."""
+    bits = field.field.bits
     if is_word(field):
-        return Read(32, (_load(field, node),), f"icdgen_i{field.bits}({BITS})" if storage.signed else BITS)
-    pieces = layout.pieces(field, node)
-    if field.type == "bool":
+        return Read(32, (_load(field),), f"icdgen_i{bits}({BITS})" if field.storage.signed else BITS)
+    pieces = field.pieces
+    if field.field.type == "bool":
         return Read(32, (f"{_byte(pieces[0])} & {mask(pieces[0].mask, 8)}",), f"({BITS}) != 0u")
-    wide = 64 if field.bits > 32 else 32
+    wide = 64 if bits > 32 else 32
     if len(pieces) == 1:
-        return Read(wide, (_low_bits(pieces[0]),), _from_bits(field, storage, wide, joined=False))
+        return Read(wide, (_low_bits(pieces[0]),), _from_bits(field, wide, joined=False))
     terms = tuple(_shifted(piece, wide) for piece in sorted(pieces, key=lambda p: p.at))
-    return Read(wide, terms, _from_bits(field, storage, wide, joined=True))
+    return Read(wide, terms, _from_bits(field, wide, joined=True))
 
 
-def _from_bits(field: Field, storage: Storage, wide: int, joined: bool) -> str:
+def _from_bits(field: FieldDescription, wide: int, joined: bool) -> str:
+    storage = field.storage
     if not storage.signed:
         return cast(BITS, storage.bits) if joined and storage.bits != wide else BITS
-    if field.bits == storage.bits:
+    if not field.is_narrow:
         return f"icdgen_i{storage.bits}({cast(BITS, storage.bits) if storage.bits != wide else BITS})"
-    sign = mask(1 << (field.bits - 1), 64 if wide == 64 else storage.bits)
+    sign = mask(1 << (field.field.bits - 1), 64 if wide == 64 else storage.bits)
     extended = f"icdgen_extend{wide}({BITS}, {sign})"
     return extended if storage.bits == wide else cast(extended, storage.bits, True)
 
 
-def _load(field: Field, node: Node) -> str:
-    byte = field.at // 8
-    if field.bits == 8:
-        return f"buffer[{byte}]"
-    return f"icdgen_load_u{field.bits}{order(node)}(&buffer[{byte}])"
+def _load(field: FieldDescription) -> str:
+    byte, bits = field.field.at // 8, field.field.bits
+    return f"buffer[{byte}]" if bits == 8 else f"icdgen_load_u{bits}{order(field.message.node)}(&buffer[{byte}])"
 
 
 def _byte(piece: Piece) -> str:
@@ -84,37 +85,41 @@ def _shifted(piece: Piece, wide: int) -> str:
     return f"{low} << {piece.at}" if piece.at else low
 
 
-def put(field: Field, piece: Piece, storage: Storage, name: str) -> str:
+def put(field: FieldDescription, piece: Piece) -> str:
     """What the field contributes to the byte of ``piece``: an `int`; what goes beyond the byte is cut off by the caller."""
-    value = f"icdgen_bits_f{field.bits}(&message->{name})" if field.type == "float" else f"message->{name}"
+    storage, value = field.storage, _raw(field)
     if piece.at:
         value = f"{cast(value, storage.bits) if storage.signed else value} >> {piece.at}"
     if storage.bits > 8 or storage.signed:
         value = cast(value, 8)
-    top = piece.at + piece.bits == field.bits and not storage.signed
+    top = piece.at + piece.bits == field.field.bits and not storage.signed
     if not top and piece.shift + piece.bits < 8:
         value = f"{grouped(value)} & 0x{(1 << piece.bits) - 1:02X}"
     return f"{grouped(value)} << {piece.shift}" if piece.shift else value
 
 
-def store(field: Field, node: Node, storage: Storage, name: str) -> str:
+def store(field: FieldDescription) -> str:
     """The statement that stores a field for which `is_word` holds."""
-    byte = field.at // 8
-    value = f"icdgen_bits_f{field.bits}(&message->{name})" if field.type == "float" else f"message->{name}"
-    if storage.signed or storage.bits > field.bits:
-        value = cast(value, field.bits)
-    if field.bits == 8:
+    byte, bits, value = field.field.at // 8, field.field.bits, _raw(field)
+    if field.storage.signed or field.storage.bits > bits:
+        value = cast(value, bits)
+    if bits == 8:
         return f"buffer[{byte}] = {value};"
-    return f"icdgen_store_u{field.bits}{order(node)}(&buffer[{byte}], {value});"
+    return f"icdgen_store_u{bits}{order(field.message.node)}(&buffer[{byte}], {value});"
 
 
-def excess(field: Field, storage: Storage, name: str) -> str | None:
-    """An expression that is 0 if and only if the raw value fits; None where every value of the type fits."""
-    if field.type in ("bool", "float", "bytes") or field.bits == storage.bits:
-        return None
+def _raw(field: FieldDescription) -> str:
+    """The raw value, or the bits of a float."""
+    member = f"message->{field.name}"
+    return f"icdgen_bits_f{field.field.bits}(&{member})" if field.field.type == "float" else member
+
+
+def excess(field: FieldDescription) -> str:
+    """An expression that is 0 if and only if the raw value of a narrow field fits."""
+    storage, one = field.storage, field.field
     wide = 64 if storage.bits == 64 else 32
     if not storage.signed:
-        beyond = ((1 << storage.bits) - 1) ^ field.raw_max
-        return f"message->{name} & {mask(beyond, storage.bits)}"
-    beyond = ((1 << wide) - 1) ^ ((1 << field.bits) - 1)
-    return f"({cast(f'message->{name}', wide)} + {mask(1 << (field.bits - 1), wide)}) & {mask(beyond, wide)}"
+        beyond = ((1 << storage.bits) - 1) ^ one.raw_max
+        return f"message->{field.name} & {mask(beyond, storage.bits)}"
+    beyond = ((1 << wide) - 1) ^ ((1 << one.bits) - 1)
+    return f"({cast(f'message->{field.name}', wide)} + {mask(1 << (one.bits - 1), wide)}) & {mask(beyond, wide)}"

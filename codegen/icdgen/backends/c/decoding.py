@@ -3,50 +3,54 @@
 from __future__ import annotations
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.plan import EMPTY, Member, Plan
-from icdgen.backends.c.runs import Flags, Row, row_macro
-from icdgen.backends.c.statement import STEP, call
+from icdgen.backends.c.member_groups import Flags, Row, member_groups, row_macro
+from icdgen.backends.c.members import EMPTY
+from icdgen.backends.c.names import stem
+from icdgen.backends.c.statement import call
 from icdgen.backends.c.text import WIDTH
-from icdgen.icd.model import Field
+from icdgen.backends.lines import STEP
+from icdgen.describe import FieldDescription, MessageDescription
 
 
-def statements(plan: Plan) -> list[str]:
-    """One statement a field or a run, in the order of the struct."""
-    if not plan.members:
+def statements(message: MessageDescription) -> list[str]:
+    """One statement a field or a group, in the order of the struct."""
+    if not message.fields:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
+    groups = member_groups(message.fields)
     found = []
     index = 0
-    while index < len(plan.members):
-        run = plan.runs.get(index)
-        found.append(_run(run, plan) if run else _one(plan.members[index], plan))
-        index += run.count if run else 1
+    while index < len(message.fields):
+        group = groups.get(index)
+        found.append(_group(group, message) if group else _one(message.fields[index]))
+        index += group.count if group else 1
     return found
 
 
-def _run(run: Flags | Row, plan: Plan) -> str:
-    if isinstance(run, Flags):
-        value = f"buffer[{run.byte}]" + (f" >> {run.shift}" if run.shift else "")
-        return call(f"ICDGEN_READ_{run.macro}", (plan.type, "message", value, *run.arguments(plan.names)))
-    ends = plan.names[run.first], plan.names[run.first + run.count - 1]
-    value = f"&buffer[{run.byte}]"
-    return call(f"ICDGEN_READ_{row_macro(plan.node)}", (plan.type, "message", value, f"{run.count}u", *ends))
+def _group(group: Flags | Row, message: MessageDescription) -> str:
+    names = [field.name for field in message.fields[group.first : group.first + group.count]]
+    target = f"{stem(message)}_t", "message"
+    if isinstance(group, Flags):
+        value = f"buffer[{group.byte}]" + (f" >> {group.shift}" if group.shift else "")
+        return call(f"ICDGEN_READ_{group.macro}", (*target, value, *names))
+    value = f"&buffer[{group.byte}]"
+    return call(f"ICDGEN_READ_{row_macro(message.node)}", (*target, value, f"{group.count}u", names[0], names[-1]))
 
 
-def _one(member: Member, plan: Plan) -> str:
-    field, name, storage = member
-    if field.type == "bytes":
-        return f"memcpy(message->{name}, &buffer[{field.at // 8}], {field.bits // 8}u);"
-    read = bits.read(field, plan.node, storage)
-    line = _assigned(field, name, read.whole)
+def _one(field: FieldDescription) -> str:
+    one = field.field
+    if one.type == "bytes":
+        return f"memcpy(message->{field.name}, &buffer[{one.at // 8}], {one.bits // 8}u);"
+    read = bits.read(field)
+    line = _assigned(field, read.whole)
     if len(STEP) + len(line) <= WIDTH or len(read.terms) == 1:
         return line
-    local = f"bits_{field.at}"
+    local = f"bits_{one.at}"
     first, *others = read.terms
     joined = [f"uint{read.bits}_t {local} = {first};", *(f"{local} |= {term};" for term in others)]
-    return f"\n{STEP}".join([*joined, _assigned(field, name, read.value.format(bits=local))])
+    return f"\n{STEP}".join([*joined, _assigned(field, read.value.format(bits=local))])
 
 
-def _assigned(field: Field, name: str, value: str) -> str:
-    if field.type == "float":
-        return call(f"icdgen_set_f{field.bits}", (f"&message->{name}", value))
-    return f"message->{name} = {value};"
+def _assigned(field: FieldDescription, value: str) -> str:
+    if field.field.type == "float":
+        return call(f"icdgen_set_f{field.field.bits}", (f"&message->{field.name}", value))
+    return f"message->{field.name} = {value};"

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from icdgen.backends.c.plan import Planner
-from icdgen.backends.c.statement import call, parameters
+from icdgen.backends.c import names
+from icdgen.backends.c.statement import call, head
 from icdgen.backends.c.text import literal
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
+from icdgen.describe import MessageDescription, NodeDescription
 
 
 class Case(NamedTuple):
@@ -28,36 +28,35 @@ class Dispatcher(NamedTuple):
     kind: str
     name: str
     cases: list[Case]
-    decode_parameters: str
-    encode_parameters: str
+    decode_head: str
+    encode_head: str
 
 
-def dispatchers(node: Node, planner: Planner) -> list[Dispatcher]:
+def dispatchers(node: NodeDescription) -> list[Dispatcher]:
     """Telemetry and telecommands of the node and what it includes; a direction without messages is left out."""
-    messages = planner.icd.messages_of(node)
-    found = []
-    for kind, id_of, suffix in ((TELEMETRY, "telemetry_id", "GET_ID"), (TELECOMMAND, "telecommand_id", "SET_ID")):
-        cases = [_case(m, suffix, planner) for m in messages if getattr(m, id_of) is not None]
-        if cases:
-            found.append(_dispatcher(kind, f"{node.name}_{kind}", cases))
-    return found
+    directions = (
+        ("telemetry", [_case(m, m.telemetry_id_name) for m in node.telemetry]),
+        ("telecommand", [_case(m, m.telecommand_id_name) for m in node.telecommands]),
+    )
+    return [_dispatcher(kind, f"{node.name}_{kind}", cases) for kind, cases in directions if cases]
 
 
 def _dispatcher(kind: str, name: str, cases: list[Case]) -> Dispatcher:
     message, buffer = f"{name}_t *ICDGEN_RESTRICT message", "uint8_t *ICDGEN_RESTRICT buffer"
-    decode_parameters = parameters(message, "uint16_t id", f"const {buffer}", "size_t length")
-    return Dispatcher(kind, name, cases, decode_parameters, parameters(f"const {message}", buffer, "size_t capacity"))
+    decode_parameters = message, "uint16_t id", f"const {buffer}", "size_t length"
+    encode_parameters = f"const {message}", buffer, "size_t capacity"
+    decode_head = head("icd_status_t ", f"{name}_decode", *decode_parameters)
+    return Dispatcher(kind, name, cases, decode_head, head("icd_status_t ", f"{name}_encode", *encode_parameters))
 
 
-def _case(message: Message, suffix: str, planner: Planner) -> Case:
-    stem = planner.names.message(message)
-    upper, member = stem.upper(), planner.names.file(message)
+def _case(message: MessageDescription, id_name: str) -> Case:
+    stem, member = names.stem(message), f"&message->as.{message.name}"
     return Case(
-        id=f"{upper}_{suffix}" if message.kind == CONFIGURATION else f"{upper}_ID",
+        id=names.constant(message, id_name),
         type=f"{stem}_t",
-        member=member,
-        length=f"{upper}_LENGTH",
-        text=literal(message.name),
-        decode=call(f"return {stem}_decode", (f"&message->as.{member}", "buffer", "length"), depth=2),
-        encode=call(f"return {stem}_encode", (f"&message->as.{member}", "buffer", "capacity"), depth=2),
+        member=message.name,
+        length=names.constant(message, "length"),
+        text=literal(message.message.name),
+        decode=call(f"return {stem}_decode", (member, "buffer", "length"), depth=2),
+        encode=call(f"return {stem}_encode", (member, "buffer", "capacity"), depth=2),
     )

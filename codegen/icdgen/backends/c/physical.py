@@ -6,10 +6,10 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
-from icdgen.backends.c.storage import Storage, cast
-from icdgen.icd import exact
-from icdgen.icd.formula import Scale
-from icdgen.icd.model import Field
+from icdgen.backends.c.types import cast
+from icdgen.describe import FieldDescription
+from icdgen.describe.steps import Steps
+from icdgen.describe.storage import Storage
 
 RAW = "{raw}"  # stands for the member in the expressions made here
 INT32, INT64 = (1 << 31) - 1, (1 << 63) - 1
@@ -36,24 +36,15 @@ class Scaled(NamedTuple):
     whole: Whole | None
 
 
-def scaled(field: Field, storage: Storage) -> Scaled:
+def scaled(field: FieldDescription) -> Scaled:
     """The accessors of a field with a scale."""
-    return _scaled(field.scale, field.raw_min, field.raw_max, storage)
+    assert field.steps is not None
+    return _scaled(field.steps, field.storage)
 
 
 @lru_cache(maxsize=2048)
-def _scaled(scale: Scale, low: int, high: int, storage: Storage) -> Scaled:
-    terms = exact.terms(scale)
-    return Scaled(
-        _double_getter(terms, low, high, storage),
-        _double_setter(terms, low, high, storage),
-        _whole(scale, low, high, storage),
-    )
-
-
-def _ends(low: int, high: int, factor: int, offset: int = 0) -> tuple[int, int]:
-    first, last = low * factor + offset, high * factor + offset
-    return (first, last) if first <= last else (last, first)
+def _scaled(steps: Steps, storage: Storage) -> Scaled:
+    return Scaled(_double_getter(steps, storage), _double_setter(steps, storage), _whole(steps, storage))
 
 
 def _within(most: int, *values: int) -> bool:
@@ -62,8 +53,8 @@ def _within(most: int, *values: int) -> bool:
 
 def _computable(storage: Storage, factor: int, offset: int, most: int) -> bool:
     """Whether raw * factor + offset stays within bounds whatever the storage holds, so that nothing overflows."""
-    product, total = _ends(storage.min, storage.max, factor), _ends(storage.min, storage.max, factor, offset)
-    return _within(most, *product, *total, factor, offset)
+    products = storage.min * factor, storage.max * factor
+    return _within(most, *products, *(product + offset for product in products), factor, offset)
 
 
 def int64(value: int) -> str:
@@ -77,26 +68,24 @@ def _plus(value: str, offset: int, bits: int) -> str:
     return f"{value} {'+' if offset > 0 else '-'} INT{bits}_C({abs(offset)})"
 
 
-def _double_getter(terms: exact.Terms, low: int, high: int, storage: Storage) -> str:
-    factor, offset, divisor = terms
-    if _within(1 << 53, *_ends(low, high, factor, offset)) and _computable(storage, factor, offset, INT64):
-        raw = cast(RAW, 64, True) if storage.bits == 64 and not storage.signed else RAW
-        product = raw if factor == 1 else f"{raw} * INT64_C({factor})"
-        return f"icdgen_quotient({_plus(product, offset, 64)}, {int64(divisor)})"
+def _double_getter(steps: Steps, storage: Storage) -> str:
+    factor, offset, divisor = steps.terms
+    if steps.exact_in_doubles and _computable(storage, factor, offset, INT64):
+        return f"icdgen_quotient({_whole_getter(factor, offset, 64, storage)}, {int64(divisor)})"
     kind = f"{'i' if storage.signed else 'u'}64"
     if offset > INT64:  # has no literal, but its negative has
         return f"0.0 - icdgen_physical_{kind}({RAW}, {int64(-factor)}, {int64(-offset)}, {int64(divisor)})"
     return f"icdgen_physical_{kind}({RAW}, {int64(factor)}, {int64(offset)}, {int64(divisor)})"
 
 
-def _double_setter(terms: exact.Terms, low: int, high: int, storage: Storage) -> tuple[str, ...]:
-    factor, offset, divisor = terms
+def _double_setter(steps: Steps, storage: Storage) -> tuple[str, ...]:
+    factor, offset, divisor = steps.terms
     value = "value"
     if offset > INT64:
         value, factor, offset = "-value", -factor, -offset
-    limits = (_limit(limit, storage) for limit in ((low, high) if storage.signed else (high,)))
+    ends = (steps.raw_min, steps.raw_max) if storage.signed else (steps.raw_max,)
     function = f"icdgen_set_{'i' if storage.signed else 'u'}{storage.bits}"
-    return function, value, int64(factor), int64(offset), int64(divisor), *limits
+    return function, value, int64(factor), int64(offset), int64(divisor), *(_limit(end, storage) for end in ends)
 
 
 def _limit(value: int, storage: Storage) -> str:
@@ -109,29 +98,29 @@ def _limit(value: int, storage: Storage) -> str:
     return f"UINT64_C({value})" if value >= 1 << 32 else f"{value}u"
 
 
-def _whole(scale: Scale, low: int, high: int, storage: Storage) -> Whole | None:
+def _whole(steps: Steps, storage: Storage) -> Whole | None:
     """In thousandths where every raw value gives a whole number of them, else in millionths, else None."""
     for per, prefix in ((1000, "milli"), (1_000_000, "micro")):
-        factor, offset = scale.factor * per, scale.offset * per
+        factor, offset = Fraction(steps.p * per, steps.q), Fraction(steps.c * per, steps.q)
         if factor.denominator == offset.denominator == 1:
-            return _parts(prefix, int(factor), int(offset), low, high, storage)
+            return _parts(prefix, int(factor), int(offset), steps, storage)
     return None
 
 
-def _parts(prefix: str, factor: int, offset: int, low: int, high: int, storage: Storage) -> Whole | None:
+def _parts(prefix: str, factor: int, offset: int, steps: Steps, storage: Storage) -> Whole | None:
     bits, most_of_type = (32, INT32) if _computable(storage, factor, offset, INT32) else (64, INT64)
-    least, most = _accepted(factor, offset, low, high)
+    ends = sorted((raw * factor + offset, raw) for raw in (steps.raw_min, steps.raw_max))
+    least, most = _accepted(abs(factor), *ends)
     least, most = max(least, -most_of_type - 1), min(most, most_of_type)
     differences = least - offset, most - offset
     if not (_computable(storage, factor, offset, most_of_type) and _within(INT64, *differences)):
         return None
     wide = 32 if bits == 32 and _within(INT32, *differences) else 64
-    low_value, high_value = _ends(low, high, factor, offset)
     return Whole(
         prefix=prefix,
         type=f"int{bits}_t",
-        low=low_value,
-        high=high_value,
+        low=ends[0][0],
+        high=ends[1][0],
         getter=_whole_getter(factor, offset, bits, storage),
         least=None if least == -most_of_type - 1 else int64(least),
         most=None if most == most_of_type else int64(most),
@@ -139,13 +128,11 @@ def _parts(prefix: str, factor: int, offset: int, low: int, high: int, storage: 
     )
 
 
-def _accepted(factor: int, offset: int, low: int, high: int) -> tuple[int, int]:
-    """The least and the most value whose nearest raw value (ties to even) lies from ``low`` to ``high``."""
-    half = Fraction(abs(factor), 2)
-    first, last = (low, high) if factor > 0 else (high, low)
-    bottom, top = first * factor + offset - half, last * factor + offset + half
+def _accepted(size: int, low: tuple[int, int], high: tuple[int, int]) -> tuple[int, int]:
+    """The least and the most value whose nearest raw value (ties to even) there is, from the ends and their raw values."""
+    bottom, top = low[0] - Fraction(size, 2), high[0] + Fraction(size, 2)
     least, most = -int(-bottom // 1), int(top // 1)
-    return least + (least == bottom and first % 2), most - (most == top and last % 2)
+    return least + (least == bottom and low[1] % 2), most - (most == top and high[1] % 2)
 
 
 def _whole_getter(factor: int, offset: int, bits: int, storage: Storage) -> str:

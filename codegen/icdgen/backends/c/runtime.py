@@ -13,7 +13,7 @@ _INCLUDE = re.compile(r'^#include "(?P<file>[^"]+)"\n', re.MULTILINE)
 
 def header(file: str, made: Mapping[str, str], render: Renderer) -> str:
     """The text of a header of the runtime. ``made`` are parts that come from the ICD, by the path of the part they replace."""
-    parts = frozenset(name for name in render.runtime() if "/" in name)
+    parts = frozenset(name for name in render.runtime_files() if "/" in name)
 
     def text(file: str) -> str:
         folder = PurePosixPath(file).parent

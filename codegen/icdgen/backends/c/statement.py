@@ -1,4 +1,4 @@
-"""How statements are laid out: on one line where they fit, else in the way of the usual formatters."""
+"""How operands, calls and the heads of functions are written."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ import re
 from collections.abc import Sequence
 
 from icdgen.backends.c.text import WIDTH
-
-STEP = "    "
+from icdgen.backends.lines import STEP, bracketed
 
 _COMPOUND = re.compile(r" (?:<<|>>|&) \w+\Z")
 
@@ -22,56 +21,23 @@ def joined(terms: Sequence[str]) -> str:
     return " | ".join(map(grouped, terms)) if len(terms) > 1 else terms[0]
 
 
-def call(function: str, arguments: Sequence[str], depth: int = 1, end: str = ";") -> str:
-    """A call, without the indentation of its first line; ``depth`` is that of the line it begins in."""
-    line = f"{function}({', '.join(arguments)}){end}"
-    if len(STEP) * depth + len(line) <= WIDTH:
-        return line
-    indent = STEP * (depth + 1)
-    lines, current = [f"{function}("], indent
-    for argument in arguments:
-        if current != indent and len(current) + len(argument) + 2 > WIDTH:
-            lines.append(current.rstrip())
-            current = indent
-        current += f"{argument}, "
-    return "\n".join([*lines, f"{current[:-2]}){end}"])
+def call(function: str, arguments: Sequence[str], depth: int = 1) -> str:
+    """A call as a statement; ``depth`` is that of the line it begins in."""
+    return bracketed(f"{function}(", arguments, ");", WIDTH, STEP * depth, last="")
 
 
 def assigned_byte(target: str, terms: Sequence[str]) -> str:
     """A statement that gives a byte the value of terms or-ed together."""
     value = joined(terms)
-    value = (
-        f"{value};"
-        if len(terms) == 1 and value.startswith("ICDGEN_U8(") and value.endswith(")")
-        else f"ICDGEN_U8({value});"
-    )
-    if len(STEP) + len(target) + 3 + len(value) <= WIDTH:
-        return f"{target} = {value}"
-    indent = STEP * 2
-    if len(indent) + len(value) <= WIDTH:
-        return f"{target} =\n{indent}{value}"
-    lines, line = [f"{target} = ICDGEN_U8("], indent + grouped(terms[0])
-    for term in map(grouped, terms[1:]):
-        if len(line) + len(term) + 5 > WIDTH:
-            lines.append(f"{line} |")
-            line = indent + term
-        else:
-            line += f" | {term}"
-    return "\n".join([*lines, f"{line});"])
-
-
-def head(returned: str, name: str, parameters: str) -> str:
-    """The first line of a function, broken before the parameters, and after the type, where it is too long."""
-    line = f"static inline {returned}{name}({parameters})"
-    if len(line) <= WIDTH:
+    if not (len(terms) == 1 and value.startswith("ICDGEN_U8(") and value.endswith(")")):
+        value = f"ICDGEN_U8({value})"
+    line = f"{target} = {value};"
+    if len(STEP) + len(line) <= WIDTH or len(terms) == 1:
         return line
-    first = f"static inline {returned}{name}("
-    if len(first) > WIDTH:
-        first = f"static inline {returned.rstrip()}\n{name}("
-    return f"{first}\n{STEP}{parameters})"
+    rows = f" |\n{STEP * 2}".join(map(grouped, terms))
+    return f"{target} = ICDGEN_U8(\n{STEP * 2}{rows});"
 
 
-def parameters(*each: str) -> str:
-    """Parameters on the line after the name: on one where they fit, else each on its own."""
-    line = f"{STEP}{', '.join(each)})"
-    return line if len(line) <= WIDTH else f"{STEP}" + f",\n{STEP}".join(each) + ")"
+def head(returned: str, name: str, *parameters: str) -> str:
+    """The head of a function."""
+    return bracketed(f"static inline {returned}{name}(", parameters, ")", WIDTH, last="")

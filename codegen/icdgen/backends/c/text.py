@@ -1,11 +1,19 @@
-"""Text from the ICD -> C comments and string literals that nothing can break out of."""
+"""Text -> C comments and string literals that nothing can break out of."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from functools import lru_cache
 
+from icdgen.backends.lines import bulleted
+from icdgen.describe.comments import Comment
+
 WIDTH = 120
+
+_MARKUP = re.compile(r"[\\@]|<(?=[A-Za-z/!?])|[&#%](?=[\w#:])|(?:(?<![^\s<{(\[,:;]))[*_~](?=\S)|\[(?=[^\]]*\][(\[:])")
+_BLOCK = re.compile(r"(\d*)([-+*=#]+\Z|[.)]\Z|>)")  # begins a list, a heading or a quotation where it begins a line
+_COMMAND = re.compile(r"@file\Z|@note (?=Erratum )")
 
 
 @lru_cache(maxsize=8192)
@@ -13,37 +21,50 @@ def plain(text: str) -> str:
     """One line that is safe within a block comment: no comment delimiters, trigraphs or control characters."""
     text = " ".join(text.split())
     if not (text.isascii() and text.isprintable()):
-        text = "".join(c if c.isprintable() else f"<U+{ord(c):04X}>" for c in text)
+        text = "".join(c if c.isprintable() else f"U+{ord(c):04X}" for c in text)
     for unsafe, safe in (("*/", "* /"), ("/*", "/ *"), ("??", "? ?")):
         while unsafe in text:
             text = text.replace(unsafe, safe)
     return text
 
 
+@lru_cache(maxsize=8192)
+def prose(text: str) -> str:
+    """`plain` text for a documentation comment: only backticks are markup, nothing is a command or HTML to Doxygen or clang."""
+    text = plain(text)
+    return text if text.replace(" ", "").isalnum() else _MARKUP.sub(r"\\\g<0>", text)
+
+
+def _spelled(paragraph: str) -> str:
+    command = _COMMAND.match(paragraph)
+    start = command.group() if command else ""
+    return start + prose(paragraph[len(start) :])
+
+
+def _tamed(line: str) -> str:
+    """A line that begins no list, heading or quotation."""
+    word, space, rest = line.partition(" ")
+    return _BLOCK.sub(r"\1\\\2", word, count=1) + space + rest if _BLOCK.match(word) else line
+
+
 def comment(paragraphs: Iterable[str], indent: str = "") -> str:
-    """A documentation comment of `plain` paragraphs: one line where it fits, else a block."""
-    paragraphs = [p for p in paragraphs if p]
+    """A documentation comment: one line where it fits, else a block."""
+    paragraphs = [_spelled(p) for p in paragraphs if p]
     if len(paragraphs) == 1 and len(indent) + len(paragraphs[0]) + 7 <= WIDTH:
-        return f"{indent}/** {paragraphs[0]} */"
-    lines = [f"{indent}/**"]
-    for paragraph in paragraphs:
-        lines += [f"{indent} * {line}" for line in _lines(paragraph, WIDTH - len(indent) - 3)]
-    lines.append(f"{indent} */")
-    return "\n".join(lines)
+        return f"{indent}/** {_tamed(paragraphs[0])} */"
+    start = f"{indent} * "
+    lines = [start + _tamed(line[len(start) :]) for line in bulleted(paragraphs, WIDTH, start, "") if line]
+    return "\n".join([f"{indent}/**", *lines, f"{indent} */"])
 
 
-def _lines(paragraph: str, width: int) -> list[str]:
-    if len(paragraph) <= width:
-        return [paragraph]
-    hang = "  " if paragraph.startswith("@") else ""
-    lines, line = [], ""
-    for word in paragraph.split(" "):
-        if line.strip() and len(line) + 1 + len(word) > width:
-            lines.append(line)
-            line = hang + word
-        else:
-            line = f"{line} {word}" if line else word
-    return [*lines, line]
+def described(one: Comment, indent: str = "") -> str:
+    """The comment of a part: what it is in one paragraph, and its errata as notes."""
+    return comment([" ".join((one.head, *one.rest)), *noted(one)], indent)
+
+
+def noted(one: Comment) -> list[str]:
+    """The errata as notes of the usual documentation tools."""
+    return [f"@note {paragraph}" for paragraph in one.errata]
 
 
 @lru_cache(maxsize=4096)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from icdgen.backends.c.names import Names, accessor_unit
+from icdgen.backends.c.names import enumerator, stem
 from icdgen.backends.python import names as python
 from icdgen.backends.rust import CRATE, fields
 from icdgen.backends.rust import names as rust
+from icdgen.describe import FieldDescription, describe
 from icdgen.icd.model import Field, Icd, Message, Node
 
 _PACKAGE = "icdgen_messages"
@@ -25,7 +26,7 @@ class Usage:
     """Makes the snippets of messages."""
 
     def __init__(self, icd: Icd) -> None:
-        self.icd, self.c, self.enums = icd, Names(icd), rust.Enums(icd)
+        self.icd, self.description, self.enums = icd, describe(icd), rust.Enums(icd)
 
     def snippets(self, message: Message) -> list[Snippet]:
         """One for each language: receiving, sending, or both."""
@@ -39,39 +40,38 @@ class Usage:
         ]
 
     def _c(self, message: Message, node: Node, shown: Field | None, receive: bool, send: bool) -> str:
-        name = self.c.message(message)
+        described = self.description.message(message)
+        name = stem(described)
+        fields = (field for field in described.fields if field.field is shown)
+        field = next(fields, None)
         lines = [f'#include "{node.name}.h"']
         if receive:
             lines += ["", f"{name}_t message;", f"if ({name}_decode(&message, buffer, length) == ICD_OK) {{"]
-            if shown is None:
+            if field is None:
                 lines.append(f"    /* {name.upper()}_LENGTH bytes, without any field */")
-            elif shown.scale is not None:
-                field = self.c.field(message, shown)
-                lines.append(f"    double {field} = {name}_{field}_{accessor_unit(shown)}(&message);")
+            elif field.steps is not None:
+                lines.append(f"    double {field.name} = {name}_{field.physical_name}(&message);")
             else:
-                lines.append(f"    use(message.{self.c.field(message, shown)});")
+                lines.append(f"    use(message.{field.name});")
             lines.append("}")
         if send:
             size = f"{name.upper()}_LENGTH"
             variable = "command" if receive else "message"
             lines += ["", f"{name}_t {variable};", f"uint8_t frame[{size}{'' if message.length else ' + 1'}];", ""]
             lines.append(f"{name}_init(&{variable});")
-            if shown is not None:
-                lines.append(self._c_setting(message, name, shown, variable))
+            if field is not None:
+                lines.append(self._c_setting(name, field, variable))
             lines.append(f"if ({name}_encode(&{variable}, frame, sizeof frame) == ICD_OK) {{")
             lines.append(f"    send({name.upper()}_{'SET_ID' if receive else 'ID'}, frame, {size});")
             lines.append("}")
         return "\n".join(lines)
 
-    def _c_setting(self, message: Message, name: str, shown: Field, variable: str) -> str:
-        field = self.c.field(message, shown)
-        if shown.scale is not None:
-            return (
-                f"{name}_set_{field}_{accessor_unit(shown)}(&{variable}, 0.0);   /* ICD_OK, unless it does not fit */"
-            )
-        if shown.enum is not None and shown.enum.members:
-            return f"{variable}.{field} = {self.c.member(shown.enum, shown.enum.members[-1])};"
-        return f"{variable}.{field} = {'true' if shown.type == 'bool' else '0'};"
+    def _c_setting(self, name: str, field: FieldDescription, variable: str) -> str:
+        if field.steps is not None:
+            return f"{name}_set_{field.physical_name}(&{variable}, 0.0);   /* ICD_OK, unless it does not fit */"
+        if field.enum is not None and field.enum.members:
+            return f"{variable}.{field.name} = {enumerator(field.enum, field.enum.members[-1])};"
+        return f"{variable}.{field.name} = {'true' if field.field.type == 'bool' else '0'};"
 
     def _python(self, message: Message, node: Node, shown: Field | None, receive: bool, send: bool) -> str:
         name = python.class_name(message, node)

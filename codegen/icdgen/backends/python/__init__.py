@@ -12,7 +12,6 @@ from icdgen.backends.python.text import prose
 from icdgen.icd.model import Icd
 
 _RUNTIME = PurePosixPath("icdgen_runtime")  # the package that what all nodes share is developed as
-_TESTEE = ("testee", "wire/_testee", "wire/_testee_link", "wire/_testee_scripts")
 
 
 class PythonBackend:
@@ -39,12 +38,10 @@ class PythonBackend:
         yield PurePosixPath("README.md"), render("README.md.j2", **common, **listed)
         yield root / "__init__.py", render("package.py.j2", **common, **listed)
         yield root / "py.typed", ""
-        for name in render.runtime(str(_RUNTIME)):
+        for name in render.runtime_files(str(_RUNTIME)):
             path = PurePosixPath(name).relative_to(_RUNTIME)
             if path != PurePosixPath("__init__.py"):
                 yield root / path, f"{header}\n{render.source(name)}"
-        for name in _TESTEE:
-            yield root / f"{name}.py", render(f"{name}.py.j2", **common, **listed)
         enums = messages.EnumNames(icd)
         for node in icd.nodes:
             folder = root / node.name

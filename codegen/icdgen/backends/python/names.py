@@ -19,7 +19,6 @@ IN_MESSAGE = {
     **dict.fromkeys(("self", "cls"), "the parameter `{}`"),
 }
 IN_PACKAGE = dict.fromkeys(("getattr", "globals", "import_module", "sorted"), "the function `{}`")
-IN_PACKAGE["testee"] = "the module `testee`"
 IN_PACKAGE["wire"] = "the package `wire`"
 
 WIRE = "wire"  # the subpackage that says how messages travel

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from icdgen.backends import Identifier
 from icdgen.backends.python import names
 from icdgen.icd.model import Icd, Message, Node
+from icdgen.naming import DEVICES
 
 
 def identifiers(icd: Icd, package: str) -> Iterator[Identifier]:
@@ -29,6 +30,10 @@ def identifiers(icd: Icd, package: str) -> Iterator[Identifier]:
 
 
 def _node(icd: Icd, node: Node, scope: str) -> Iterator[Identifier]:
+    for name in DEVICES:
+        yield Identifier(f"files of {scope}", name, "a device of Windows", None)
+    for enum in node.enums:  # messages have files in every language
+        yield Identifier(f"files of {scope}", names.module_name(enum, node), f"enumeration `{enum.name}`", enum.source)
     for owner in (*icd.included(node), node):
         for one, kind in (*((m, "message") for m in owner.messages), *((e, "enumeration") for e in owner.enums)):
             said = f"{kind} `{one.name}`"

@@ -8,6 +8,9 @@ from collections.abc import Iterable
 from icdgen.backends.python.black import WIDTH
 
 _PLAIN = re.compile(r"[ -!#-\[\]-~]*\Z")  # printable ASCII without double quote and backslash
+# In both a backslash takes the meaning from what follows: of inline markup, and of what begins a list, a directive, a field.
+_MARKUP = re.compile(r"[\\`]|<(?=[A-Za-z/!?])|(?<![^\s'\"(\[{</:-])[*_|](?=\S)|(?<=\w)_(?!\w)|\|(?=_)")
+_BLOCK = re.compile(r"\A(\(?(?:[0-9]+|[A-Za-z#])(?=[.)] )|(?=[-+*\u2022] |\.\. |>>>|:|[=#]+ ))")
 _ESCAPES = {"\n": "\\n", "\r": "\\r", "\t": "\\t", "\\": "\\\\"}
 
 
@@ -29,10 +32,13 @@ def _character(c: str) -> str:
 
 
 def prose(text: str) -> str:
-    """Text for a docstring: one line, nothing that ends or escapes from it."""
+    """Text for a docstring: one line, nothing that ends or escapes from it, and nothing that reStructuredText or Markdown take
+    for markup."""
+    text = " ".join(text.split())
+    if not text.replace(" ", "").isalnum():
+        text = _BLOCK.sub(r"\g<1>\\", _MARKUP.sub(r"\\\g<0>", text))
     if _PLAIN.match(text):
         return text
-    text = " ".join(text.split())
     return "".join('\\"' if c == '"' else _character(c) for c in text)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from icdgen.backends import Identifier
 from icdgen.backends.rust import constants, names
 from icdgen.icd.model import Enum, Icd, Message, Node
+from icdgen.naming import DEVICES
 
 _METHODS = ("from_bytes", "from_array", "to_bytes", "try_to_bytes", "default")
 _CONSTANTS = ("NAME", "LENGTH", "ID", "SET_ID", "GET_ID")
@@ -19,6 +20,9 @@ def identifiers(icd: Icd) -> Iterator[Identifier]:
     scope = "modules of the crate"
     for name in names.USED_MODULES:
         yield Identifier(scope, name, _OURS, None)
+    for name, said in names.ROOTS.items():
+        yield Identifier(scope, name, said, None)
+    yield from _devices(scope)
     for node in icd.nodes:
         yield Identifier(scope, node.name, f"node `{node.name}`", node.source)
     by_name = {node.name: node for node in icd.nodes}
@@ -26,10 +30,15 @@ def identifiers(icd: Icd) -> Iterator[Identifier]:
         yield from _node(icd, node, by_name)
 
 
+def _devices(scope: str) -> Iterator[Identifier]:
+    return (Identifier(scope, name, "a device of Windows", None) for name in DEVICES)
+
+
 def _node(icd: Icd, node: Node, by_name: dict[str, Node]) -> Iterator[Identifier]:
     modules, types, enums = f"modules of {node.name}", f"types of {node.name}", f"enumerations of {node.name}"
     for name in names.USED_IN_NODES:
         yield Identifier(modules, name, _OURS, None)
+    yield from _devices(modules)
     for name in names.USED_TYPES:
         yield Identifier(types, name, _OURS, None)
     for name in _ENUM_USES:

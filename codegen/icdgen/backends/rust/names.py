@@ -16,6 +16,8 @@ RESERVED = frozenset("""
 USED_TYPES = ("Result", "Error", "Default", "Coded", "Scale", "Telemetry", "Telecommand")
 # What stands beside the modules of the nodes.
 USED_MODULES = ("support", "std", "wire")
+# What a folder of that name in `src` means to Cargo and rustc.
+ROOTS = {"lib": "the root of the crate", "main": "the root of a program", "bin": "the folder of programs"}
 ENUMS_MODULE = "enums"
 # What stands beside the modules of a node's messages, and what their parent calls by its bare name.
 USED_IN_NODES = (ENUMS_MODULE, "u8", "u16", "u32", "u64", "usize", "str", "serde", "defmt")

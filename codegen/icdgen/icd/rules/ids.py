@@ -60,10 +60,17 @@ def ids_in_range(ctx: Context) -> Iterator[Fault]:
         for use in (u for n in ctx.scope(node) for u in _uses(n)):
             first, last = ranges.get(use.direction, BYTE)
             if not first <= use.id <= last:
-                other = next((d for d, (a, b) in ranges.items() if a <= use.id <= b), None)
-                help = f"{use.id} is a {other} id" if other else f"correct `{use.key}`"
+                help = _remedy(use, ranges)
                 message = f"{use.direction} ids go from {first} to {last}: {use.id} is not one of them"
                 yield Fault(use.source, use.source.at(use.key), message, help)
+
+
+def _remedy(use: Use, ranges: dict[str, tuple[int, int]]) -> str:
+    if not ranges:
+        return f"correct `{use.key}`: an id is one byte, longer ones cannot be described"
+    other = next((d for d, (first, last) in ranges.items() if first <= use.id <= last), None)
+    wrong = f"{use.id} is a {other} id: correct `{use.key}` or `kind`" if other else f"correct `{use.key}`"
+    return f"{wrong}, or the range in `protocol: message_id`"
 
 
 @rule("ICD059")

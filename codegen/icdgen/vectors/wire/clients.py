@@ -125,6 +125,20 @@ def _uart(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict]]]:
     yield "errors in the stream", [
         s.request(0, frame), {"at": 1, "receive": "1f7f901f00"}, {"at": 2, "receive": "1f7f1fff1f7f90"}, reply(3, frame),
     ]  # fmt: skip
+    cancel = {"cancel": True}
+    yield "cancelled: nobody waits for its acknowledge, and another id need not wait", [
+        s.ask(0, plain), {"at": 5, **cancel}, s.ask(5, other), ack(6, plain), ack(7, other),
+    ]  # fmt: skip
+    yield "cancelled, and the same id again", [
+        s.ask(0, plain), {"at": 5, **cancel}, s.ask(6, plain), ack(7, plain), {"at": 199}, {"at": 200}, ack(201, plain),
+    ]  # fmt: skip
+    yield "cancelled while it is held back", [
+        s.ask(0, plain), {"at": 5, **cancel}, s.ask(6, plain), {"at": 7, **cancel}, s.ask(8, plain), {"at": 200}, ack(201, plain),
+    ]  # fmt: skip
+    yield "cancelled twice, and with nothing to cancel", [
+        {"at": 0, **cancel}, s.request(0, frame), {"at": 1, **cancel}, {"at": 1, **cancel}, {"at": 100}, {"at": 500},
+        s.request(500, frame), reply(501, frame),
+    ]  # fmt: skip
     if s.setting:
         yield "a setting is repeated", [s.ask(0, s.setting), {"at": 100}, ack(110, s.setting)]
     if s.silent:
@@ -214,6 +228,39 @@ def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dic
     if s.silent:
         yield "not acknowledged", [s.ask(0, s.silent), written, s.ask(2, s.silent), {"at": 3, "receive": ""}]
     yield "a transfer that was not asked for", [{"at": 0, "receive": "00"}]
+    second = next((m for m in known.telecommands.values() if m.acknowledge and m is not plain), other)
+    quiet = [{"at": 100}, {"at": 110}, {"at": 210}, {"at": 220}, {"at": 320}]  # until a request has no attempt left
+    near = next((m for m in known.telemetry.values() if m is not wide and m.length == wide.length), wide)
+    begin = 320 if near is not wide else 420  # the same id is held back
+    old, new = ({"receive": frame(near, bytes((value,)) * near.length)} for value in (1, 2))
+    yield "frames that come when their request has timed out are not those of the next", [
+        s.request(0, wide), *quiet, s.request(begin, near), *({"at": begin + n, **old} for n in (1, 2, 3)),
+        {"at": begin + 4, **new},
+    ]  # fmt: skip
+    yield "a frame that takes longer than its request waits", [
+        s.request(0, wide), {"at": 101, **old}, {"at": 111}, {"at": 112, **new},
+    ]  # fmt: skip
+    yield "a frame that is sent for again before the first has come", [
+        s.request(0, wide), {"at": 100}, {"at": 110}, {"at": 111, **old}, {"at": 112, **new},
+    ]  # fmt: skip
+    yield "a write that ends when its request has timed out is not that of the next", [
+        s.ask(0, plain), {"at": 100}, s.ask(101, second), {"at": 102, "receive": ""}, {"at": 103, "receive": ""}, {"at": 113},
+        state(114, second, 1),
+    ]  # fmt: skip
+    yield "a poll that ends when its request has timed out is not that of the next", [
+        s.ask(0, plain), written, {"at": 11}, {"at": 111}, s.request(112, wide), {"at": 113, **failed}, {"at": 114, **new},
+    ]  # fmt: skip
+    if s.reset:
+        yield "a write that comes late does not write the reset that follows", [
+            s.ask(0, plain), {"at": 100}, s.ask(101, s.reset), {"at": 102, "receive": ""}, {"at": 103, "receive": ""},
+        ]  # fmt: skip
+    yield "cancelled: what it owes is not for the next", [
+        s.request(0, wide), {"at": 1, "cancel": True}, s.ask(2, plain), {"at": 3, **old}, {"at": 4, "receive": ""}, {"at": 14},
+        {"at": 15, "cancel": True}, s.request(16, wide), state(17, plain, 1), {"at": 18, **new},
+    ]  # fmt: skip
+    yield "more transfers than were asked for", [
+        s.request(0, wide), {"at": 1, **new}, {"at": 2, **old}, s.request(3, wide), {"at": 4, **new},
+    ]  # fmt: skip
 
 
 def _can(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict]]]:
@@ -249,5 +296,9 @@ def _can(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict]]]:
     ]  # fmt: skip
     yield "no reply", [s.request(0, frame), {"at": 100}, {"at": 200}, {"at": 300}]
     yield "an acknowledge that nobody waits for", come(0, "acknowledge", id)
+    yield "cancelled: nobody waits for its acknowledge", [
+        s.ask(0, plain), {"at": 1, "cancel": True}, s.request(2, frame), *come(3, "acknowledge", id),
+        *come(4, "reply", frame_id, bytes(frame.length)),
+    ]  # fmt: skip
     if s.silent:
         yield "not acknowledged", [s.ask(0, s.silent), s.ask(0, s.silent)]

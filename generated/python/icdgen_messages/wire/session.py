@@ -29,7 +29,8 @@ class Session:
     """Asks, and waits for the outcome, over a UART or whatever carries its bytes.
 
     The port is yours: ``write(data)`` sends, ``read(seconds)`` returns what has come,
-    after so many seconds at the latest, if need be nothing. ``clock`` gives seconds.
+    after so many seconds at the latest, if need be nothing; `serial_port` makes them of
+    a serial port. What they raise ends the request. ``clock`` gives seconds.
     ``on_event`` is told of what comes unasked, such as logs, and by `run` of refusals
     with a code that the ICD does not have.
     """
@@ -73,6 +74,14 @@ class Session:
         it may be, as the acknowledge may be damaged, and else taken for a time-out. Raises
         `FailedError`.
         """
+        try:
+            return self._driven(procedure, progress)
+        finally:
+            self.client.cancel()  # else a port that fails leaves it busy
+
+    def _driven(
+        self, procedure: P, progress: Callable[[int, int | None], object] | None
+    ) -> P:
         events: list[Event] = []
         shown: tuple[int, int | None] | None = None
         asked: Request | None = None
@@ -135,12 +144,15 @@ class Session:
             self._on_event(event)
 
     def _outcome(self, events: list[Event]) -> Outcome:
-        while True:
-            for event in events:
-                if isinstance(event, (Done, Refused, Timeout)):
-                    self._flush()
-                    return event
-            events = self.wait()
+        try:
+            while True:
+                for event in events:
+                    if isinstance(event, (Done, Refused, Timeout)):
+                        self._flush()
+                        return event
+                events = self.wait()
+        finally:
+            self.client.cancel()  # else a port that fails leaves it busy
 
     def _flush(self) -> None:
         data = self.client.output()

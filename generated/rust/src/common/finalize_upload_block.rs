@@ -9,22 +9,22 @@ use crate::support::{put, take, Coded, Error};
 ///
 /// Commits the received block to its destination.
 ///
-/// Erratum COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
 ///
-/// Erratum COM-049 (likely): Finalize Upload Block is missing from the procedure.
+/// Note COM-049 (likely): Finalize Upload Block is missing from the procedure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct FinalizeUploadBlock {
     /// Destination (bits 0 to 7).
     pub destination: Coded<enums::FileUploadDestination>,
-    /// Offset (bits 8 to 39): 0 to 4294967295.
+    /// Offset (bits 8 to 39): 0 to 4294967295 byte.
     ///
     /// Where in the file the block belongs.
     ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
     pub offset: u32,
-    /// Block Length (bits 40 to 55): 0 to 65535.
+    /// Block Length (bits 40 to 55): 0 to 65535 byte.
     ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
     pub block_length: u16,
@@ -75,6 +75,7 @@ impl FinalizeUploadBlock {
 }
 
 impl crate::wire::Telecommand for FinalizeUploadBlock {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 116;
 
     #[inline]

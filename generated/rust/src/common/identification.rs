@@ -8,7 +8,7 @@ use crate::support::{put, take, Error};
 ///
 /// Tells which program is running. Requesting it from the bootloader keeps it from booting on.
 ///
-/// Erratum COM-054 (open): Waiting times before the identification request differ, and the request
+/// Note COM-054 (open): Waiting times before the identification request differ, and the request
 /// itself stops the boot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -26,19 +26,19 @@ pub struct Identification {
     pub firmware_version_major: u8,
     /// Firmware version (Minor) (bits 24 to 31): 0 to 255.
     pub firmware_version_minor: u8,
-    /// Runtime (seconds) (bits 32 to 47): 0 to 65535.
+    /// Runtime (seconds) (bits 32 to 47): 0 to 65535 s.
     ///
     /// Since the processor started.
     ///
-    /// Erratum COM-056 (open): Runtime wraps after 18 hours.
+    /// Erratum COM-057 (certain): Runtime has its unit in words only.
     ///
-    /// Erratum COM-057 (certain): Runtime has its units in the name only.
+    /// Note COM-056 (open): Runtime wraps after 18 hours.
     pub runtime_seconds: u16,
-    /// Runtime (milliseconds) (bits 48 to 63): 0 to 65535.
+    /// Runtime (milliseconds) (bits 48 to 63): 0 to 65535 ms.
     ///
     /// Beyond the whole seconds.
     ///
-    /// Erratum COM-057 (certain): Runtime has its units in the name only.
+    /// Erratum COM-127 (certain): Milliseconds of the runtime have their unit in words only.
     pub runtime_milliseconds: u16,
 }
 
@@ -93,6 +93,7 @@ impl Identification {
 }
 
 impl crate::wire::Telemetry for Identification {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 128;
 
     #[inline]

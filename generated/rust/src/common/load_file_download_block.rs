@@ -18,23 +18,23 @@ pub struct LoadFileDownloadBlock {
     ///
     /// Of the file: with the type it identifies the file.
     ///
-    /// Erratum COM-029 (certain): One field, several spellings.
+    /// Note COM-029 (certain): One field, several spellings.
     ///
-    /// Erratum COM-035 (open): File counter of 8 bits.
+    /// Note COM-035 (open): File counter of 8 bits.
     pub counter: u8,
-    /// Offset (bits 16 to 47): 0 to 4294967295.
+    /// Offset (bits 16 to 47): 0 to 4294967295 byte.
     ///
     /// Where in the file the block begins.
     ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
     pub offset: u32,
-    /// BlockLength (bits 48 to 63): 0 to 65535.
+    /// BlockLength (bits 48 to 63): 0 to 65535 byte.
     ///
-    /// 20 kB at most. Must be at most 20480.
-    ///
-    /// Erratum COM-029 (certain): One field, several spellings.
+    /// 20 kB at most. Must be at most 20480 byte.
     ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    ///
+    /// Note COM-029 (certain): One field, several spellings.
     pub block_length: u16,
 }
 
@@ -45,7 +45,7 @@ impl LoadFileDownloadBlock {
     pub const LENGTH: usize = 8;
     /// The telecommand id.
     pub const ID: u8 = 112;
-    /// Largest valid: BlockLength.
+    /// Largest valid: BlockLength in byte.
     pub const BLOCK_LENGTH_MAX: u16 = 20_480;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -87,6 +87,7 @@ impl LoadFileDownloadBlock {
 }
 
 impl crate::wire::Telecommand for LoadFileDownloadBlock {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 112;
 
     #[inline]

@@ -10,11 +10,9 @@ use crate::support::{Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct JpgConversionProgress {
-    /// Progress Percentage (bits 0 to 7): 0 to 255.
+    /// Progress Percentage (bits 0 to 7): 0 to 255 %.
     ///
-    /// In percent.
-    ///
-    /// Erratum ACP-065 (certain): JPG progress has no unit.
+    /// Erratum ACP-065 (certain): JPG progress has its unit in words only.
     pub progress_percentage: u8,
     /// Conversion Result (bits 8 to 15).
     pub conversion_result: Coded<enums::JpgConvertResult>,
@@ -67,6 +65,7 @@ impl JpgConversionProgress {
 }
 
 impl crate::wire::Telemetry for JpgConversionProgress {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 133;
 
     #[inline]

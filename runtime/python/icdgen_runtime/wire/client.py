@@ -79,6 +79,7 @@ class Client:
         self._stream: list[bytes] = []
         self._packets: list[CanPacket] = []
         self._transfers: list[I2cTransfer] = []
+        self._owed = 0  # I2C: transfers taken of which `transferred` was not told
         self._state: Literal["idle", "hold", "wait", "pause", "poll"] = "idle"
         self._asked = Request("telemetry", 0)
         self._attempts = 0
@@ -151,9 +152,23 @@ class Client:
         return taken
 
     def transfers(self) -> list[I2cTransfer]:
-        """I2C: what is to be written and read, once. Answered by `transferred`."""
+        """I2C: what is to be written and read, once.
+
+        `transferred` is told of each, once and in this order.
+        """
         taken, self._transfers = self._transfers, []
+        self._owed += len(taken)
         return taken
+
+    def cancel(self) -> None:
+        """Gives up the request, without an event, and what of it was not taken.
+
+        The next one may begin at once; a late reply to this one is `Stray`.
+        """
+        self._stream, self._packets, self._transfers = [], [], []
+        if self.busy and self._attempts:
+            self._late = self._asked.id, self._until + self.settings.reply_timeout
+        self._state = "idle"
 
     def tick(self, now: float) -> list[Event]:
         """Lets time pass."""
@@ -185,13 +200,18 @@ class Client:
         return events
 
     def transferred(self, now: float, data: Buffer | None) -> list[Event]:
-        """I2C: what was read (nothing after a write); None: the transaction failed."""
-        events = self.tick(now)
+        """I2C: what was read (nothing after a write); None: the transaction failed.
+
+        What a request owed that is over is `Stray`.
+        """
+        is_awaited = self._owed == 1 and self._awaits_transfer
+        self._owed = max(0, self._owed - 1)
+        events = self.tick(now)  # which may end the request that it belongs to
         read = None if data is None else bytes(data)
+        if not (is_awaited and self._awaits_transfer):
+            return [*events, Stray(read or b"")]
         if self._state == "poll":
             return events + self._polled(now, read)
-        if self._state != "wait":
-            return [*events, Stray(read or b"")]
         if read is None:
             return events + self._no_reply(now)
         if self._asked.kind == "telemetry":
@@ -206,6 +226,11 @@ class Client:
         self._is_written = True
         self._give_up = now + self.settings.poll_timeout
         return events + self._pause(now)
+
+    @property
+    def _awaits_transfer(self) -> bool:
+        """I2C: whether the last transfer was taken, and is that of the request."""
+        return self._state in ("wait", "poll") and not self._transfers
 
     def _transmit(self, now: float) -> list[Event]:
         """Sends the request, for the first time or again."""

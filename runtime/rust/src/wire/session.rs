@@ -142,7 +142,7 @@ impl<P: Read + Write, const N: usize> Session<P, N> {
     /// [`Failure`]
     pub fn send<M: Telecommand>(&mut self, message: &M) -> Result<(), Failure> {
         match self.client.send(self.now(), message)? {
-            Started::Done => self.flush(),
+            Started::Done => self.flushed(),
             Started::Waiting => self.outcome().map(|_| ()),
         }
     }
@@ -154,7 +154,7 @@ impl<P: Read + Write, const N: usize> Session<P, N> {
     /// [`Failure`]
     pub fn start(&mut self, request: &Request<'_>) -> Result<Vec<u8>, Failure> {
         match self.client.start(self.now(), request)? {
-            Started::Done => self.flush().map(|()| Vec::new()),
+            Started::Done => self.flushed().map(|()| Vec::new()),
             Started::Waiting => self.outcome(),
         }
     }
@@ -165,6 +165,11 @@ impl<P: Read + Write, const N: usize> Session<P, N> {
     ///
     /// [`Failure`]
     pub fn run(&mut self, procedure: &mut (impl Procedure + ?Sized)) -> Result<(), Failure> {
+        let ended = self.driven(procedure);
+        self.cancelled(ended)
+    }
+
+    fn driven(&mut self, procedure: &mut (impl Procedure + ?Sized)) -> Result<(), Failure> {
         loop {
             while self.client.advance(self.now(), procedure)? {
                 self.flush()?;
@@ -187,6 +192,11 @@ impl<P: Read + Write, const N: usize> Session<P, N> {
     }
 
     fn outcome(&mut self) -> Result<Vec<u8>, Failure> {
+        let outcome = self.awaited();
+        self.cancelled(outcome)
+    }
+
+    fn awaited(&mut self) -> Result<Vec<u8>, Failure> {
         let mut found = None;
         loop {
             self.wait(|_, event| found = found.take().or_else(|| outcome_of(event)))?;
@@ -194,6 +204,19 @@ impl<P: Read + Write, const N: usize> Session<P, N> {
                 return outcome;
             }
         }
+    }
+
+    fn flushed(&mut self) -> Result<(), Failure> {
+        let sent = self.flush();
+        self.cancelled(sent)
+    }
+
+    /// A request that failed with its port must not be in the way of the next one.
+    fn cancelled<T>(&mut self, result: Result<T, Failure>) -> Result<T, Failure> {
+        if result.is_err() {
+            self.client.cancel();
+        }
+        result
     }
 
     fn wait(&mut self, mut on_event: impl FnMut(u32, &Event<'_>)) -> Result<(), Failure> {

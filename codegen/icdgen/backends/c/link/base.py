@@ -7,14 +7,14 @@ from typing import NamedTuple
 
 from icdgen import codec
 from icdgen.backends.c.link.rows import aligned, lines, or_none
-from icdgen.backends.c.statement import STEP
 from icdgen.backends.c.text import comment, plain
+from icdgen.backends.lines import STEP
 from icdgen.protocol.facts import CAN, I2C, UART, Facts, Step
 
 BUSES = (UART, I2C, CAN)
 _ROLES = frozenset(
     "type counter offset length ready error checksum ignore_hole_map destination block_size busy number bytes all size "
-    "time node_type interface_version id processed parameter".split()
+    "time node_type interface_version id processed parameter program".split()
 )
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from icdgen.backends.c.statement import STEP
 from icdgen.backends.c.text import WIDTH, comment
+from icdgen.backends.lines import STEP
 from icdgen.icd.model import Message
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF

@@ -20,7 +20,7 @@ class DownloadBlockReady(_base.Message):
 
     Whether the block asked for by Load File Download Block is in the buffer.
 
-    Erratum COM-093: Polling has no interval and no time-out.
+    Note COM-093: Polling has no interval and no time-out.
     """
 
     __slots__ = ("ready", "parameter_error", "block_crc16_checksum", "block_length")
@@ -36,7 +36,7 @@ class DownloadBlockReady(_base.Message):
         _base.FieldInfo("ready", "Ready", 0, 1, "bool"),
         _base.FieldInfo("parameter_error", "ParameterError", 1, 1, "bool"),
         _base.FieldInfo("block_crc16_checksum", "Block CRC16 Checksum", 8, 16, "uint"),
-        _base.FieldInfo("block_length", "Block Length", 24, 16, "uint"),
+        _base.FieldInfo("block_length", "Block Length", 24, 16, "uint", unit="byte"),
     )
 
     ready: bool
@@ -46,12 +46,12 @@ class DownloadBlockReady(_base.Message):
 
     Message length and hole map together led to invalid array lengths.
 
-    Erratum COM-097: ParameterError refers to arrays that no message has.
+    Note COM-097: ParameterError refers to arrays that no message has.
     """
     block_crc16_checksum: int
     """Block CRC16 Checksum: bits 8 to 23, 0 to 65535."""
     block_length: int
-    """Block Length: bits 24 to 39, 0 to 65535.
+    """Block Length: bits 24 to 39, 0 to 65535, in byte.
 
     Erratum COM-039: Offsets and lengths of files have no unit.
     """

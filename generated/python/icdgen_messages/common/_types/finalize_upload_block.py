@@ -21,10 +21,9 @@ class FinalizeUploadBlock(_base.Message):
 
     Commits the received block to its destination.
 
-    Erratum COM-041: File upload is listed as common but described for the bootloader
-    only.
+    Note COM-041: File upload is listed as common but described for the bootloader only.
 
-    Erratum COM-049: Finalize Upload Block is missing from the procedure.
+    Note COM-049: Finalize Upload Block is missing from the procedure.
     """
 
     __slots__ = ("destination", "offset", "block_length")
@@ -40,21 +39,21 @@ class FinalizeUploadBlock(_base.Message):
         _base.FieldInfo(
             "destination", "Destination", 0, 8, "enum", enum=FileUploadDestination
         ),
-        _base.FieldInfo("offset", "Offset", 8, 32, "uint"),
-        _base.FieldInfo("block_length", "Block Length", 40, 16, "uint"),
+        _base.FieldInfo("offset", "Offset", 8, 32, "uint", unit="byte"),
+        _base.FieldInfo("block_length", "Block Length", 40, 16, "uint", unit="byte"),
     )
 
     destination: FileUploadDestination
     """Destination: bits 0 to 7, 0 to 255."""
     offset: int
-    """Offset: bits 8 to 39, 0 to 4294967295.
+    """Offset: bits 8 to 39, 0 to 4294967295, in byte.
 
     Where in the file the block belongs.
 
     Erratum COM-039: Offsets and lengths of files have no unit.
     """
     block_length: int
-    """Block Length: bits 40 to 55, 0 to 65535.
+    """Block Length: bits 40 to 55, 0 to 65535, in byte.
 
     Erratum COM-039: Offsets and lengths of files have no unit.
     """

@@ -19,7 +19,7 @@ class Identification(_base.Message):
     Tells which program is running. Requesting it from the bootloader keeps it from
     booting on.
 
-    Erratum COM-054: Waiting times before the identification request differ, and the
+    Note COM-054: Waiting times before the identification request differ, and the
     request itself stops the boot.
     """
 
@@ -48,9 +48,11 @@ class Identification(_base.Message):
         _base.FieldInfo(
             "firmware_version_minor", "Firmware version (Minor)", 24, 8, "uint"
         ),
-        _base.FieldInfo("runtime_seconds", "Runtime (seconds)", 32, 16, "uint"),
         _base.FieldInfo(
-            "runtime_milliseconds", "Runtime (milliseconds)", 48, 16, "uint"
+            "runtime_seconds", "Runtime (seconds)", 32, 16, "uint", unit="s"
+        ),
+        _base.FieldInfo(
+            "runtime_milliseconds", "Runtime (milliseconds)", 48, 16, "uint", unit="ms"
         ),
     )
 
@@ -69,20 +71,20 @@ class Identification(_base.Message):
     firmware_version_minor: int
     """Firmware version (Minor): bits 24 to 31, 0 to 255."""
     runtime_seconds: int
-    """Runtime (seconds): bits 32 to 47, 0 to 65535.
+    """Runtime (seconds): bits 32 to 47, 0 to 65535, in s.
 
     Since the processor started.
 
-    Erratum COM-056: Runtime wraps after 18 hours.
+    Erratum COM-057: Runtime has its unit in words only.
 
-    Erratum COM-057: Runtime has its units in the name only.
+    Note COM-056: Runtime wraps after 18 hours.
     """
     runtime_milliseconds: int
-    """Runtime (milliseconds): bits 48 to 63, 0 to 65535.
+    """Runtime (milliseconds): bits 48 to 63, 0 to 65535, in ms.
 
     Beyond the whole seconds.
 
-    Erratum COM-057: Runtime has its units in the name only.
+    Erratum COM-127: Milliseconds of the runtime have their unit in words only.
     """
 
     def __init__(

@@ -35,8 +35,10 @@ class LoadFileDownloadBlock(_base.Message):
     FIELDS = (
         _base.FieldInfo("file_type", "File Type", 0, 8, "enum", enum=FileType),
         _base.FieldInfo("counter", "Counter", 8, 8, "uint"),
-        _base.FieldInfo("offset", "Offset", 16, 32, "uint"),
-        _base.FieldInfo("block_length", "BlockLength", 48, 16, "uint", maximum=20480),
+        _base.FieldInfo("offset", "Offset", 16, 32, "uint", unit="byte"),
+        _base.FieldInfo(
+            "block_length", "BlockLength", 48, 16, "uint", unit="byte", maximum=20480
+        ),
     )
 
     file_type: FileType
@@ -46,27 +48,27 @@ class LoadFileDownloadBlock(_base.Message):
 
     Of the file: with the type it identifies the file.
 
-    Erratum COM-029: One field, several spellings.
+    Note COM-029: One field, several spellings.
 
-    Erratum COM-035: File counter of 8 bits.
+    Note COM-035: File counter of 8 bits.
     """
     offset: int
-    """Offset: bits 16 to 47, 0 to 4294967295.
+    """Offset: bits 16 to 47, 0 to 4294967295, in byte.
 
     Where in the file the block begins.
 
     Erratum COM-039: Offsets and lengths of files have no unit.
     """
     block_length: int
-    """BlockLength: bits 48 to 63, 0 to 65535.
+    """BlockLength: bits 48 to 63, 0 to 65535, in byte.
 
     20 kB at most.
 
     Must be at most 20480.
 
-    Erratum COM-029: One field, several spellings.
-
     Erratum COM-039: Offsets and lengths of files have no unit.
+
+    Note COM-029: One field, several spellings.
     """
 
     def __init__(

@@ -26,31 +26,31 @@ class EcefPosition(_base.Message):
     LENGTH = 6
     TABLE = 166
     FIELDS = (
-        _base.FieldInfo("ecef_position_x", "ECEF Position X", 0, 16, "int", unit="m"),
-        _base.FieldInfo("ecef_position_y", "ECEF Position Y", 16, 16, "int", unit="m"),
-        _base.FieldInfo("ecef_position_z", "ECEF Position Z", 32, 16, "int", unit="m"),
+        _base.FieldInfo("ecef_position_x", "ECEF Position X", 0, 16, "int"),
+        _base.FieldInfo("ecef_position_y", "ECEF Position Y", 16, 16, "int"),
+        _base.FieldInfo("ecef_position_z", "ECEF Position Z", 32, 16, "int"),
     )
 
     ecef_position_x: int
-    """ECEF Position X: bits 0 to 15, -32768 to 32767, in m.
+    """ECEF Position X: bits 0 to 15, -32768 to 32767.
 
     Erratum ACP-098: ECEF position: 16 bits in metres.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
     ecef_position_y: int
-    """ECEF Position Y: bits 16 to 31, -32768 to 32767, in m.
+    """ECEF Position Y: bits 16 to 31, -32768 to 32767.
 
     Erratum ACP-098: ECEF position: 16 bits in metres.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
     ecef_position_z: int
-    """ECEF Position Z: bits 32 to 47, -32768 to 32767, in m.
+    """ECEF Position Z: bits 32 to 47, -32768 to 32767.
 
     Erratum ACP-098: ECEF position: 16 bits in metres.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
 
     def __init__(

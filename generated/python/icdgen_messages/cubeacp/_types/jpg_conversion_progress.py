@@ -28,7 +28,9 @@ class JpgConversionProgress(_base.Message):
     LENGTH = 3
     TABLE = 99
     FIELDS = (
-        _base.FieldInfo("progress_percentage", "Progress Percentage", 0, 8, "uint"),
+        _base.FieldInfo(
+            "progress_percentage", "Progress Percentage", 0, 8, "uint", unit="%"
+        ),
         _base.FieldInfo(
             "conversion_result",
             "Conversion Result",
@@ -41,11 +43,9 @@ class JpgConversionProgress(_base.Message):
     )
 
     progress_percentage: int
-    """Progress Percentage: bits 0 to 7, 0 to 255.
+    """Progress Percentage: bits 0 to 7, 0 to 255, in %.
 
-    In percent.
-
-    Erratum ACP-065: JPG progress has no unit.
+    Erratum ACP-065: JPG progress has its unit in words only.
     """
     conversion_result: JpgConvertResult
     """Conversion Result: bits 8 to 15, 0 to 255."""

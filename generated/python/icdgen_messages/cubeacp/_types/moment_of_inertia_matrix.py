@@ -95,11 +95,20 @@ class MomentOfInertiaMatrix(_base.Message):
     moment_of_inertia_izz: float
     """Moment Of Inertia - Izz: bits 64 to 95, 32-bit float, in kg.m^2."""
     product_of_inertia_ixy: float
-    """Product Of Inertia - Ixy: bits 96 to 127, 32-bit float, in kg.m^2."""
+    """Product Of Inertia - Ixy: bits 96 to 127, 32-bit float, in kg.m^2.
+
+    Note ACP-201: Products of inertia: the sign is not given.
+    """
     product_of_inertia_ixz: float
-    """Product Of Inertia - Ixz: bits 128 to 159, 32-bit float, in kg.m^2."""
+    """Product Of Inertia - Ixz: bits 128 to 159, 32-bit float, in kg.m^2.
+
+    Note ACP-201: Products of inertia: the sign is not given.
+    """
     product_of_inertia_iyz: float
-    """Product Of Inertia - Iyz: bits 160 to 191, 32-bit float, in kg.m^2."""
+    """Product Of Inertia - Iyz: bits 160 to 191, 32-bit float, in kg.m^2.
+
+    Note ACP-201: Products of inertia: the sign is not given.
+    """
 
     def __init__(
         self,

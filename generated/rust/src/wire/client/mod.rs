@@ -137,8 +137,9 @@ impl<const N: usize> Client<N> {
     ///
     /// # Errors
     ///
-    /// As [`Client::start`].
+    /// As [`Client::start`]; [`Error::UnknownId`] if it is a message of another node, whatever its id.
     pub fn request<M: Telemetry>(&mut self, now: u32) -> Result<(), Error> {
+        self.must_have(M::NODE, M::TELEMETRY_ID)?;
         self.start(now, &Request::telemetry(M::TELEMETRY_ID))?;
         Ok(())
     }
@@ -147,8 +148,10 @@ impl<const N: usize> Client<N> {
     ///
     /// # Errors
     ///
-    /// As [`Client::start`]; [`Error::Range`] if a value does not fit.
+    /// As [`Client::start`]; [`Error::UnknownId`] if it is a message of another node, whatever its id;
+    /// [`Error::Range`] if a value does not fit.
     pub fn send<M: Telecommand>(&mut self, now: u32, message: &M) -> Result<Started, Error> {
+        self.must_have(M::NODE, M::TELECOMMAND_ID)?;
         let mut buffer = [0; N];
         let size = message.write_frame(&mut buffer)?;
         let data = head(&buffer, size);
@@ -185,7 +188,14 @@ impl<const N: usize> Client<N> {
         };
         let (id, attempts, data) = (request.id, 1, &[]);
         if self.start(now, &request)? == Started::Done {
-            procedure.event(now, &Event::Done { id, attempts, data });
+            let nodes = self.machine.link.nodes;
+            let done = Event::Done {
+                id,
+                attempts,
+                data,
+                nodes,
+            };
+            procedure.event(now, &done);
         }
         Ok(true)
     }
@@ -229,7 +239,8 @@ impl<const N: usize> Client<N> {
         }
     }
 
-    /// I2C: the next transaction, if there is one; [`Client::transferred`] is told what came of it.
+    /// I2C: the next transaction, if there is one; [`Client::transferred`] is told what came of each, once
+    /// and in this order.
     pub fn output_transaction(&mut self) -> Option<Transaction<'_>> {
         let machine = &mut self.machine;
         if machine.bus != Bus::I2c {
@@ -237,7 +248,14 @@ impl<const N: usize> Client<N> {
         }
         let output = machine.first()?;
         machine.sent();
+        machine.owed = machine.owed.saturating_add(1);
         Some(machine.transaction(output))
+    }
+
+    /// Gives up the request, without an event, and what of it has not been taken: the next one may begin. A
+    /// late reply to this one is [`Event::Stray`].
+    pub fn cancel(&mut self) {
+        self.machine.cancel();
     }
 
     /// Lets time pass.
@@ -272,15 +290,27 @@ impl<const N: usize> Client<N> {
         }
     }
 
-    /// I2C: takes what was read in a transaction; None: it failed.
+    /// I2C: takes what was read in the oldest transaction that was taken and not told of; None: it failed.
+    /// What a request owed that is over is [`Event::Stray`].
     pub fn transferred(
         &mut self,
         now: u32,
         bytes: Option<&[u8]>,
         mut on_event: impl FnMut(Event<'_>),
     ) {
-        self.pass(now, &mut on_event);
-        self.machine.transferred(now, bytes, &mut on_event);
+        let awaited = self.machine.owed == 1 && self.machine.awaits_transfer();
+        self.machine.owed = self.machine.owed.saturating_sub(1);
+        self.pass(now, &mut on_event); // may end that request
+        let awaited = awaited && self.machine.awaits_transfer();
+        self.machine.transferred(now, bytes, awaited, &mut on_event);
+    }
+
+    fn must_have(&self, node: &str, id: u8) -> Result<(), Error> {
+        if self.machine.link.has_messages_of(node) {
+            Ok(())
+        } else {
+            Err(Error::UnknownId { id })
+        }
     }
 
     fn pass(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {

@@ -7,7 +7,7 @@ use super::super::links::MAP_BYTES;
 use super::super::Error;
 use super::hole_map::HoleMap;
 use super::poll::Poll;
-use super::procedure::{Answer, Core, End, Run};
+use super::procedure::{allowed, Answer, Core, End, Run};
 
 #[derive(Clone, Debug)]
 enum State {
@@ -46,16 +46,28 @@ impl<'a> Upload<'a> {
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD does not describe it.
+    /// [`Error::Unsupported`] if the node takes no uploads, [`Error::Range`] if the destination is not
+    /// supported, [`Error::TooLong`] if it holds less.
     pub fn new(link: &'static Link, destination: u8, data: &'a [u8]) -> Result<Self, Error> {
         let files = link.files.as_ref().ok_or(Error::Unsupported)?;
+        let form = files.upload.as_ref().ok_or(Error::Unsupported)?;
+        let map = files.hole_map.as_ref().ok_or(Error::Unsupported)?;
+        let crc = link.crc16.as_ref().ok_or(Error::Unsupported)?;
+        allowed(form.destinations, destination, "destination")?;
+        match form.destination_bytes {
+            Some(most) if data.len() > most => {
+                let actual = data.len();
+                return Err(Error::TooLong { most, actual });
+            }
+            _ => {}
+        }
         Ok(Self {
             core: Core::new(link),
             link,
             files,
-            form: files.upload.as_ref().ok_or(Error::Unsupported)?,
-            map: files.hole_map.as_ref().ok_or(Error::Unsupported)?,
-            crc: link.crc16.as_ref().ok_or(Error::Unsupported)?,
+            form,
+            map,
+            crc,
             destination,
             data,
             block: files.block_bytes,
@@ -104,12 +116,13 @@ impl<'a> Upload<'a> {
         self.first = true;
     }
 
-    fn round(&mut self) {
+    /// Begins a round with the first packet that is missing.
+    fn round(&mut self, first: usize) {
         if self.rounds == self.form.rounds {
             return self.core.end(End::Rounds);
         }
         self.rounds += 1;
-        self.send_packet(0);
+        self.send_packet(first);
     }
 
     /// The first packet from a position on that the node has not.
@@ -128,11 +141,14 @@ impl<'a> Upload<'a> {
     }
 
     /// Sends the next packet from a position on, or asks which ones arrived.
-    fn send_packet(&mut self, from: usize) {
-        let position = match self.missing(from) {
-            Some(position) => position,
-            None => return self.ask_map(0),
-        };
+    fn send_next(&mut self, from: usize) {
+        match self.missing(from) {
+            Some(position) => self.send_packet(position),
+            None => self.ask_map(0),
+        }
+    }
+
+    fn send_packet(&mut self, position: usize) {
         let number = self.files.first_packet.wrapping_add(count(position));
         let step = &self.form.packet;
         self.core.send(step, false, &[(Role::Number, number)]);
@@ -157,8 +173,8 @@ impl<'a> Upload<'a> {
             }
             _ => {
                 self.first = false;
-                if self.missing(0).is_some() {
-                    self.round();
+                if let Some(position) = self.missing(0) {
+                    self.round(position);
                 } else {
                     self.core.ask(self.form.checksum.id);
                     self.state = State::Checksum;
@@ -270,8 +286,8 @@ impl Run for Upload<'_> {
                 if let Some(frame) = self.core.frame(answer) {
                     match state {
                         State::Initiate => self.poll(true),
-                        State::Block => self.round(),
-                        State::Packet(position) => self.send_packet(position + 1),
+                        State::Block => self.round(0),
+                        State::Packet(position) => self.send_next(position + 1),
                         State::Map(piece) => self.take_map(piece, frame),
                         State::Checksum => self.checksum(frame),
                         _ => self.poll(false),

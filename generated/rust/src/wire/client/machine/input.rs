@@ -103,17 +103,19 @@ impl<const N: usize> Machine<N> {
         }
     }
 
+    /// What was read in a transaction; `awaited`: it is that of the request.
     pub(in crate::wire::client) fn transferred(
         &mut self,
         now: u32,
         bytes: Option<&[u8]>,
+        awaited: bool,
         on_event: &mut dyn FnMut(Event<'_>),
     ) {
         match (self.state, bytes) {
-            (State::Poll, None) => self.again(now, on_event),
-            (State::Poll, Some(bytes)) => self.polled(now, bytes, on_event),
-            (State::Wait, None) => self.no_reply(now, on_event),
-            (State::Wait, Some(bytes)) if self.direction == Direction::Telemetry => {
+            (State::Poll, None) if awaited => self.again(now, on_event),
+            (State::Poll, Some(bytes)) if awaited => self.polled(now, bytes, on_event),
+            (State::Wait, None) if awaited => self.no_reply(now, on_event),
+            (State::Wait, Some(bytes)) if awaited && self.direction == Direction::Telemetry => {
                 let reply = i2c::reply(self.link, self.id, bytes, self.checks_telemetry);
                 if let Ok(frame) = reply {
                     self.done(now, frame, on_event);
@@ -123,7 +125,7 @@ impl<const N: usize> Machine<N> {
                     self.no_reply(now, on_event);
                 }
             }
-            (State::Wait, Some(_)) => {
+            (State::Wait, Some(_)) if awaited => {
                 let form = self.form(self.direction, self.id);
                 if form.map_or(true, |form| form.acknowledged) {
                     self.sent_whole = true;

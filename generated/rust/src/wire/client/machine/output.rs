@@ -6,7 +6,7 @@ use super::super::super::bits::{head, part};
 use super::super::super::can::{self, Splitter};
 use super::super::super::{i2c, Direction};
 use super::super::{Output, Transaction};
-use super::Machine;
+use super::{Machine, QUEUE};
 
 impl<const N: usize> Machine<N> {
     /// What is to be sent next.
@@ -34,6 +34,14 @@ impl<const N: usize> Machine<N> {
             let [_, second, third, fourth] = self.queue;
             self.queue = [second, third, fourth, None];
         }
+    }
+
+    /// Nothing more is to be sent.
+    pub(super) fn drop_output(&mut self) {
+        self.begun = 0;
+        self.encoder = None;
+        self.repeats = 0;
+        self.queue = [None; QUEUE];
     }
 
     pub(in crate::wire::client) fn packets(&self) -> Option<Splitter<'_>> {

@@ -37,6 +37,7 @@ pub(super) struct Machine<const N: usize> {
     pub(super) message: [u8; N], // the request, with id and checksum
     pub(super) length: usize,
     poll: [u8; 1],
+    pub(super) owed: u16, // I2C: transactions taken of which nothing was told
     queue: [Option<Output>; QUEUE],
     repeats: u16,            // so often more the first one of the queue is sent
     pub(super) begun: usize, // packets of it that were taken
@@ -66,6 +67,7 @@ impl<const N: usize> Machine<N> {
             message: [0; N],
             length: 0,
             poll: [poll],
+            owed: 0,
             queue: [None; QUEUE],
             repeats: 0,
             begun: 0,
@@ -122,6 +124,20 @@ impl<const N: usize> Machine<N> {
         }
     }
 
+    pub(super) fn cancel(&mut self) {
+        self.drop_output();
+        if self.state != State::Idle && self.attempts > 0 {
+            let end = self.until.wrapping_add(self.settings.reply_timeout_ms);
+            self.echo = Some((self.id, end));
+        }
+        self.state = State::Idle;
+    }
+
+    /// I2C: whether the last transaction was taken, and is that of the request.
+    pub(super) fn awaits_transfer(&self) -> bool {
+        matches!(self.state, State::Wait | State::Poll) && self.first().is_none()
+    }
+
     pub(super) fn tick(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {
         if self.echo.map_or(false, |(_, end)| reached(now, end)) {
             self.echo = None; // the time may wrap until the next request
@@ -161,7 +177,13 @@ impl<const N: usize> Machine<N> {
 
     fn done(&mut self, now: u32, data: &[u8], on_event: &mut dyn FnMut(Event<'_>)) {
         let (id, attempts) = self.end(now, false);
-        on_event(Event::Done { id, attempts, data });
+        let nodes = self.link.nodes;
+        on_event(Event::Done {
+            id,
+            attempts,
+            data,
+            nodes,
+        });
     }
 
     fn timeout(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {

@@ -1,0 +1,92 @@
+"""Every name that the headers declare, for the rules about names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.backends import Identifier
+from icdgen.backends.c import names, physical
+from icdgen.backends.c.accessors import whole_name
+from icdgen.describe import Description, EnumDescription, FieldDescription, MessageDescription, NodeDescription
+
+FILE = "C names at file scope"
+FILES = "C header files"
+
+_STATUS = ("LENGTH", "RANGE", "UNKNOWN_ID", "UNSUPPORTED", "CHECKSUM", "BUSY")
+_SUPPORT = ("icd_status_t", "ICD_OK", *(f"ICD_ERROR_{end}" for end in _STATUS))
+_SIZES = ("LONGEST", "CAN_SLOT_BYTES", "CLIENT_BYTES", "LOG_BYTES", "BLOCK_BYTES", "BLOCK_BITMAP_BYTES")
+
+
+def declared_names(description: Description) -> Iterator[Identifier]:
+    """The names in the order of the ICDs."""
+    for name in _SUPPORT:
+        yield Identifier(FILE, name, "the support header", None)
+    yield Identifier(FILES, "icdgen.h", "the support header", None)
+    yield Identifier(FILES, "icdgen_wire.h", "the wire layer", None)
+    for node in description.nodes:
+        yield from _node(node)
+        if node.is_linked:
+            yield from _link(node)
+        for message in node.messages:
+            yield from _message(message, node.is_linked)
+
+
+def _node(node: NodeDescription) -> Iterator[Identifier]:
+    owner, source = f"node `{node.name}`", node.node.source
+    yield Identifier(FILES, f"{node.name}.h", owner, source)
+    for end in ("ICD_DIGEST", "NODE_TYPE", "INTERFACE_VERSION", "H"):
+        yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source)
+    for kind in ("telemetry", "telecommand"):
+        for end in ("t", "name", "length", "decode", "encode"):
+            yield Identifier(FILE, f"{node.name}_{kind}_{end}", f"{kind} of {owner}", source)
+    for kind, messages in (("telemetry", node.telemetry), ("telecommand", node.telecommands)):
+        for one in messages:
+            scope = f"members of {node.name}_{kind}_t"
+            yield Identifier(scope, one.name, f"message `{one.message.name}`", one.message.source)
+    if node.enums:
+        yield Identifier(FILES, f"{node.name}/enums.h", "the enumerations", None)
+        yield Identifier(FILE, f"{node.name.upper()}_ENUMS_H", "the enumerations", None)
+    for enum in node.enums:
+        yield from _enum(enum)
+
+
+def _enum(enum: EnumDescription) -> Iterator[Identifier]:
+    owner = f"enumeration `{enum.enum.name}`"
+    for end in ("t", "name"):
+        yield Identifier(FILE, f"{names.stem(enum)}_{end}", owner, enum.enum.source)
+    for one in enum.members:
+        yield Identifier(FILE, names.enumerator(enum, one), f"`{one.member.name}` of {owner}", one.member.source)
+
+
+def _link(node: NodeDescription) -> Iterator[Identifier]:
+    owner, source = f"the link of node `{node.name}`", node.node.source
+    yield Identifier(FILES, f"{node.name}/link.h", owner, source)
+    yield Identifier(FILE, f"{node.name}_link", owner, source)
+    for end in (*_SIZES, "NODE", "LINK_H"):
+        yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source)
+
+
+def _message(message: MessageDescription, linked: bool) -> Iterator[Identifier]:
+    owner, source = f"message `{message.message.name}`", message.message.source
+    yield Identifier(FILES, f"{message.node.name}/{message.name}.h", owner, source)
+    telemetry = ("telemetry",) if linked and message.message.telemetry_id is not None else ()
+    for end in ("h", "length", *(id.name for id in message.ids), *telemetry):
+        yield Identifier(FILE, names.constant(message, end), owner, source)
+    for end in ("t", "init", "decode", "encode", *(("misfit",) if message.is_narrow else ())):
+        yield Identifier(FILE, f"{names.stem(message)}_{end}", owner, source)
+    for field in message.fields:
+        yield from _field(field)
+
+
+def _field(field: FieldDescription) -> Iterator[Identifier]:
+    message, stem = field.message, names.stem(field.message)
+    owner, source = f"field `{field.field.name}` of `{message.message.name}`", field.field.source
+    yield Identifier(f"members of {stem}_t", field.name, owner, source)
+    for one in field.constants:
+        yield Identifier(FILE, names.constant(message, one.name), owner, source)
+    if field.steps is None:
+        return
+    whole = physical.scaled(field).whole
+    for end in (field.physical_name, *((whole_name(field, whole),) if whole is not None else ())):
+        yield Identifier(FILE, f"{stem}_{end}", owner, source)
+        yield Identifier(FILE, f"{stem}_set_{end}", owner, source)

@@ -1,0 +1,50 @@
+"""How the code that is made from an ICD is laid out, in every language: what fits stays on its line, the rest goes one item a line.
+
+The files say that they are laid out by icdgen, so that no formatter need agree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+STEP = "    "
+
+
+def bracketed(head: str, items: Sequence[str], tail: str, width: int, indent: str = "", last: str = ",") -> str:
+    """``head`` (which opens a bracket), ``items`` and ``tail`` (which closes it); ``last`` follows the last item on its own line.
+
+    ``indent`` is that of the line it begins on; the first line stands without.
+    """
+    line = f"{head}{', '.join(items)}{tail}"
+    return line if len(indent) + len(line) <= width and "\n" not in line else exploded(head, items, tail, indent, last)
+
+
+def exploded(head: str, items: Sequence[str], tail: str, indent: str = "", last: str = ",") -> str:
+    """One item a line."""
+    if not items:
+        return f"{head}{tail}"
+    rows = f",\n{indent}{STEP}".join(items)
+    return f"{head}\n{indent}{STEP}{rows}{last}" + (f"\n{indent}{tail}" if last else tail)
+
+
+def wrapped(text: str, width: int, hang: str = "") -> list[str]:
+    """The words of a text on lines of at most ``width`` characters, as far as words allow; all but the first after ``hang``."""
+    if len(text) <= width:
+        return [text]
+    lines, line = [], ""
+    for word in text.split():
+        if line.strip() and len(line) + 1 + len(word) > width:
+            lines.append(line)
+            line = hang + word
+        else:
+            line = f"{line} {word}" if line else word
+    return [*lines, line]
+
+
+def bulleted(paragraphs: Iterable[str], width: int, start: str, between: str) -> list[str]:
+    """Lines of paragraphs, each after ``start``; ``between`` is the line between two paragraphs."""
+    lines: list[str] = []
+    for paragraph in filter(None, paragraphs):
+        lines += [between] if lines else []
+        lines += [start + line for line in wrapped(paragraph, width - len(start))]
+    return lines

@@ -1,0 +1,73 @@
+"""A backend of another package: whatever goes wrong in it is said in a user's words, with its name and entry point."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.metadata import EntryPoint
+from pathlib import Path, PurePath, PurePosixPath
+from typing import Any
+
+from icdgen.backends import Identifier
+from icdgen.errors import UserError
+from icdgen.icd.model import Icd
+
+
+class PlugIn:
+    """The backend behind an entry point. Raises `UserError` for whatever it raises, except a `UserError` of its own."""
+
+    def __init__(self, point: EntryPoint) -> None:
+        self._point = point
+        with self._named("cannot be loaded"):
+            backend = point.load()()
+            self.name: str = backend.name
+            self.templates: Path | None = getattr(backend, "templates", None)
+            self.runtime: Path | None = getattr(backend, "runtime", None)
+            self.reserved = frozenset(backend.reserved)
+            self._files, self._identifiers = backend.files, backend.identifiers
+        if self.name != point.name:
+            raise UserError(
+                f"the entry point `{point.name} = {point.value}`{_package(point)} leads to a backend called `{self.name}`",
+                "it is a fault of that package, the two must be the same: report it to its makers",
+            )
+
+    @classmethod
+    def of(cls, points: list[EntryPoint]) -> PlugIn:
+        """The backend of that name. Raises `UserError` if several packages have one."""
+        if len(points) > 1:
+            each = " and ".join(f"`{point.value}`{_package(point)}" for point in points)
+            raise UserError(f"there are {len(points)} backends `{points[0].name}`: {each}", "uninstall all but one")
+        return cls(points[0])
+
+    def files(self, icd: Icd, render: Any) -> Iterator[tuple[PurePosixPath, str]]:
+        """Those of the backend."""
+        with self._named("failed"):
+            for file in self._files(icd, render):
+                path, text = file
+                if not (isinstance(path, PurePath) and isinstance(text, str)):
+                    raise TypeError(f"`files` gives pairs of path and text, not {file!r:.100}")
+                yield PurePosixPath(path), text
+
+    def identifiers(self, icd: Icd) -> Iterator[Identifier]:
+        """Those of the backend."""
+        with self._named("failed"):
+            yield from self._identifiers(icd)
+
+    @contextmanager
+    def _named(self, what: str) -> Iterator[None]:
+        try:
+            yield
+        except UserError:
+            raise
+        except Exception as error:
+            last = traceback.extract_tb(error.__traceback__)[-1]
+            said = f"{type(error).__name__}: {error}".rstrip(": ")
+            raise UserError(
+                f"the backend `{self._point.name}`{_package(self._point)} (entry point `{self._point.value}`) {what}: {said}",
+                f"it is a fault of that package, in {last.filename}, line {last.lineno}: report it to its makers",
+            ) from error
+
+
+def _package(point: EntryPoint) -> str:
+    return f" of {point.dist.name}" if point.dist else ""

@@ -1,0 +1,126 @@
+"""What comments say of messages, fields, enumerations and accessors, as paragraphs of plain text.
+
+Text in backticks is code, and there is no other markup: text of the ICD comes as it is but for its backticks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from icdgen.describe.bounds import Bound, bounds
+from icdgen.describe.numbers import bit_range, byte_count, byte_range, exact_text, value_text
+from icdgen.describe.steps import Steps, steps
+from icdgen.icd.model import CONFIGURATION, Enum, Erratum, Field, Member, Message
+
+
+class Comment(NamedTuple):
+    """``head`` says what it is in one sentence or two; ``rest`` and ``errata`` are further paragraphs."""
+
+    head: str
+    rest: tuple[str, ...] = ()
+    errata: tuple[str, ...] = ()
+
+    @property
+    def paragraphs(self) -> tuple[str, ...]:
+        """All of it."""
+        return self.head, *self.rest, *self.errata
+
+
+def words(text: str) -> str:
+    """Text of the ICD, for a paragraph: on one line, without backticks."""
+    return " ".join(text.replace("`", "'").split())
+
+
+def sentence(text: str) -> str:
+    """`words` with a full stop; empty if there are none."""
+    text = words(text)
+    return text if not text or text.endswith((".", "?", "!", ":")) else f"{text}."
+
+
+def _comment(head: str, rest: Iterable[str], errata: Iterable[Erratum] = ()) -> Comment:
+    said = tuple(f"{e.label} {words(e.id)}{e.sureness}: {sentence(e.title)}" for e in errata)
+    return Comment(head, tuple(filter(None, rest)), said)
+
+
+def message_comment(message: Message, log_bit: int | None = None) -> Comment:
+    """Name, kind, ids, length, table; summary; what is special about it. ``log_bit``: the bit of the log mask that selects it."""
+    ids = str(message.id)
+    if message.kind == CONFIGURATION:
+        ids = f"set by telecommand {message.set_id}, got by telemetry {message.get_id}"
+    kind = f"{message.kind}{',' if message.kind == CONFIGURATION else ''}"
+    facts = []
+    if message.expects_reset:
+        facts.append("The node restarts instead of acknowledging it.")
+    elif not message.acknowledge:
+        facts.append("The node does not acknowledge it.")
+    if log_bit is not None:
+        facts.append(f"Bit {log_bit} of the log mask.")
+    facts += (f"Repeats {words(part.message)} from {_from(part.at)}." for part in message.contains)
+    head = f"{words(message.name)}: {kind} {ids}, {byte_count(message.length)}.{_table(message.table)}"
+    return _comment(head, (sentence(message.summary), " ".join(facts)), message.errata)
+
+
+def _from(at: int) -> str:
+    return f"byte {at // 8}" if at % 8 == 0 else f"bit {at}"
+
+
+def _table(number: int | None) -> str:
+    return "" if number is None else f" Table {number}."
+
+
+def enum_comment(enum: Enum) -> Comment:
+    """Name and table; summary."""
+    return _comment(f"{words(enum.name)}: an enumeration.{_table(enum.table)}", (sentence(enum.summary),), enum.errata)
+
+
+def member_comment(member: Member) -> Comment:
+    """Name and value; summary."""
+    return _comment(f"{words(member.name)} ({member.value}).", (sentence(member.summary),), member.errata)
+
+
+def field_comment(field: Field) -> Comment:
+    """Name, place, range and unit; summary; the values that are allowed or mean something."""
+    facts = []
+    if field.const is not None:
+        facts.append(f"Always {value_text(field.const)}.")
+    if field.limits is not None:
+        facts.append(f"Must be {limits_text(bounds(field.limits), field)}.")
+    facts += (f"{value_text(special.value)}: {sentence(special.meaning)}" for special in field.special)
+    head = f"{words(field.name)}: {_place(field)}{_meaning(field)}."
+    return _comment(head, (sentence(field.summary), " ".join(facts)), field.errata)
+
+
+def limits_text(limits: Iterable[Bound], field: Field) -> str:
+    """``above 0 and at most 10 mA``"""
+    unit = f" {words(field.unit.symbol)}" if field.unit else ""
+    return " and ".join(f"{bound.kind.words} {exact_text(bound.value)}" for bound in limits) + unit
+
+
+def _place(field: Field) -> str:
+    if field.type == "bytes":
+        return byte_range(field.at // 8, field.bits // 8)
+    return bit_range(field.at, field.bits)
+
+
+def _meaning(field: Field) -> str:
+    text = f", raw {field.raw_min} to {field.raw_max}" if field.type in ("uint", "int") else ""
+    if field.type == "float":
+        text = f", {field.bits}-bit float"
+    unit = words(field.unit.symbol) if field.unit else ""
+    scaled = steps(field)
+    if scaled is None:
+        return f"{text}, in {unit}" if unit else text
+    return f"{text}; physical `{words(field.formula)}`, {span_text(scaled)}{f' {unit}' if unit else ''}"
+
+
+def span_text(scaled: Steps) -> str:
+    """``-327.68 to 327.67``: the physical values of all raw values."""
+    low, high = scaled.span
+    return f"{exact_text(low)} to {exact_text(high)}"
+
+
+def physical_text(field: Field) -> str:
+    """``Roll Angle in deg``: what the accessors of a physical value are about."""
+    unit = f" in {words(field.unit.symbol)}" if field.unit else ", as a physical value"
+    return f"{words(field.name)}{unit}"

@@ -1,0 +1,45 @@
+"""Values with a name of their own: the only valid value of a field, values with a meaning, limits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import NamedTuple
+
+from icdgen import naming
+from icdgen.describe.bounds import bounds
+from icdgen.describe.comments import sentence, words
+from icdgen.icd.model import Field
+
+MOST_WORDS = 5  # of a meaning that makes the name of its constant
+
+
+class Constant(NamedTuple):
+    """``name`` is in snake case, below the message's: ``timeout_no_timeout``, ``rate_deg_per_s_below``."""
+
+    key: str  # "const" | "special" | the key of a limit
+    name: str
+    value: int | Fraction
+    is_raw: bool  # a raw value (an int); else a physical one, or one that the raw type can't hold
+    comment: str
+
+
+def constants(field: Field, name: str, physical_name: str, vocabulary: tuple[str, ...]) -> Iterator[Constant]:
+    """The constants of a field, whose own names are given."""
+    title = words(field.name)
+    if field.const is not None:
+        yield Constant("const", f"{name}_const", field.const, True, f"{title}: the only valid raw value.")
+    taken = set()
+    for special in field.special:
+        meaning = naming.words(special.meaning, vocabulary)
+        end = naming.snake(meaning)
+        if not 0 < len(meaning) <= MOST_WORDS or end in taken:
+            end = f"special_{special.value}".replace("-", "minus_")
+        taken.add(end)
+        yield Constant("special", f"{name}_{end}", special.value, True, f"{title}: {sentence(special.meaning)}")
+    unit = f" in {words(field.unit.symbol)}" if field.unit else ""
+    for bound in bounds(field.limits):
+        value, has_raw = bound.value, field.scale is None and field.type != "float"
+        is_raw = has_raw and value.denominator == 1 and field.raw_min <= value <= field.raw_max
+        end = f"{physical_name if field.scale is not None else name}_{bound.key}"
+        yield Constant(bound.key, end, int(value) if is_raw else value, is_raw, f"{title}{unit}: {bound.kind.title}.")

@@ -1,0 +1,61 @@
+"""Enumerations: names in words, the width of their integer, comments."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from icdgen import naming
+from icdgen.describe.comments import Comment, enum_comment, member_comment
+from icdgen.describe.storage import Storage, holding
+from icdgen.icd.model import Enum, Icd, Member, Node
+
+
+def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
+    """Bits that the values of each enumeration need: those of its members, and of every field of the set that holds it."""
+    found: dict[tuple[str, str], int] = {}
+    for node in icd.nodes:
+        for enum in node.enums:
+            bits = max((member.value.bit_length() for member in enum.members), default=1)
+            found[enum.node, enum.name] = max(found.get((enum.node, enum.name), 1), bits)
+        for message in node.messages:
+            for field in message.fields:
+                if field.enum is not None:
+                    key = field.enum.node, field.enum.name
+                    found[key] = max(found.get(key, 1), field.bits)
+    return found
+
+
+class EnumDescription:
+    """An enumeration of ``node``; ``storage`` holds every value of it, named or not."""
+
+    def __init__(self, enum: Enum, node: Node, bits: int) -> None:
+        self.enum, self.node = enum, node
+        self.storage = Storage(holding(bits))
+        self.words = naming.words(enum.identifier or enum.name, node.vocabulary)
+        self.name = naming.snake(self.words)
+
+    @cached_property
+    def members(self) -> tuple[MemberDescription, ...]:
+        """In the order of the manual."""
+        return tuple(MemberDescription(member, self.node.vocabulary) for member in self.enum.members)
+
+    @cached_property
+    def comment(self) -> Comment:
+        return enum_comment(self.enum)
+
+    def member(self, value: int) -> MemberDescription | None:
+        """The first member of a value, if one has it."""
+        return next((one for one in self.members if one.member.value == value), None)
+
+
+class MemberDescription:
+    """A value of an enumeration."""
+
+    def __init__(self, member: Member, vocabulary: tuple[str, ...]) -> None:
+        self.member = member
+        self.words = naming.words(member.identifier or member.name, vocabulary)
+        self.name = naming.snake(self.words)
+
+    @cached_property
+    def comment(self) -> Comment:
+        return member_comment(self.member)

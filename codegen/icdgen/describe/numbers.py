@@ -1,0 +1,53 @@
+"""Numbers and places for people."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import lru_cache
+
+MOST_DIGITS = 24  # of a decimal that is shown in full
+
+
+@lru_cache(maxsize=4096)
+def exact_text(value: Fraction | int) -> str:
+    """The decimal if it ends soon enough, else the nearest double."""
+    if value.denominator == 1:
+        return str(int(value)) if abs(value) < 10 ** MOST_DIGITS else repr(float(value))
+    twos = fives = 0
+    rest = value.denominator
+    while rest % 2 == 0:
+        rest, twos = rest // 2, twos + 1
+    while rest % 5 == 0:
+        rest, fives = rest // 5, fives + 1
+    places = max(twos, fives)
+    scaled = value * 10**places
+    if rest != 1 or len(str(abs(scaled.numerator))) > MOST_DIGITS or places > MOST_DIGITS:
+        return repr(value.numerator / value.denominator)
+    digits = str(abs(scaled.numerator)).rjust(places + 1, "0")
+    return f"{'-' if value < 0 else ''}{digits[:-places]}.{digits[-places:]}"
+
+
+def factor_text(factor: Fraction) -> str:
+    """``0.01``; ``5/9`` where the decimal would not end."""
+    text = exact_text(factor)
+    return text if Fraction(text) == factor else str(factor)
+
+
+def value_text(raw: int) -> str:
+    """A raw value that means something by itself: ``90 (0x5A)``; small and negative ones only in decimal."""
+    return f"{raw} (0x{raw:X})" if raw > 9 else str(raw)
+
+
+def bit_range(at: int, bits: int) -> str:
+    """``bit 3``, ``bits 4 to 7``"""
+    return f"bit {at}" if bits == 1 else f"bits {at} to {at + bits - 1}"
+
+
+def byte_range(first: int, count: int) -> str:
+    """``byte 3``, ``bytes 4 to 7``"""
+    return f"byte {first}" if count == 1 else f"bytes {first} to {first + count - 1}"
+
+
+def byte_count(count: int) -> str:
+    """``1 byte``, ``2 bytes``"""
+    return f"{count} byte" if count == 1 else f"{count} bytes"

@@ -1,0 +1,59 @@
+"""The steps by which a physical value is computed from a raw one, the same in every language: physical = (raw*p + c) / q."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import lru_cache
+from typing import NamedTuple
+
+from icdgen.icd import exact
+from icdgen.icd.formula import Scale
+from icdgen.icd.model import Field
+
+EXACT_DOUBLE = 1 << 53
+"""Up to this size every whole number is a double."""
+
+
+class Steps(NamedTuple):
+    """physical = (raw*p + c) / q in whole numbers, for raw values from ``raw_min`` to ``raw_max``; q > 0, p != 0."""
+
+    p: int
+    c: int
+    q: int
+    raw_min: int
+    raw_max: int
+
+    @property
+    def terms(self) -> tuple[int, int, int]:
+        """p, c, q"""
+        return self[:3]
+
+    def physical(self, raw: int) -> Fraction:
+        """The exact physical value."""
+        return Fraction(raw * self.p + self.c, self.q)
+
+    def double(self, raw: int) -> float:
+        """The double nearest to the physical value. (Python rounds a quotient of whole numbers once.)"""
+        return (raw * self.p + self.c) / self.q
+
+    @property
+    def span(self) -> tuple[Fraction, Fraction]:
+        """The smallest and the largest physical value."""
+        first, last = self.physical(self.raw_min), self.physical(self.raw_max)
+        return (first, last) if first <= last else (last, first)
+
+    @property
+    def exact_in_doubles(self) -> bool:
+        """Whether every step but the division is exact in doubles, so that the division alone rounds."""
+        products = self.raw_min * self.p, self.raw_max * self.p
+        return all(abs(n) <= EXACT_DOUBLE for n in (*products, *(n + self.c for n in products), self.c, self.q))
+
+
+def steps(field: Field) -> Steps | None:
+    """The steps of a field's scale; None without one."""
+    return None if field.scale is None else _steps(field.scale, field.raw_min, field.raw_max)
+
+
+@lru_cache(maxsize=4096)
+def _steps(scale: Scale, raw_min: int, raw_max: int) -> Steps:
+    return Steps(*exact.terms(scale), raw_min, raw_max)

@@ -1,0 +1,40 @@
+"""The words of an ICD are words in documentation comments too, whatever they look like."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+
+import pytest
+
+from icdgen.backends.c.text import comment
+from icdgen.describe.comments import words
+from tests.c import harness
+from tests.icd import hostile_words
+
+CHECK = ("clang", "-std=c11", "-fsyntax-only", "-Wdocumentation", "-Werror", "-fcomment-block-commands=file")
+
+
+@pytest.mark.parametrize("which", ["shipped", "hostile"])
+def test_clang_has_nothing_to_say_about_the_documentation(which, tmp_path):
+    icd = harness.shipped() if which == "shipped" else harness.read(hostile_words.write(tmp_path))
+    folder = harness.generate(icd, tmp_path / "c")
+    source = folder / "all.c"
+    source.write_text("".join(f'#include "{node.name}.h"\n' for node in icd.nodes))
+    done = subprocess.run([*CHECK, f"-I{folder}", str(source)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[:4000]
+
+
+def test_clang_would_complain(tmp_path):
+    source = tmp_path / "bad.c"
+    source.write_text("/** <img src=x> \\param y */\nint bad(void);\n")
+    done = subprocess.run([*CHECK, str(source)], capture_output=True, text=True)
+    assert done.returncode != 0
+
+
+@pytest.mark.parametrize("word", hostile_words.WORDS)
+def test_without_its_backslashes_a_comment_says_what_the_icd_says(word):
+    text = comment([words(word)]).removeprefix("/** ").removesuffix(" */")
+    said = re.sub(r"\\(.)", r"\1", text)
+    assert said.replace(" ", "") == words(word).replace(" ", "")  # comment delimiters and trigraphs are taken apart
+    assert not re.search(r"(?<!\\)(\\\\)*[@]|(?<!\\)<[A-Za-z/!]", text)

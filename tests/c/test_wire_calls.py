@@ -1,0 +1,193 @@
+"""What the generated C does when its callbacks call back, and what it calls itself."""
+
+from __future__ import annotations
+
+import graphlib
+import re
+import subprocess
+
+import pytest
+
+from tests.c import harness
+
+
+@pytest.fixture(scope="module")
+def headers(tmp_path_factory):
+    return harness.generate(harness.shipped(), tmp_path_factory.mktemp("headers"))
+
+
+LATE = r"""
+#include "cubeacp.h"
+#include <assert.h>
+#include <stdio.h>
+
+typedef struct {
+    icd_client_t client;
+    uint32_t now;
+    bool resets; /* the next request is a Reset */
+} program_t;
+
+/* As programs do it: the end of a request begins the next one. */
+static void on_event(void *context, const icd_event_t *event)
+{
+    static const char *const names[] = {"done", "refused", "timeout", "stray"};
+    program_t *const program = (program_t *)context;
+    const uint8_t reset[COMMON_RESET_LENGTH] = {0};
+    printf("%s %u\n", event->kind == ICD_EVENT_DONE ? names[0]
+                       : event->kind == ICD_EVENT_REFUSED ? names[1]
+                       : event->kind == ICD_EVENT_TIMEOUT ? names[2] : names[3], event->id);
+    if (event->kind == ICD_EVENT_TIMEOUT && program->resets) {
+        assert(icd_client_send(&program->client, program->now, COMMON_RESET_ID, reset, sizeof reset, false, on_event,
+                               program) == ICD_OK);
+    } else if (event->kind == ICD_EVENT_TIMEOUT) {
+        assert(ICD_REQUEST(&program->client, program->now, CUBEACP_ESTIMATED_ANGULAR_RATES) == ICD_OK);
+    }
+}
+
+/* A driver that blocks for so long over a transaction. */
+static void transfer(program_t *program, uint32_t takes)
+{
+    static const uint8_t read_bytes[CUBEACP_LONGEST];
+    const uint8_t *bytes;
+    size_t count, read;
+    assert(icd_client_transfer(&program->client, &bytes, &count, &read));
+    program->now += takes;
+    icd_client_transferred(&program->client, program->now, read_bytes, read, on_event, program);
+}
+
+int main(void)
+{
+    static uint8_t buffer[CUBEACP_CLIENT_BYTES];
+    for (int resets = 0; resets < 2; ++resets) {
+        static program_t program;
+        program.now = 0;
+        program.resets = resets != 0;
+        assert(icd_client_init(&program.client, cubeacp_link(), ICD_BUS_I2C, buffer, sizeof buffer) == ICD_OK);
+        program.client.settings.retries = 0;
+        assert(ICD_REQUEST(&program.client, 0, CUBEACP_ESTIMATED_ATTITUDE_ANGLES) == ICD_OK);
+        transfer(&program, 1001); /* the time-out begins the next request, which is not that of these bytes */
+        transfer(&program, 1);
+    }
+    return 0;
+}
+"""
+
+
+def test_a_transfer_that_outlasts_its_request_is_not_that_of_the_request_which_its_time_out_began(headers, tmp_path):
+    source = tmp_path / "late.c"
+    source.write_text(LATE)
+    program = harness.compile(source, "-std=c99", *harness.SANITIZERS, f"-I{headers}", output=tmp_path / "late")
+    done = subprocess.run([program], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.split("\n")[:-1] == ["timeout 146", "stray 0", "done 147", "timeout 146", "stray 0", "done 1"]
+
+
+CANCEL = r"""
+#include "cubeacp.h"
+#include <assert.h>
+
+static void on_event(void *context, const icd_event_t *event)
+{
+    (void)event;
+    ++*(int *)context;
+}
+
+int main(void)
+{
+    static icd_client_t client;
+    static uint8_t buffer[CUBEACP_CLIENT_BYTES];
+    static const uint8_t late[] = {0x1F, 0x7F, 0x92, 0, 0, 0, 0, 0, 0, 0x1F, 0xFF};
+    const uint8_t *bytes;
+    size_t count;
+    uint32_t deadline;
+    int events = 0;
+    assert(icd_client_init(&client, cubeacp_link(), ICD_BUS_UART, buffer, sizeof buffer) == ICD_OK);
+    icd_client_cancel(&client); /* nothing: no harm */
+    assert(ICD_REQUEST(&client, 0, COMMON_IDENTIFICATION) == ICD_OK);
+    icd_client_cancel(&client);
+    assert(!icd_client_output(&client, &bytes, &count)); /* what was not taken is not sent */
+    assert(!icd_client_deadline(&client, &deadline));
+    assert(ICD_REQUEST(&client, 0, CUBEACP_ESTIMATED_ATTITUDE_ANGLES) == ICD_OK);
+    assert(icd_client_output(&client, &bytes, &count) && count == 5u && bytes[2] == 146u);
+    icd_client_cancel(&client);
+    assert(ICD_REQUEST(&client, 1, COMMON_IDENTIFICATION) == ICD_OK);
+    assert(icd_client_output(&client, &bytes, &count) && bytes[2] == 128u);
+    icd_client_received(&client, 2, late, sizeof late, on_event, &events);
+    assert(events == 1 && client.state == ICD_CLIENT_WAIT);
+    return 0;
+}
+"""
+
+
+def test_a_request_that_is_cancelled_is_not_in_the_way_of_the_next(headers, tmp_path):
+    source = tmp_path / "cancel.c"
+    source.write_text(CANCEL)
+    program = harness.compile(source, "-std=c99", *harness.SANITIZERS, f"-I{headers}", output=tmp_path / "cancel")
+    done = subprocess.run([program], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+OTHERS = r"""
+#include "bootloader.h"
+#include "cubeacp.h"
+#include <assert.h>
+
+static icd_status_t ask(const icd_link_t *link, int which)
+{
+    static icd_client_t client;
+    static uint8_t buffer[CUBEACP_CLIENT_BYTES > BOOTLOADER_CLIENT_BYTES ? CUBEACP_CLIENT_BYTES : BOOTLOADER_CLIENT_BYTES];
+    assert(icd_client_init(&client, link, ICD_BUS_UART, buffer, sizeof buffer) == ICD_OK);
+    return which == 0 ? ICD_REQUEST(&client, 0, CUBEACP_CURRENT_ADCS_STATE)
+        : which == 1 ? ICD_REQUEST(&client, 0, BOOTLOADER_BOOTLOADER_STATE)
+                     : ICD_REQUEST(&client, 0, COMMON_IDENTIFICATION);
+}
+
+int main(void)
+{
+    assert(ask(cubeacp_link(), 0) == ICD_OK);
+    assert(ask(cubeacp_link(), 1) == ICD_ERROR_UNKNOWN_ID); /* the same id as the one above */
+    assert(ask(bootloader_link(), 0) == ICD_ERROR_UNKNOWN_ID);
+    assert(ask(bootloader_link(), 1) == ICD_OK);
+    assert(ask(cubeacp_link(), 2) == ICD_OK && ask(bootloader_link(), 2) == ICD_OK && ask(common_link(), 2) == ICD_OK);
+    assert(ask(common_link(), 0) == ICD_ERROR_UNKNOWN_ID);
+    return 0;
+}
+"""
+
+
+def test_a_message_of_another_node_is_not_requested_and_a_shared_one_is(headers, tmp_path):
+    source = tmp_path / "others.c"
+    source.write_text(OTHERS)
+    program = harness.compile(source, "-std=c99", *harness.SANITIZERS, f"-I{headers}", output=tmp_path / "others")
+    done = subprocess.run([program], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def calls_of(source, headers, folder) -> dict[str, set[str]]:
+    """The functions and what each calls, as gcc sees it without any inlining."""
+    flags = ("-std=c99", "-O0", "-c", "-fkeep-static-functions", "-fkeep-inline-functions", "-fcallgraph-info")
+    harness.compile(source, *flags, f"-I{headers}", output=folder / "graph.o")
+    (graph,) = folder.glob("*.ci")
+    text = graph.read_text()
+    calls: dict[str, set[str]] = {}
+    for caller, callee in re.findall(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"', text):
+        calls.setdefault(caller.split(":")[-1], set()).add(callee.split(":")[-1])
+    return calls
+
+
+def test_no_function_calls_itself_by_whatever_way(headers, tmp_path):
+    """So the depth of the stack is known: what firmware demands."""
+    source = tmp_path / "all.c"
+    source.write_text("".join(f'#include "{path.name}"\n' for path in sorted(headers.glob("*.h"))))
+    calls = calls_of(source, headers, tmp_path)
+    assert "icd_client_tick" in calls["icd_client_received"] and len(calls) > 300
+    list(graphlib.TopologicalSorter(calls).static_order())  # CycleError names the functions
+
+
+def test_recursion_would_be_noticed(tmp_path):
+    source = tmp_path / "round.c"
+    source.write_text(
+        "static void b(int n);\nstatic void a(int n) { if (n) b(n - 1); }\nstatic void b(int n) { a(n); }\n"
+    )
+    with pytest.raises(graphlib.CycleError):
+        list(graphlib.TopologicalSorter(calls_of(source, tmp_path, tmp_path)).static_order())

@@ -1,0 +1,89 @@
+"""Single facts of the shipped ICDs that were held wrongly once, each against its place in the manual."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen import values
+from icdgen.icd.load import load
+from tests.conftest import ROOT
+
+
+@pytest.fixture(scope="module")
+def icd():
+    return load([ROOT / "icd"]).icd
+
+
+def field(icd, node: str, message: str, name: str):
+    (found,) = (f for m in icd.node(node).messages if m.name == message for f in m.fields if f.name == name)
+    return found
+
+
+def erratum(icd, id: str):
+    (found,) = (e for node in icd.nodes for e in node.errata if e.id == id)
+    return found
+
+
+def test_a_position_of_16_bits_is_not_told_in_metres(icd):
+    """Tables 149 and 166: 32.767 km do not reach the orbit."""
+    frame = values.decode(icd, "cubeacp", "219", bytes.fromhex("e80300000000"))
+    assert " ".join(values.to_text(frame).split("\n")[5].split()) == "ECEF Position X 1000 1000"
+    assert field(icd, "cubeacp", "ADCS State", "ECEF Position Z").unit is None
+    assert field(icd, "cubeacp", "Raw GPS X", "ECEF Position X").unit.symbol == "m"  # 32 bits, Table 136
+
+
+@pytest.mark.parametrize("message", ["Estimation Parameters", "ADCS Configuration"])
+def test_of_two_sampling_periods_in_a_byte_each_is_a_time_and_the_byte_is_none(icd, message):
+    """Tables 192 and 200: the lower four bits are Cam1's, the upper four Cam2's."""
+    fields = {f.name: f for m in icd.node("cubeacp").messages if m.name == message for f in m.fields}
+    assert "Cam1 and Cam2 Sampling Period" not in {name for name, f in fields.items() if f.unit is not None}
+    assert [(fields[f"Cam{n} period"].bits, fields[f"Cam{n} period"].unit.symbol) for n in (1, 2)] == [(4, "s")] * 2
+
+
+@pytest.mark.parametrize(
+    ("node", "message", "name", "unit"),
+    [
+        ("common", "Identification", "Runtime (seconds)", "s"),  # Table 27
+        ("common", "Identification", "Runtime (milliseconds)", "ms"),
+        ("common", "Load File Download Block", "BlockLength", "byte"),  # Table 17, section 7.2.3
+        ("common", "File Information", "File Size", "byte"),  # Table 43, against Table 215
+        ("bootloader", "Program Information", "File Size", "byte"),  # Table 70
+        ("cubeacp", "JPG Conversion Progress", "Progress Percentage", "%"),  # Table 99
+        ("cubeacp", "CubeSense Configuration", "Nadir Max Deviation Percentage", "%"),  # Table 189
+        ("cubeacp", "Set Star Tracker Configuration", "Star Tracker Centroid X", "pixels"),  # Table 188
+    ],
+)
+def test_a_unit_that_stands_in_words_is_held(icd, node, message, name, unit):
+    assert field(icd, node, message, name).unit.symbol == unit
+
+
+def test_flash_sizes_are_numbers(icd):
+    """Section 3.1: halves of 512 kB, of which each of seven areas holds one."""
+    boot = icd.node("common").protocol["boot"]
+    internal, upload = boot["internal_flash"], icd.node("common").protocol["file_transfer"]["upload"]
+    assert internal["size_bytes"] == internal["bootloader_bytes"] + internal["application_bytes"] == 1 << 20
+    assert upload["destination_bytes"] == internal["application_bytes"]
+
+
+def test_what_is_assumed_of_boot_attempts_and_reads_on_i2c_says_so(icd):
+    protocol = icd.node("common").protocol
+    assert "attempts" in protocol["boot"]["assumptions"]  # section 3 counts in two ways
+    assert "i2c" in protocol["file_transfer"]["download"]["assumptions"]  # section 7.2.3 names no id for the reads
+
+
+def test_only_error_flags_are_called_latched(icd):
+    """Section 3 sets the SRAM enabled state beside the error flags."""
+    (state,) = (m for m in icd.node("bootloader").messages if m.name == "Bootloader State")
+    assert "error flags stay set" in state.summary
+    assert "BOOT-014" not in {e.id for e in icd.node("bootloader").errata}
+
+
+def test_a_log_may_hold_the_time_of_the_receiver(icd):
+    """Table 216: bit 43."""
+    assert [(row.bit, row.id) for row in icd.node("cubeacp").loggable if row.name == "Raw GPS Time"] == [(43, 177)]
+    assert "Raw GPS Time" in erratum(icd, "ACP-197").why
+
+
+def test_pages_of_a_copy_are_not_given_as_those_of_the_manual(icd):
+    """Its own contents put section 6.3 on page 40, the copy that was captured does not."""
+    assert not [m.name for node in icd.nodes for m in node.messages if m.page is not None]

@@ -1,0 +1,149 @@
+"""Sessions over ports that fail, and over serial ports; requests that are given up or come too late."""
+
+from __future__ import annotations
+
+import os
+import pty
+import threading
+import tty
+
+import pytest
+import serial
+
+from tests.python import packages
+from tests.sim.port import Port
+
+
+@pytest.fixture(scope="module")
+def wire(shipped):
+    return shipped.module("wire")
+
+
+class Failing(Port):
+    """A port that fails when it is told to."""
+
+    fails: str = ""
+
+    def write(self, data: bytes) -> None:
+        if self.fails == "write":
+            raise OSError("unplugged")
+        super().write(data)
+
+    def read(self, seconds: float) -> bytes:
+        if self.fails == "read":
+            raise OSError("unplugged")
+        return super().read(seconds)
+
+
+@pytest.mark.parametrize("fails", ["read", "write"])
+@pytest.mark.parametrize("what", ["get", "send", "start", "run"])
+def test_a_session_goes_on_after_an_error_of_its_port(shipped, wire, fails, what):
+    acp = shipped.module("cubeacp")
+    port = Failing(packages.shipped(), "cubeacp")
+    talking = wire.Session(acp.LINK, port.write, port.read, clock=port.clock)
+    calls = {
+        "get": lambda: talking.get(acp.Identification),
+        "send": lambda: talking.send(acp.ClearErrors()),
+        "start": lambda: talking.start(wire.Request("telemetry", 128)),
+        "run": lambda: talking.run(wire.FileList(acp.LINK)),
+    }
+    port.fails = fails
+    for _ in range(2):
+        with pytest.raises(OSError, match="unplugged"):
+            calls[what]()
+        assert not talking.client.busy and talking.client.output() == b""
+    port.fails = ""
+    calls[what]()
+    assert talking.get(acp.Identification).node_type == acp.NODE_TYPE
+
+
+def test_a_session_goes_on_after_whoever_is_told_of_events_fails(shipped, wire):
+    acp = shipped.module("cubeacp")
+    port = Port(packages.shipped(), "cubeacp")
+
+    def on_event(event):
+        raise KeyError("no such handler")
+
+    talking = wire.Session(acp.LINK, port.write, port.read, clock=port.clock, on_event=on_event)
+    port.line._send(0, "log", wire.LogMessage.encode(acp.LINK, bytes(10), []))
+    with pytest.raises(KeyError):
+        talking.get(acp.Identification)
+    assert talking.get(acp.Identification).node_type == acp.NODE_TYPE
+
+
+def test_the_reply_to_a_cancelled_request_is_not_that_to_the_next(shipped, wire):
+    acp = shipped.module("cubeacp")
+    client = wire.Client(acp.LINK, "uart")
+    client.request(0, acp.EstimatedAttitudeAngles)
+    client.cancel()
+    assert (client.busy, client.deadline, client.output()) == (False, None, b"")  # what was not taken is not sent
+    client.request(1, acp.EstimatedAttitudeAngles)
+    assert client.output() == b""  # the same id waits: it may have been sent
+    client.cancel()
+    client.request(2, acp.EstimatedAngularRates)
+    assert client.output()
+    late = b"\x92" + bytes(6)
+    assert client.received(3, wire.uart_encode(acp.LINK, late)) == [wire.Stray(late)]
+    (done,) = client.received(4, wire.uart_encode(acp.LINK, b"\x93" + bytes(6)))
+    assert done.id == 147
+
+
+def test_a_transfer_that_was_not_taken_cannot_end(shipped, wire):
+    acp = shipped.module("cubeacp")
+    client = wire.Client(acp.LINK, "i2c")
+    client.request(0, acp.EstimatedAttitudeAngles)
+    client.transfers()
+    client.cancel()
+    client.send(1, acp.Reset())
+    assert client.transferred(2, bytes(6)) == [wire.Stray(bytes(6))]  # of the frame: the reset is not written
+    assert client.busy
+    client.transfers()
+    (done,) = client.transferred(3, b"")
+    assert done.id == acp.Reset.ID
+
+
+@pytest.fixture
+def line():
+    """A serial port, and the descriptor of its other end."""
+    far, near = pty.openpty()
+    tty.setraw(near)
+    port = serial.Serial(os.ttyname(near), 921600)
+    yield port, far
+    port.close()
+    os.close(far)
+    os.close(near)
+
+
+class Device(threading.Thread):
+    """The simulated node at the far end of a line, as long as it is open."""
+
+    def __init__(self, far: int) -> None:
+        super().__init__(daemon=True)
+        self.far, self.port = far, Port(packages.shipped(), "cubeacp")
+        self.start()
+
+    def run(self) -> None:
+        try:
+            while True:
+                self.port.write(os.read(self.far, 4096))
+                os.write(self.far, self.port.read(1))
+        except OSError:
+            return
+
+
+def test_a_serial_port_of_pyserial_will_do(shipped, wire, line):
+    acp = shipped.module("cubeacp")
+    port, far = line
+    Device(far)
+    talking = wire.Session(acp.LINK, *wire.serial_port(port))
+    assert talking.get(acp.Identification).node_type == acp.NODE_TYPE
+    talking.send(acp.ClearErrors())
+    assert len(talking.get(acp.AdcsConfiguration).to_bytes()) == 504
+
+
+def test_a_serial_port_on_which_nothing_comes_is_not_waited_for_any_longer(shipped, wire, line):
+    acp = shipped.module("cubeacp")
+    settings = wire.Settings(reply_timeout=40, retries=1, poll_interval=1, poll_timeout=1)
+    talking = wire.Session(acp.LINK, *wire.serial_port(line[0]), settings=settings)
+    with pytest.raises(wire.ReplyTimeoutError, match="2 attempts"):
+        talking.get(acp.Identification)
