@@ -201,7 +201,8 @@ typedef enum {
     ICD_ROLE_INTERFACE_VERSION,
     ICD_ROLE_ID,
     ICD_ROLE_PROCESSED,
-    ICD_ROLE_PARAMETER
+    ICD_ROLE_PARAMETER,
+    ICD_ROLE_PROGRAM
 } icd_role_t;
 
 /** Where the field of a role lies, in bits. */
@@ -277,6 +278,9 @@ typedef struct {
     uint32_t finalize_timeout;
     uint32_t rounds;
     bool checksum_covers_fill;
+    uint32_t destination_bytes;  /**< That a destination holds, 0 if the ICD does not say. */
+    const uint8_t *destinations; /**< Those that are supported, NULL for all. */
+    uint16_t destination_count;
 } icd_upload_form_t;
 
 /** Erasing files, or formatting their medium. */
@@ -285,6 +289,15 @@ typedef struct {
     uint32_t poll_interval;
     uint32_t timeout;
 } icd_erase_form_t;
+
+/** What a telecommand starts for a stored program, and a frame tells the end of. */
+typedef struct {
+    icd_step_t request, progress;
+    uint32_t poll_interval;
+    uint32_t timeout;
+    const uint8_t *programs; /**< Those that it may be asked for, NULL for all. */
+    uint16_t program_count;
+} icd_operation_form_t;
 
 /** How a client waits and tries again, in milliseconds. */
 typedef struct {
@@ -296,6 +309,8 @@ typedef struct {
 
 /** Everything about the protocol of a node. What the ICD does not describe is NULL. */
 typedef struct {
+    const char *const *nodes; /**< Whose messages it has: its own, then those of the nodes that it includes. */
+    uint16_t node_count;
     bool little; /**< Byte order of numbers. */
     bool msb0;   /**< Bit 0 of a byte is the most significant one. */
     uint8_t telemetry_first, telemetry_last;
@@ -331,8 +346,30 @@ typedef struct {
     const icd_upload_form_t *upload;
     const icd_erase_form_t *erase;
     const icd_erase_form_t *format;
+    const icd_operation_form_t *program_copy;
+    const icd_operation_form_t *program_information;
     const icd_step_t *identification;
 } icd_link_t;
+
+static inline bool icdgen_same_name(const char *one, const char *other)
+{
+    while (*one != '\0' && *one == *other) {
+        ++one;
+        ++other;
+    }
+    return *one == *other;
+}
+
+/** Whether the node has the messages of that one, which is so of itself and of those that it includes. */
+static inline bool icd_has_messages_of(const icd_link_t *link, const char *node)
+{
+    for (size_t i = 0; i < link->node_count; ++i) {
+        if (icdgen_same_name(link->nodes[i], node)) {
+            return true;
+        }
+    }
+    return false;
+}
 
 /** The message of an id; NULL if the node has none. */
 static inline const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, unsigned id)
@@ -420,6 +457,12 @@ static inline void icdgen_put(
         below += link->little ? count : 0u;
         at += count;
     }
+}
+
+/* Whether a number is one of those that are allowed, of which NULL stands for all. */
+static inline bool icdgen_allowed(const uint8_t *allowed, size_t count, uint8_t number)
+{
+    return allowed == NULL || memchr(allowed, number, count) != NULL;
 }
 
 /** Who the node is. */
@@ -2103,8 +2146,19 @@ static inline icd_status_t icd_client_send(
     return icd_client_start(client, now, &request, on_event, context);
 }
 
-/** Requests the telemetry of that name, such as ICD_REQUEST(&client, now, NODE_IDENTIFICATION). */
-#define ICD_REQUEST(client, now, name) icd_client_request(client, now, ICDGEN_U8(name##_TELEMETRY))
+static inline icd_status_t icdgen_client_request_of(icd_client_t *client, uint32_t now, const char *node, unsigned id)
+{
+    if (!icd_has_messages_of(client->link, node)) {
+        return ICD_ERROR_UNKNOWN_ID;
+    }
+    return icd_client_request(client, now, ICDGEN_U8(id));
+}
+
+/**
+ * Requests the telemetry of that name, such as ICD_REQUEST(&client, now, NODE_IDENTIFICATION); ICD_ERROR_UNKNOWN_ID if
+ * it is a message of another node, whatever its id.
+ */
+#define ICD_REQUEST(client, now, name) icdgen_client_request_of(client, now, name##_TELEMETRY)
 
 /** The next bytes for the UART; false when there are none. They last until the next call. */
 static inline bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count)
@@ -2421,8 +2475,8 @@ static inline bool icdgen_client_awaits_transfer(const icd_client_t *client, uin
 }
 
 /**
- * I2C: takes what was read in the oldest transaction that was taken and not told of; `bytes` NULL: it failed. Of a write
- * without reading, anything but NULL. What a request owed that is over is ICD_EVENT_STRAY.
+ * I2C: takes what was read in the oldest transaction that was taken and not told of; `bytes` NULL: it failed. Of a
+ * write without reading, anything but NULL. What a request owed that is over is ICD_EVENT_STRAY.
  */
 static inline void icd_client_transferred(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
@@ -2469,7 +2523,8 @@ typedef enum {
     ICD_PARAMETER, /**< The node cannot load this block. */
     ICD_LENGTH,    /**< The block, or a frame, has another length than was asked for. */
     ICD_ROUNDS,    /**< Packets were still missing after so many rounds. */
-    ICD_CHECKSUM   /**< After so many rounds the checksum was still wrong. */
+    ICD_CHECKSUM,  /**< After so many rounds the checksum was still wrong. */
+    ICD_FAILED     /**< The node tells that what it was asked for failed. */
 } icd_result_t;
 
 /** Bytes of the longest message that takes part in a procedure, of any node. */
@@ -2494,6 +2549,7 @@ struct icd_procedure {
     const icd_step_t *polled; /* the frame that is polled until a flag is as wanted */
     icd_role_t flag;
     bool wanted;
+    uint8_t program; /* of which the frame must be, if it says of which one it is */
     uint32_t interval;
     uint32_t poll_end;
     uint8_t state;
@@ -2563,6 +2619,14 @@ static inline void icdgen_poll(
     procedure->poll_end = procedure->now + timeout;
 }
 
+/* Whether the frame is about what was asked for. */
+static inline bool icdgen_is_meant(const icd_procedure_t *procedure, const uint8_t *frame)
+{
+    const icd_step_t *const step = procedure->polled;
+    return icdgen_place(step, ICD_ROLE_PROGRAM) == NULL ||
+        icdgen_get(procedure->link, step, frame, ICD_ROLE_PROGRAM) == procedure->program;
+}
+
 /* Whether polling goes on after this outcome. */
 static inline bool icdgen_polls_on(icd_procedure_t *procedure, const icd_event_t *outcome)
 {
@@ -2576,7 +2640,8 @@ static inline bool icdgen_polls_on(icd_procedure_t *procedure, const icd_event_t
         icdgen_end(procedure, ICD_LENGTH);
         return true;
     }
-    if ((icdgen_get(link, step, outcome->data, procedure->flag) != 0u) == procedure->wanted ||
+    if (((icdgen_get(link, step, outcome->data, procedure->flag) != 0u) == procedure->wanted &&
+         icdgen_is_meant(procedure, outcome->data)) ||
         icdgen_get(link, step, outcome->data, ICD_ROLE_ERROR) != 0u) {
         procedure->polled = NULL;
         return false;
@@ -2697,7 +2762,7 @@ static inline icd_status_t icdgen_procedure_init(
     procedure->link = link;
     procedure->resume = resume;
     procedure->result = ICD_RUNNING;
-    return supported && link->files != NULL ? ICD_OK : ICD_ERROR_UNSUPPORTED;
+    return supported ? ICD_OK : ICD_ERROR_UNSUPPORTED;
 }
 
 /** A file of the node; `time` is packed. */
@@ -3377,7 +3442,8 @@ static inline void icdgen_upload_resume(icd_procedure_t *procedure, const icd_ev
 
 /**
  * The file must stay where it is. `block`: bytes a block, 0 for those of the ICD. `bitmap` holds icd_block_bitmap()
- * bytes.
+ * bytes. ICD_ERROR_UNSUPPORTED if the node takes no uploads, ICD_ERROR_RANGE if the destination is not supported,
+ * ICD_ERROR_LENGTH if it holds less.
  */
 static inline icd_status_t icd_upload_init(
     icd_upload_t *upload,
@@ -3392,6 +3458,12 @@ static inline icd_status_t icd_upload_init(
     memset(upload, 0, sizeof *upload);
     if (icdgen_procedure_init(&upload->procedure, link, known, icdgen_upload_resume) != ICD_OK) {
         return ICD_ERROR_UNSUPPORTED;
+    }
+    if (!icdgen_allowed(link->upload->destinations, link->upload->destination_count, destination)) {
+        return ICD_ERROR_RANGE;
+    }
+    if (link->upload->destination_bytes != 0u && size > link->upload->destination_bytes) {
+        return ICD_ERROR_LENGTH;
     }
     upload->destination = destination;
     upload->file = file;
@@ -3451,6 +3523,80 @@ static inline icd_status_t icd_format_init(icd_format_t *format, const icd_link_
     format->form = link->format;
     format->all = true;
     return icdgen_procedure_init(&format->procedure, link, link->format != NULL, icdgen_erase_resume);
+}
+
+/** What a node does with a stored program. `procedure` goes to the functions of icd_procedure_t. */
+typedef struct {
+    icd_procedure_t procedure;
+    const icd_operation_form_t *form;
+    uint32_t size;     /**< Of the program in bytes, once the information is ICD_DONE. */
+    uint32_t checksum; /**< Likewise. */
+} icd_program_operation_t;
+
+typedef icd_program_operation_t icd_program_copy_t;
+typedef icd_program_operation_t icd_program_information_t;
+
+enum { ICDGEN_PROGRAM_START, ICDGEN_PROGRAM_BEGUN, ICDGEN_PROGRAM_ENDED };
+
+/* The node says that it is done, or that it failed. */
+static inline void icdgen_program_ended(icd_program_operation_t *operation, const uint8_t *frame)
+{
+    const icd_link_t *const link = operation->procedure.link;
+    const icd_step_t *const step = &operation->form->progress;
+    if (icdgen_get(link, step, frame, ICD_ROLE_ERROR) != 0u) {
+        icdgen_end(&operation->procedure, ICD_FAILED);
+    } else {
+        operation->size = icdgen_get(link, step, frame, ICD_ROLE_SIZE);
+        operation->checksum = icdgen_get(link, step, frame, ICD_ROLE_CHECKSUM);
+        icdgen_end(&operation->procedure, ICD_DONE);
+    }
+}
+
+static inline void icdgen_program_resume(icd_procedure_t *procedure, const icd_event_t *outcome)
+{
+    icd_program_operation_t *const operation = ICDGEN_CAST(icd_program_operation_t *, ICDGEN_CAST(void *, procedure));
+    const icd_operation_form_t *const form = operation->form;
+    const bool tells_ready = icdgen_place(&form->progress, ICD_ROLE_READY) != NULL;
+    if (procedure->state == ICDGEN_PROGRAM_START) {
+        icdgen_command(procedure, &form->request, true, ICDGEN_PROGRAM_BEGUN);
+        icdgen_put(procedure->link, &form->request, procedure->data, ICD_ROLE_PROGRAM, procedure->program);
+    } else if (procedure->state == ICDGEN_PROGRAM_BEGUN) {
+        icdgen_poll(
+            procedure, &form->progress, tells_ready ? ICD_ROLE_READY : ICD_ROLE_BUSY, tells_ready, form->poll_interval,
+            form->timeout, ICDGEN_PROGRAM_ENDED);
+    } else {
+        icdgen_program_ended(operation, outcome->data);
+    }
+}
+
+static inline icd_status_t icdgen_program_init(
+    icd_program_operation_t *operation, const icd_link_t *link, const icd_operation_form_t *form, uint8_t program)
+{
+    const icd_status_t status = icdgen_procedure_init(&operation->procedure, link, form != NULL, icdgen_program_resume);
+    operation->form = form;
+    operation->size = 0;
+    operation->checksum = 0;
+    operation->procedure.program = program;
+    if (status == ICD_OK && !icdgen_allowed(form->programs, form->program_count, program)) {
+        return ICD_ERROR_RANGE;
+    }
+    return status;
+}
+
+/**
+ * Copies a stored program to where it can run. ICD_ERROR_RANGE if it may not be asked for, ICD_ERROR_UNSUPPORTED if the
+ * node has no such operation.
+ */
+static inline icd_status_t icd_program_copy_init(icd_program_copy_t *copy, const icd_link_t *link, uint8_t program)
+{
+    return icdgen_program_init(copy, link, link->program_copy, program);
+}
+
+/** Reads `size` and `checksum` of a stored program; refuses as icd_program_copy_init() does. */
+static inline icd_status_t icd_program_information_init(
+    icd_program_information_t *information, const icd_link_t *link, uint8_t program)
+{
+    return icdgen_program_init(information, link, link->program_information, program);
 }
 
 #endif /* ICDGEN_WIRE_H */

@@ -60,9 +60,9 @@ def test_a_unit_that_stands_in_words_is_held(icd, node, message, name, unit):
 def test_flash_sizes_are_numbers(icd):
     """Section 3.1: halves of 512 kB, of which each of seven areas holds one."""
     boot = icd.node("common").protocol["boot"]
-    internal, external = boot["internal_flash"], boot["external_flash"]
+    internal, upload = boot["internal_flash"], icd.node("common").protocol["file_transfer"]["upload"]
     assert internal["size_bytes"] == internal["bootloader_bytes"] + internal["application_bytes"] == 1 << 20
-    assert external["area_bytes"] == internal["application_bytes"]
+    assert upload["destination_bytes"] == internal["application_bytes"]
 
 
 def test_what_is_assumed_of_boot_attempts_and_reads_on_i2c_says_so(icd):

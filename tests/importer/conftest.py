@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.importer import profile, run
 from tests.conftest import ROOT
 
@@ -22,5 +23,9 @@ def vendor() -> Path:
 
 
 def imported(manual: Path, words: str | None = None, jobs: int = 1) -> tuple[run.Result, dict[str, dict]]:
-    """What an import of the manual finds."""
-    return run.run(manual, profile.load(profile.find(words)), jobs=jobs)
+    """What an import of the manual finds; raises `Findings` also where that is nothing."""
+    result, trees = run.run(manual, profile.load(profile.find(words)), jobs=jobs)
+    if not trees:
+        nothing = next(t for t in result.troubles if t.code == "IMP004")
+        raise Findings([Finding(nothing.code, nothing.message, Place(str(manual)), nothing.help)])
+    return result, trees

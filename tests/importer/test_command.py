@@ -144,6 +144,6 @@ def test_the_page_shows_each_doubtful_table_as_a_picture(tmp_path):
     result = icdgen("import", "manual.pdf", "--report", "report.html", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert 'id="table-1"' in page
+    assert 'id="table-0"' in page
     assert "data:image/png;base64," in page
     assert "http" not in page.replace("http-equiv", "")

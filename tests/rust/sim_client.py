@@ -15,7 +15,7 @@ import jinja2
 from icdgen import codec
 from icdgen.backends.rust import message_rows, names
 from icdgen.backends.rust.messages import MessageRow
-from icdgen.icd.model import CONFIGURATION, Field, Icd, Message
+from icdgen.icd.model import CONFIGURATION, Field, Icd, Message, Node
 from icdgen.protocol import facts
 from icdgen.sim.values import fresh
 from tests.rust import harness
@@ -50,6 +50,7 @@ def source(icd: Icd, node_name: str = NODE) -> str:
 
     commands = [m for m in known.telecommands.values() if m.kind != CONFIGURATION]
     starters = [one.name for one in icd.nodes if one.protocol.get("program_start", {}).get("application") == node.name]
+    boot = icd.node(starters[0])
     last, log = known.polled, icd.protocol_of(node).get("unsolicited_log", {}).get("configured_by", {}).get("message")
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE), trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
@@ -64,8 +65,16 @@ def source(icd: Icd, node_name: str = NODE) -> str:
         last=Place(_type(rows[last.message.name]), _field(rows[last.message.name], last.id)),
         identification=_type(rows[known.identification.message.name]),
         log=log and _type(rows[log]),
-        restarted=starters[0] if starters else None,
+        restarted=starters[0],
+        start=_start(icd, boot, enums),
+        running=icd.protocol_of(boot)["program_copy"]["destination"],
     )
+
+
+def _start(icd: Icd, boot: Node, enums: names.Enums) -> str:
+    """The type of the telecommand that starts the application."""
+    name = boot.protocol["program_start"]["message"]
+    return _type(next(row for row in message_rows(icd, boot, enums) if row.message.name == name))
 
 
 def build(folder: Path) -> list[str]:

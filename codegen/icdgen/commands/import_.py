@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -13,7 +15,10 @@ from icdgen.commands.common import PATH, print_findings, say
 from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
 
-ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP004"})
+if TYPE_CHECKING:
+    from icdgen.importer.run import Result
+
+ABOUT_FILES = frozenset({"IMP002", "IMP003"})
 
 
 @click.command("import")
@@ -37,7 +42,17 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003", "IMP004"})
 @click.option("--descriptions", is_flag=True, help="Hold the manual's descriptions as summaries.")
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @click.option("--jobs", type=click.IntRange(1, 64), help="Processes that read pages (default: one a core).")
-def import_(manual, out, words, update, dry_run, page, descriptions, form, jobs) -> None:
+def import_(
+    manual: Path,
+    out: Path,
+    words: str | None,
+    update: bool,
+    dry_run: bool,
+    page: Path | None,
+    descriptions: bool,
+    form: str,
+    jobs: int | None,
+) -> None:
     """Read a vendor's MANUAL (PDF, or text with tab-separated tables) into reviewable ICDs.
 
     Exit status: 0 if the ICDs hold all that was found, 1 if something is missing from them or must be looked at first.
@@ -50,32 +65,42 @@ def import_(manual, out, words, update, dry_run, page, descriptions, form, jobs)
             result, trees = run.run(manual, vocabulary, progress, jobs, descriptions)
         run.aim(result, trees, out, update)
     except Findings as error:
-        _refuse(error)
+        _refuse(error, manual, form)
         sys.exit(1)
     if not dry_run:
         run.write(result)
-    if page is not None:
-        _write_page(page, result)
     if form == "json":
         click.echo(console.as_json(result))
     else:
-        colour = sys.stdout is not None and sys.stdout.isatty() and "NO_COLOR" not in os.environ
-        if colour:
-            click.echo(console.report(result, True), color=True)
-        else:
-            say(console.report(result))
-        say(
-            "\n".join(
-                line.replace(": written;", ": would be written;") if dry_run else line for line in console.files(result)
-            )
-        )
-        if not dry_run:
-            _next_step(result)
+        _say(result, dry_run)
+    if page is not None:
+        _write_page(page, result)
     sys.exit(1 if result.failed else 0)
 
 
-def _refuse(error: Findings) -> None:
+def _say(result: Result, dry_run: bool) -> None:
+    from icdgen.importer import console
+
+    colour = sys.stdout is not None and sys.stdout.isatty() and "NO_COLOR" not in os.environ
+    if colour:
+        click.echo(console.report(result, True), color=True)
+    else:
+        say(console.report(result))
+    if not result.targets:
+        return
+    lines = console.files(result)
+    say("\n".join(line.replace(": written;", ": would be written;") if dry_run else line for line in lines))
+    if not dry_run:
+        _next_step(result)
+
+
+def _refuse(error: Findings, manual: Path, form: str) -> None:
     """Says why nothing can be imported: about the manual as a whole, or about lines of a profile or an ICD."""
+    if form == "json":
+        from icdgen.importer import console
+
+        click.echo(console.refused_as_json(str(manual), error.findings))
+        return
     about_lines = [finding for finding in error.findings if finding.code not in ABOUT_FILES]
     for finding in error.findings:
         if finding.code in ABOUT_FILES:
@@ -91,7 +116,7 @@ def _refuse(error: Findings) -> None:
         print_findings(about_lines, texts, "text", err=True)
 
 
-def _write_page(page: Path, result) -> None:
+def _write_page(page: Path, result: Result) -> None:
     from icdgen.generation.write import replace
     from icdgen.importer import html
 
@@ -101,7 +126,7 @@ def _write_page(page: Path, result) -> None:
         raise UserError(f"cannot write {page}: {error.strerror}", "choose another place with --report") from None
 
 
-def _next_step(result) -> None:
+def _next_step(result: Result) -> None:
     """What `icdgen check` would say of the files, as a number: the import ends where the check begins."""
     from icdgen.icd.load import load
 
@@ -116,7 +141,7 @@ def _next_step(result) -> None:
 
 
 @contextmanager
-def _progress():
+def _progress() -> Iterator[Callable[[int, int, int], None] | None]:
     """A bar on a terminal, nothing in a pipe."""
     if sys.stderr is None or not sys.stderr.isatty():
         yield None

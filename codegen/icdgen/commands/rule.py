@@ -10,24 +10,26 @@ from icdgen.errors import UserError
 @click.command()
 @click.argument("code", required=False)
 def rule(code: str | None) -> None:
-    """Explain a rule with examples; without CODE, list all rules: of ICDs (ICD...) and of their changes (DIF...)."""
+    """Explain a rule with examples; without CODE, list all rules: of ICDs (ICD...), of their changes (DIF...) and of
+    importing manuals (IMP...)."""
+    from icdgen.diff import rule as of_changes
+    from icdgen.diff.compare import RULES
     from icdgen.icd import rules
+    from icdgen.importer import findings
 
     if code is None:
-        from icdgen.diff.compare import RULES
-
         titles = [(one.code, one.title) for one in rules.ALL.values()]
         titles += [(one.code, one.title) for one in RULES.values()]
+        titles += [(name, page.title) for name, page in findings.pages().items()]
         for found, title in titles:
             click.echo(f"{found}  {title}")
         return
     code = code.upper()
     if code in rules.ALL:
         click.echo(rules.explain(code))
-        return
-    from icdgen.diff import rule
-    from icdgen.diff.compare import RULES
-
-    if code not in RULES:
+    elif code in RULES:
+        click.echo(of_changes.explain(code))
+    elif code in findings.pages():
+        click.echo(findings.explain(code))
+    else:
         raise UserError(f"there is no rule {code}", "`icdgen rule` lists them all")
-    click.echo(rule.explain(code))

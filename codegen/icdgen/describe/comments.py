@@ -39,7 +39,7 @@ def sentence(text: str) -> str:
 
 
 def _comment(head: str, rest: Iterable[str], errata: Iterable[Erratum] = ()) -> Comment:
-    said = tuple(f"Erratum {words(e.id)} ({e.confidence}): {sentence(e.title)}" for e in errata)
+    said = tuple(f"{e.label} {words(e.id)}{e.sureness}: {sentence(e.title)}" for e in errata)
     return Comment(head, tuple(filter(None, rest)), said)
 
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from typing import Any
 
+from icdgen.diagnostics import Finding
 from icdgen.icd.rules.wording import count
 from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Spot, Trouble
 from icdgen.importer.run import Result
 from icdgen.importer.understand.survey import BACKGROUND, UNKNOWN
+from icdgen.reports.excerpt import printable
 
 _COLOURS = {"error": "31;1", "warning": "33;1", "note": "36"}
 
@@ -28,18 +31,20 @@ def report(result: Result, colour: bool = False) -> str:
             notes.append(trouble)
             continue
         lines += [
-            _paint(f"{trouble.severity}[{trouble.code}]", trouble.severity, colour) + f": {trouble.message}",
-            f"  --> {where(result.document.file, trouble.spot)}",
+            _paint(f"{trouble.severity}[{trouble.code}]", trouble.severity, colour) + f": {printable(trouble.message)}",
+            f"  --> {printable(where(result.document.file, trouble.spot))}",
         ]
-        lines += [f"  = help: {trouble.help}"] if trouble.help else []
+        lines += [f"  = help: {printable(trouble.help)}"] if trouble.help else []
         lines.append("")
     if notes:
-        lines += [f"{_paint('note', 'note', colour)}[{t.code}] {_short(t)}: {t.message}" for t in notes]
+        lines += [f"{_paint('note', 'note', colour)}[{t.code}] {_short(t)}: {printable(t.message)}" for t in notes]
         lines.append("")
     return "\n".join(lines + summary(result))
 
 
 def _short(trouble: Trouble) -> str:
+    if trouble.spot.page is None and trouble.spot.line is None:
+        return "the document"
     return f"page {trouble.spot.page}" if trouble.spot.page is not None else f"line {trouble.spot.line}"
 
 
@@ -55,8 +60,8 @@ def summary(result: Result) -> list[str]:
         f"{severities[s]} {s}{'s' if severities[s] != 1 else ''}" for s in ("error", "warning", "note") if severities[s]
     )
     return [
-        f"{pages}{len(result.survey.found):,} tables: " + ", ".join(parts),
-        "read: " + ", ".join(f"{sure[level]} {level}" for level in (CERTAIN, LIKELY, DOUBTFUL) if sure[level]),
+        f"{pages}{len(result.survey.found):,} tables" + (": " if parts else "") + ", ".join(parts),
+        "read: " + (", ".join(f"{sure[one]} {one}" for one in (CERTAIN, LIKELY, DOUBTFUL) if sure[one]) or "none"),
         f"findings: {found or 'none'}",
     ]
 
@@ -110,11 +115,22 @@ def as_json(result: Result) -> str:
         }
         for t in result.troubles
     ]
-    written = [{"file": str(t.path), "changes": t.changes} for t in result.targets]
+    written: list[dict[str, Any]] = [{"file": str(t.path), "changes": t.changes} for t in result.targets]
     return json.dumps(
         {"manual": result.document.file, "pages": result.document.pages, "tables": found, "findings": troubles,
          "files": written}, indent=2, ensure_ascii=False,
     )  # fmt: skip
+
+
+def refused_as_json(manual: str, findings: list[Finding]) -> str:
+    """The same form for a manual, a profile or an ICD that could not be read."""
+    troubles = [
+        {"code": f.code, "severity": f.severity, "message": f.message, "help": f.help, "file": f.place.file,
+         "table": None, "page": None, "line": f.place.line}
+        for f in findings
+    ]  # fmt: skip
+    made = {"manual": manual, "pages": None, "tables": [], "findings": troubles, "files": []}
+    return json.dumps(made, indent=2, ensure_ascii=False)
 
 
 def _paint(text: str, severity: str, colour: bool) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from icdgen.importer.document import Document, Row, Spot, Table, Trouble
+from icdgen.importer.document import Document, Row, Table, Trouble
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import number
 
@@ -46,7 +46,7 @@ def _group(table: Table, entry: dict, document: Document) -> None:
             table.rows.insert(index, heading)
             document.troubles.append(
                 Trouble("IMP028", f"{table.title}: the group heading `{entry['group']}` is put back before "
-                        f"{entry['before']}, as the profile says", Spot(row.page, row.line, table.number),
+                        f"{entry['before']}, as the profile says", table.spot_of(row),
                         "compare with the page", "note")
             )  # fmt: skip
             return

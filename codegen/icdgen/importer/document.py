@@ -17,6 +17,14 @@ class Box(NamedTuple):
     x1: float
     bottom: float
 
+    @property
+    def width(self) -> float:
+        return self.x1 - self.x0
+
+    @property
+    def height(self) -> float:
+        return self.bottom - self.top
+
     def join(self, other: Box) -> Box:
         """The smallest box around both, which stand on one page."""
         return Box(
@@ -34,6 +42,9 @@ class Spot(NamedTuple):
     page: int | None = None
     line: int | None = None
     table: int | None = None
+    order: int | None = (
+        None  # which table of the document it is, counted from 0: numbers may be missing, or occur twice
+    )
 
 
 @dataclass(slots=True)
@@ -69,10 +80,15 @@ class Table:
     page: int | None = None
     line: int | None = None
     doubts: list[str] = field(default_factory=list)  # what makes the reading less than certain
+    order: int | None = None  # which table of the document it is
 
     @property
     def spot(self) -> Spot:
-        return Spot(self.page, self.line, self.number)
+        return Spot(self.page, self.line, self.number, self.order)
+
+    def spot_of(self, row: Row) -> Spot:
+        """Where one of its rows stands."""
+        return Spot(row.page or self.page, row.line, self.number, self.order)
 
     @property
     def title(self) -> str:
@@ -83,7 +99,7 @@ class Table:
 
 @dataclass(slots=True)
 class Heading:
-    """A numbered section heading."""
+    """A section heading; ``number`` is empty where it has none."""
 
     number: str
     text: str
@@ -127,3 +143,8 @@ class Document:
     @property
     def tables(self) -> list[Table]:
         return [block for block in self.blocks if isinstance(block, Table)]
+
+    def count_tables(self) -> None:
+        """Tells each table its place in the document."""
+        for order, table in enumerate(self.tables):
+            table.order = order

@@ -9,8 +9,8 @@ from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded, number
 
 
-def match(cells: list[str], profile: Profile) -> Header | None:
-    """The heading row that these cells are; None if they are none."""
+def match(cells: list[str], profile: Profile, loose: bool = False) -> Header | None:
+    """The heading row that these cells are; None if they are none. ``loose``: fields may have no column of offsets."""
     texts = [folded(cell) for cell in cells]
     if sum(bool(text) for text in texts) < 2 or any(number(cell) is not None for cell in cells):
         return None
@@ -24,8 +24,12 @@ def match(cells: list[str], profile: Profile) -> Header | None:
             1 for text, role in zip(texts, given, strict=True)
             if text and not role and profile.labels.get(tuple(sorted(text))) != "fields"
         )  # fmt: skip
+        has_offsets = kind != "fields" or "at" in there or "at_bytes" in there
+        if not has_offsets and not loose:
+            continue
         known = sum(bool(role) for role in given)
         score = known - 0.6 * unknown
+        score -= 0 if has_offsets else 0.7  # rather something else that fits as well
         if known > unknown and score > most:
             best, most = Header(kind, given, cells), score
     return best
@@ -61,7 +65,7 @@ def segmented(words: list[str], profile: Profile) -> list[list[int]] | None:
             else:
                 groups.append([index])
                 index += 1
-        header = match([" ".join(words[i] for i in group) for group in groups], profile)
+        header = match([" ".join(words[i] for i in group) for group in groups], profile, loose=True)
         if header is not None and header.kind == kind and hits > best[0]:
             best = (hits, groups)
     return best[1] or None
@@ -77,7 +81,7 @@ def repeats(cells: list[str], header: Header, profile: Profile) -> bool:
         return True
     if len(given) >= 2 and _is_lower_half(given, titles):
         return True
-    found = match(cells, profile)
+    found = match(cells, profile, loose=True)
     return (
         found is not None
         and found.kind == header.kind

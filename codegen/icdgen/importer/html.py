@@ -7,13 +7,14 @@ import html
 import io
 from collections.abc import Iterator
 
-from icdgen.importer.document import CERTAIN, Table, Trouble
+from icdgen.importer.document import CERTAIN, Box, Table, Trouble
 from icdgen.importer.run import Result
 from icdgen.importer.understand.survey import Found
 
 RESOLUTION = 110
 MARGIN = 6.0
 CAPTION = 26.0  # points above and below a table in which its caption stands
+MOST_PIXELS = 3_000_000  # of a picture: some pages are posters
 MOST = 250  # pictures; a report with more would be too large to open
 
 _STYLE = """
@@ -39,7 +40,7 @@ def report(result: Result) -> str:
     name = html.escape(result.document.file)
     about: dict[int | None, list[Trouble]] = {}
     for trouble in result.troubles:
-        about.setdefault(trouble.spot.table, []).append(trouble)
+        about.setdefault(trouble.spot.order, []).append(trouble)
     doubtful = [one for one in result.survey.found if result.sure_of(one.table) != CERTAIN]
     rest = [one for one in result.survey.found if result.sure_of(one.table) == CERTAIN]
     parts = [
@@ -53,8 +54,8 @@ def report(result: Result) -> str:
         parts += ["<h2>About the document</h2>", _list(loose)]
     with _Pictures(result) as pictures:
         for one in doubtful:
-            parts += _table(one, result, about.get(one.table.number, []), pictures)
-    noted = [t for one in rest for t in about.get(one.table.number, []) if one.table.number is not None]
+            parts += _table(one, result, about.get(one.table.order, []), pictures)
+    noted = [t for one in rest for t in about.get(one.table.order, [])]
     if noted:
         parts += ["<h2>Notes about tables that were read without doubt</h2>", _list(noted)]
     return "\n".join(parts) + "\n</body></html>\n"
@@ -74,7 +75,7 @@ def _list(troubles: list[Trouble]) -> str:
 def _table(one: Found, result: Result, troubles: list[Trouble], pictures: _Pictures) -> Iterator[str]:
     table = one.table
     title = html.escape(table.title[:1].upper() + table.title[1:])
-    yield f'<h2 id="table-{table.number}">{title} <span class="sure">{one.what}, {result.sure_of(table)}</span></h2>'
+    yield f'<h2 id="table-{table.order}">{title} <span class="sure">{one.what}, {result.sure_of(table)}</span></h2>'
     yield _list(troubles)
     images = "".join(pictures.of(table))
     read = _as_read(table)
@@ -106,7 +107,10 @@ class _Pictures:
         if any(one.table.boxes for one in self.result.survey.found):
             import pypdfium2
 
-            self.file = pypdfium2.PdfDocument(self.result.document.file)
+            try:
+                self.file = pypdfium2.PdfDocument(self.result.document.file)
+            except pypdfium2.PdfiumError:  # it is stricter with broken files than the reader of text
+                self.file = None
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -119,15 +123,22 @@ class _Pictures:
                 return
             self.left -= 1
             page = self.file[box.page - 1]
-            width, height = page.get_size()
-            crop = (
-                max(0.0, box.x0 - MARGIN),
-                max(0.0, height - box.bottom - CAPTION),
-                max(0.0, width - box.x1 - MARGIN),
-                max(0.0, box.top - CAPTION),
-            )
-            image = page.render(scale=RESOLUTION / 72, crop=crop).to_pil().convert("P", palette=1, colors=32)
+            crop = _crop(box, *page.get_size())
+            if crop is None:
+                yield f"<p>page {box.page}: the table lies outside the visible page</p>"
+                continue
+            scale = min(RESOLUTION / 72, (MOST_PIXELS / (box.width * box.height + 1)) ** 0.5)
+            image = page.render(scale=scale, crop=crop).to_pil().convert("P", palette=1, colors=32)
             data = io.BytesIO()
             image.save(data, "PNG", optimize=True)
             encoded = base64.b64encode(data.getvalue()).decode("ascii")
             yield f'<img alt="page {box.page}" title="page {box.page}" src="data:image/png;base64,{encoded}">'
+
+
+def _crop(box: Box, width: float, height: float) -> tuple[float, float, float, float] | None:
+    """What to cut off the page on the left, below, on the right and above; None where nothing would be left."""
+    x0, x1 = max(0.0, box.x0 - MARGIN), min(width, box.x1 + MARGIN)
+    top, bottom = max(0.0, box.top - CAPTION), min(height, box.bottom + CAPTION)
+    if x1 - x0 < 2 or bottom - top < 2:
+        return None
+    return x0, height - bottom, width - x1, top

@@ -6,7 +6,7 @@ import re
 from typing import NamedTuple
 
 from icdgen.importer.profile import Profile
-from icdgen.importer.words import folded, plain
+from icdgen.importer.words import folded, growing_squeezed, grows, plain
 
 _VALUE = re.compile(r"(?:0[xX][0-9A-Fa-f]+|[0-9]+)(?:\s*/\s*(?:0[xX][0-9A-Fa-f]+|[0-9]+))?\Z")
 
@@ -26,10 +26,10 @@ def parse(text: str, profile: Profile) -> list[Labelled]:
     """All labels with a number behind them, in order; a label without one comes last, with an empty value."""
     found: list[Labelled] = []
     label: list[str] = []
-    words = re.sub(r"(?<=[0-9])\s*/\s*(?=[0-9])", "/", plain(text)).replace(":", " : ").split()
+    words = re.sub(r"(?<=[0-9])\s*/\s*(?=[0-9])", "/", growing_squeezed(plain(text))).replace(":", " : ").split()
     for word in words:
         bare = word.strip(",;|")
-        if _VALUE.match(bare) and label:
+        if (_VALUE.match(bare) or grows(bare)) and label:
             found.append(Labelled(meaning(" ".join(label), profile), " ".join(label), bare))
             label = []
         elif bare in (":", "=", "-", "") and not folded(bare):

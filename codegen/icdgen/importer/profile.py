@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from icdgen.diagnostics import Finding, Findings
 from icdgen.icd import source
@@ -18,7 +19,7 @@ CODE = "IMP001"
 KINDS = ("fields", "enumeration", "list", "loggable")
 TITLES = ("telecommand", "telemetry", "configuration", "enumeration", "telecommand list", "telemetry list",
           "configuration list")  # fmt: skip
-_PLACEHOLDER = re.compile(r"\\?\{(name|node|unit|number|table|title)\\?\}")
+_PLACEHOLDER = re.compile(r"\\?\{(name|node|unit|number|table|title|id|hex|kind|length)\\?\}")
 
 
 @dataclass(slots=True)
@@ -37,8 +38,9 @@ class NodeWords:
 class Profile:
     """A vocabulary, ready for use."""
 
-    data: dict
+    data: dict[str, Any]
     name: str = ""
+    own: dict[str, Any] = field(default_factory=dict)  # what was laid over the profile that comes with icdgen
 
     @cached_property
     def headings(self) -> dict[str, dict[str, list[tuple[str, ...]]]]:
@@ -82,6 +84,27 @@ class Profile:
     @cached_property
     def titles(self) -> dict[str, list[re.Pattern]]:
         return {what: [title(text) for text in texts] for what, texts in self.data["titles"].items()}
+
+    @cached_property
+    def patterns(self) -> list[re.Pattern[str]]:
+        """How names, ids, kinds and lengths are printed around a table."""
+        kinds = "|".join(
+            r"\s+".join(map(re.escape, text.split())) for texts in self.data["kinds"].values() for text in texts
+        )
+        one = r"(?:0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]+[hH](?![A-Za-z0-9])|[0-9]+)"
+        stand_ins = {
+            "name": r"(?P<name>\S.*?)",
+            "hex": r"(?P<id>(?:0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]+[hH](?![A-Za-z0-9]))(?:[\s,/]+0[xX][0-9A-Fa-f]+)*)",
+            "id": rf"(?P<id>{one}(?:[\s,/]+0[xX][0-9A-Fa-f]+)*)(?![0-9A-Za-z])",
+            "kind": rf"(?P<kind>{kinds})",
+            "length": r"(?P<length>[0-9]+)",
+        }
+        return [re.compile(_pattern(text, stand_ins), re.I) for text in self.data["patterns"]]
+
+    def says(self, kind: str, role: str, title: tuple[str, ...]) -> bool:
+        """Whether the profile laid over the shipped one gives a heading this role itself."""
+        own = self.own.get("headings", {}).get(kind, {}).get(role, ())
+        return any(folded(text) == title for text in own)
 
     @cached_property
     def types(self) -> dict[str, dict]:
@@ -156,7 +179,19 @@ def load(path: Path | None = None) -> Profile:
         return Profile(base)
     tree = source.read(path)
     _check(tree, base, str(path))
-    return Profile(_laid_over(base, without_places(tree)), str(path))
+    own = without_places(tree)
+    return Profile(_laid_over(_without_moved(base, own), own), str(path), own)
+
+
+def _without_moved(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
+    """The profile below without the headings to which the one above gives a role of its own choice."""
+    made = {**base, "headings": {kind: dict(roles) for kind, roles in base["headings"].items()}}
+    for kind, roles in over.get("headings", {}).items():
+        moved = {folded(text): role for role, texts in roles.items() if role != "needs" for text in texts}
+        for role, texts in base["headings"].get(kind, {}).items():
+            if role != "needs":
+                made["headings"][kind][role] = [text for text in texts if moved.get(folded(text), role) == role]
+    return made
 
 
 def _laid_over(base: dict, over: dict) -> dict:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from icdgen.icd.rules.ids import BYTE
 from icdgen.importer.document import DOUBTFUL, Trouble
 from icdgen.importer.understand import messages
 from icdgen.importer.understand.model import Listed, ReadEnum, ReadField, ReadMessage
@@ -163,10 +164,17 @@ def complete(node: NodeParts, troubles: list[Trouble]) -> None:
     kept = []
     for message in node.messages:
         title, spot = message.table.title, message.table.spot
+        if not message.lacks and (large := [i for i in message.ids if i is not None and i > BYTE[1]]):
+            message.lacks = f"its id {large[0]} (0x{large[0]:X}) is above {BYTE[1]}, which the ICD format cannot hold"
+        if message.lacks:
+            if message.lacks != "-":
+                troubles.append(Trouble("IMP037", f"{title}: {message.lacks}", spot, "it was left out", "error"))
+            continue
         if all(value is None for value in message.ids) or not message.kind:
             what = "no id" if message.kind else "nothing that says whether it is a telecommand or telemetry"
             troubles.append(Trouble("IMP031", f"{title}: {what}; it was left out", spot,
-                                    "add the words to `labels:` or `titles:` of the profile", "error"))  # fmt: skip
+                                    "add the words to `labels:`, `titles:` or `patterns:` of the profile, or `defaults:`",
+                                    "error"))  # fmt: skip
             continue
         if not message.name:
             message.name = f"Table {message.table.number}" if message.table.number else f"Message {message.id}"

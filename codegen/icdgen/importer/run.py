@@ -9,7 +9,7 @@ from pathlib import Path
 
 from icdgen.errors import UserError
 from icdgen.importer import assemble, damage, emit, profile, reading, update
-from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Document, Trouble
+from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Document, Table, Trouble
 from icdgen.importer.understand import survey
 from icdgen.importer.understand.survey import Survey
 
@@ -37,9 +37,9 @@ class Result:
 
     @property
     def troubles(self) -> list[Trouble]:
-        """All findings in the order of the manual, each once."""
+        """All findings in the order of the manual."""
         return sorted(
-            set(self.survey.troubles), key=lambda t: (t.spot.page or 0, t.spot.line or 0, t.spot.table or 0, t.code)
+            self.survey.troubles, key=lambda t: (t.spot.page or 0, t.spot.line or 0, t.spot.order or 0, t.code)
         )
 
     @property
@@ -47,14 +47,13 @@ class Result:
         """Whether something that the manual has is missing from the ICD, or may be wrong in it."""
         return any(t.severity == "error" for t in self.survey.troubles)
 
-    def sureness(self) -> Counter:
-        """How many tables were read how surely."""
-        return Counter(self.sure_of(one.table) for one in self.survey.found)
+    def sureness(self) -> Counter[str]:
+        """How many tables were read how surely; those that were not understood are not counted."""
+        return Counter(self.sure_of(one.table) for one in self.survey.found if one.what != survey.UNKNOWN)
 
     def sure_of(self, table) -> str:
         """How sure the reading of a table is."""
-        about = [t for t in self.survey.troubles if t.spot.table == table.number and t.spot.table is not None
-                 and t.code != "IMP035"]  # fmt: skip
+        about = [t for t in self.survey.troubles if t.spot.order == table.order and t.code != "IMP035"]
         what = next((one.what for one in self.survey.found if one.table is table), "")
         if what == survey.UNKNOWN or table.doubts or any(t.severity == "error" or t.sure == DOUBTFUL for t in about):
             return DOUBTFUL
@@ -64,20 +63,36 @@ class Result:
 def run(
     manual: Path, words: profile.Profile, progress=None, jobs: int | None = None, prose: bool = False
 ) -> tuple[Result, dict[str, dict]]:
-    """Reads a manual. Raises `Findings` for one from which nothing can be read."""
+    """Reads a manual. Raises `Findings` for a file that cannot be read; one that holds nothing to import gives no tree
+    and the finding IMP004."""
     document = reading.read(manual, words, progress, jobs)
+    document.count_tables()
     damage.mend(document, words)
     found = survey.survey(document, words)
     trees = assemble.assemble(document, found, words, prose)
     if not trees:
-        count = len(document.tables)
-        help = (
-            f"none of its {count} tables has headings that the profile knows: add them with --profile, see docs/import.md"
-            if count
-            else "icdgen finds tables by their rules, their headings and their captions; is this the right document?"
-        )
-        raise reading._refused(document.file, "no message and no enumeration was found", help, NOTHING)
+        found.troubles.append(_nothing(document))
     return Result(document, found), trees
+
+
+def _nothing(document: Document) -> Trouble:
+    """That nothing was found, with the headings that were seen."""
+    message = "no message and no enumeration was found"
+    seen = Counter(" | ".join(cells) for table in document.tables if len(cells := _first_cells(table)) > 1)
+    if seen:
+        shown = ", ".join(f"`{text[:80]}`" + (f" ({n} times)" if n > 1 else "") for text, n in seen.most_common(5))
+        message += f"; tables begin with {shown}"
+        help = "give their headings their roles in a profile (--profile), see docs/import.md"
+    elif document.tables:
+        help = f"its {len(document.tables)} tables have one column; is this the right document?"
+    else:
+        help = "icdgen finds tables by their rules, their headings and their captions; is this the right document?"
+    return Trouble(NOTHING, message, help=help, severity="error", sure=DOUBTFUL)
+
+
+def _first_cells(table: Table) -> list[str]:
+    rows = [table.header.titles] if table.header else [row.cells for row in (*table.head, *table.rows)]
+    return next(([c for c in cells if c] for cells in rows if any(cells)), [])
 
 
 def aim(result: Result, trees: dict[str, dict], out: Path, over: bool) -> None:

@@ -36,6 +36,22 @@ def squeezed(text: str) -> str:
     return "".join(folded(text))
 
 
+_GROWING = re.compile(
+    r"(?<![\w.])(?:[0-9]+\s*[-+]\s*(?:[0-9]+\s*[*×·]\s*)?|[0-9]+\s*[*×·]\s*)[NnMk](?:\s*[-+]\s*[0-9]+)?(?!\w)|"
+    r"(?<![\w.])[NnMk]\s*[-+*×·]\s*[0-9]+(?:\s*[-+]\s*[0-9]+)?(?![\w.])"
+)
+
+
+def grows(text: str) -> bool:
+    """Whether a figure depends on a count: ``8 + 6*N``, ``N + 1``."""
+    return _GROWING.fullmatch(plain(text).strip("() ")) is not None
+
+
+def growing_squeezed(text: str) -> str:
+    """The text with the blanks taken out of such figures."""
+    return _GROWING.sub(lambda m: "".join(m.group().split()), text)
+
+
 def number(text: str) -> int | None:
     """The whole number that the text is, decimal or 0x; a raised footnote mark behind it is left out."""
     text = _RAISED.sub("", plain(text)).rstrip("*†").strip()

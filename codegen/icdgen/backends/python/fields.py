@@ -103,7 +103,7 @@ def _documentation(field: Field, physical: str) -> list[str]:
     for special in field.special:
         paragraphs.append(f"{special.value}: {sentence(special.meaning)}")
     for erratum in field.errata:
-        paragraphs.append(f"Erratum {prose(erratum.id)}: {sentence(erratum.title)}")
+        paragraphs.append(f"{erratum.label} {prose(erratum.id)}: {sentence(erratum.title)}")
     return paragraphs
 
 

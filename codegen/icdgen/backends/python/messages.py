@@ -109,7 +109,7 @@ def _documentation(message: Message) -> list[str]:
     for part in message.contains:
         paragraphs.append(f"Repeats `{prose(part.message)}` from bit {part.at}.")
     for erratum in message.errata:
-        paragraphs.append(f"Erratum {prose(erratum.id)}: {sentence(erratum.title)}")
+        paragraphs.append(f"{erratum.label} {prose(erratum.id)}: {sentence(erratum.title)}")
     return paragraphs
 
 

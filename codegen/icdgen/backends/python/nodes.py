@@ -72,11 +72,11 @@ def enum_values(enum: Enum, node: Node) -> dict[str, object]:
     paragraphs = [f"{prose(enum.name)}{table}."]
     if enum.summary:
         paragraphs.append(sentence(enum.summary))
-    paragraphs += [f"Erratum {prose(e.id)}: {sentence(e.title)}" for e in enum.errata]
+    paragraphs += [f"{e.label} {prose(e.id)}: {sentence(e.title)}" for e in enum.errata]
     members = []
     for member in enum.members:
         notes = [sentence(member.summary)] if member.summary else []
-        notes += [f"Erratum {prose(e.id)}: {sentence(e.title)}" for e in member.errata]
+        notes += [f"{e.label} {prose(e.id)}: {sentence(e.title)}" for e in member.errata]
         declaration = member_declaration(names.member(member, node), str(member.value), literal(member.name))
         members.append((declaration, docstring(4, notes) if notes else ""))
     return {

@@ -12,7 +12,7 @@ from icdgen.icd.model import Enum, Erratum, Field, Limits, Member, Message
 
 def errata(entries: Iterable[Erratum]) -> list[str]:
     """One paragraph an erratum."""
-    return [f"Erratum {prose(e.id)} ({e.confidence}): {sentence(prose(e.title))}" for e in entries]
+    return [f"{e.label} {prose(e.id)}{e.sureness}: {sentence(prose(e.title))}" for e in entries]
 
 
 def _table(number: int | None) -> str:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from icdgen.backends.rust.literals import Optional, Part, Raw, Rows, Struct, flat, literal
 from icdgen.backends.rust.text import WIDTH, doc, mask, prose, sentence
-from icdgen.backends.rust.transfer import files
+from icdgen.backends.rust.transfer import files, operation
 from icdgen.backends.rust.wire_steps import place, step
 from icdgen.icd.model import CONFIGURATION, Icd, Message
 from icdgen.protocol import facts
@@ -55,6 +55,8 @@ def sizes(known: list[Facts]) -> Sizes:
     maps = [one.hole_map for one in known if one.hole_map]
     messages = [step.message.length for one in transfers for step in one.steps.values()]
     messages += [message.length for one in maps for message in one.messages]
+    operations = [form for one in known for form in (one.program_copy, one.program_information) if form]
+    messages += [step.message.length for form in operations for step in (form.request, form.progress)]
     return Sizes(
         max(messages, default=1),
         max((one.bytes for one in maps), default=1),
@@ -95,8 +97,8 @@ def imports(names: list[str]) -> str:
 TYPES = (
     "Acknowledge", "Can", "CanPart", "CanTypes", "Checksum", "CrcForm", "DownloadForm", "ErasureForm", "Extended", "Files",
     "Form", "Framing", "HoleMapForm", "Ids", "IndexForm", "ListForm", "LogBit", "LogFile", "LogMask", "LogMessage",
-    "MapMessage", "PerBus", "Piece", "Polled", "Reason", "Role", "Settings", "Span", "Step", "TimeForm", "TimePart",
-    "UploadForm",
+    "MapMessage", "OperationForm", "PerBus", "Piece", "Polled", "Reason", "Role", "Settings", "Span", "Step", "TimeForm",
+    "TimePart", "UploadForm",
 )  # fmt: skip
 
 
@@ -118,6 +120,7 @@ def _link(known: Facts) -> Struct:
         "Link",
         (
             Part("node", node.name),
+            Part("nodes", Rows(known.owners)),
             Part("node_type", Optional(node.node_type)),
             Part("interface_version", Optional(node.interface_version)),
             Part("longest", known.longest),
@@ -142,6 +145,8 @@ def _link(known: Facts) -> Struct:
             Part("time", Optional(_time(known))),
             Part("index", Optional(_index(known))),
             Part("files", Optional(files(known))),
+            Part("program_copy", Optional(operation(known, "program_copy"))),
+            Part("program_information", Optional(operation(known, "program_information"))),
             Part("identification", Optional(step(known, known.identification, "telemetry"))),
             Part("boot_ms", Optional(known.boot_ms)),
         ),

@@ -36,6 +36,11 @@ def find(lines: list[Line], profile: Profile) -> Columns | None:
             if header and (best is None or _known(header) > _known(best.header)):
                 spans = [(min(w.x0 for w in cell), max(w.x1 for w in cell)) for cell in cells]
                 best = Columns(header, spans, count)
+    if best is None and lines:
+        for cells in filter(None, (_in_one_line(lines[0], profile), _clustered(lines[:1]))):
+            header = headings.match([_text(cell) for cell in cells], profile, loose=True)
+            if header and header.kind == "fields":
+                return Columns(header, [(min(w.x0 for w in cell), max(w.x1 for w in cell)) for cell in cells], 1)
     return best
 
 

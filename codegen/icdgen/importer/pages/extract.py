@@ -6,8 +6,9 @@ Runs in worker processes, so what it returns is small and plain.
 from __future__ import annotations
 
 import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from icdgen.importer.words import SUPERSCRIPTS, plain
 
@@ -62,35 +63,56 @@ class Page:
     fills: list[Fill] = field(default_factory=list)
     images: int = 0
     unmapped: int = 0  # characters without a meaning
+    unseen: int = 0  # words outside the visible page; a reader of the manual does not see them either
+    turned: int = 0  # words that do not stand upright
     failed: str = ""  # why the page could not be read
 
 
-def extract(page) -> Page:
+def extract(page: Any) -> Page:
     """What ``page``, a page of pdfplumber, shows."""
-    made = Page(page.page_number, float(page.width), float(page.height), images=len(page.images))
+    left, top, right, bottom = (float(edge) for edge in page.cropbox)
+    made = Page(page.page_number, right - left, bottom - top, images=len(page.images))
+    shift = _Shift(left, top)
     words = page.extract_words(
         x_tolerance_ratio=GAP, y_tolerance=2.5, keep_blank_chars=False, use_text_flow=False, return_chars=True
     )
     for word in words:
-        if word.get("upright", True) and (text := _text(word)):
-            made.words.append(
-                Word(text, word["x0"], word["top"], word["x1"], word["bottom"], _size(word["chars"]), _style(word))
-            )
-            made.unmapped += text.count("(cid:") + text.count("\ufffd")
+        text = _text(word)
+        if not text:
+            continue
+        if not word.get("upright", True):
+            made.turned += 1
+            continue
+        x0, above, x1, below = shift.box(word)
+        if not (0 <= (x0 + x1) / 2 <= made.width and 0 <= (above + below) / 2 <= made.height):
+            made.unseen += 1
+            continue
+        made.words.append(Word(text, x0, above, x1, below, _size(word["chars"]), _style(word)))
+        made.unmapped += text.count("(cid:") + text.count("\ufffd")
     for line in page.lines:
-        _line(made, line["x0"], line["top"], line["x1"], line["bottom"])
+        _line(made, *shift.box(line))
     for rect in page.rects:
-        _rectangle(made, rect)
+        _rectangle(made, rect, *shift.box(rect))
     for curve in page.curves:
-        _curve(made, curve)
+        _curve(made, curve, shift)
     return made
 
 
-def _size(chars: list[dict]) -> float:
-    return max(char["size"] for char in chars)
+class _Shift(NamedTuple):
+    """From the coordinates of a PDF's sheet to those of its visible part."""
+
+    x: float
+    y: float
+
+    def box(self, thing: Mapping[str, Any]) -> tuple[float, float, float, float]:
+        return thing["x0"] - self.x, thing["top"] - self.y, thing["x1"] - self.x, thing["bottom"] - self.y
 
 
-def _style(word: dict) -> str:
+def _size(chars: list[dict[str, Any]]) -> float:
+    return max(float(char["size"]) for char in chars)
+
+
+def _style(word: Mapping[str, Any]) -> str:
     first = word["chars"][0]
     colour = first.get("non_stroking_color")
     values = colour if isinstance(colour, (tuple, list)) else (colour,)
@@ -98,7 +120,7 @@ def _style(word: dict) -> str:
     return f"{first['fontname'].rsplit('+', 1)[-1]} {shade}"
 
 
-def _text(word: dict) -> str:
+def _text(word: Mapping[str, Any]) -> str:
     chars = word["chars"]
     size = _size(chars)
     if min(char["size"] for char in chars) > SMALL * size:
@@ -118,8 +140,7 @@ def _line(made: Page, x0: float, top: float, x1: float, bottom: float) -> None:
         made.down.append(Rule((x0 + x1) / 2, top, bottom))
 
 
-def _rectangle(made: Page, rect: dict) -> None:
-    x0, top, x1, bottom = rect["x0"], rect["top"], rect["x1"], rect["bottom"]
+def _rectangle(made: Page, rect: Mapping[str, Any], x0: float, top: float, x1: float, bottom: float) -> None:
     if x1 - x0 <= THIN or bottom - top <= THIN:
         _line(made, x0, top, x1, bottom)
         return
@@ -132,9 +153,9 @@ def _rectangle(made: Page, rect: dict) -> None:
             made.down.append(Rule(x, top, bottom))
 
 
-def _curve(made: Page, curve: dict) -> None:
+def _curve(made: Page, curve: Mapping[str, Any], shift: _Shift) -> None:
     """Rules drawn as paths: the straight pieces of them."""
-    points = curve.get("pts") or []
+    points = [(x - shift.x, y - shift.y) for x, y in curve.get("pts") or ()]
     for (xa, ya), (xb, yb) in itertools.pairwise(points):
         _line(made, min(xa, xb), min(ya, yb), max(xa, xb), max(ya, yb))
 

@@ -49,6 +49,7 @@ class Mark:
     size: float
     style: str
     number: str = ""
+    strong: bool = False  # reads like a heading without a number
 
 
 Item = Piece | Mark
@@ -114,11 +115,11 @@ class _Flow:
         index = 0
         waiting = list(ruled)
         while index < len(loose) or waiting:
-            if waiting and (index >= len(loose) or waiting[0].top < loose[index].middle):
+            if waiting and (index >= len(loose) or waiting[0].top <= loose[index].middle):
                 made.append(self.ruled(page, waiting.pop(0)))
                 self.open = None
                 continue
-            limit = waiting[0].top if waiting else page.height
+            limit = waiting[0].top if waiting else float("inf")
             upto = index
             while upto < len(loose) and loose[upto].middle < limit:
                 upto += 1
@@ -158,7 +159,8 @@ class _Flow:
         heading = _HEADING.match(line.text)
         if heading and self.stands_out(line) and len(line.text) < 120:
             kind, number, text = "heading", heading["number"], heading["text"]
-        return 1, Mark(kind, text, _box(page, [line]), line.size, line.style, number)
+        strong = kind == "text" and self.stands_out(line) and len(text) < 80 and not text.endswith((".", ":", ",", ";"))
+        return 1, Mark(kind, text, _box(page, [line]), line.size, line.style, number, strong)
 
     def stands_out(self, line: Line) -> bool:
         return line.size > self.body.size + 0.6 or line.style != self.body.style

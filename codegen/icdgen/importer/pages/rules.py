@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
+from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from icdgen.importer.pages.extract import Fill, Page, Rule
@@ -100,23 +103,12 @@ def regions(page: Page) -> list[Region]:
             i = parent[i]
         return i
 
+    places = [rule.at for rule in down]  # ascending: `joined` sorts
     for i, flat in enumerate(across):
-        for j, steep in enumerate(down, len(across)):
-            if (
-                flat.start - REACH <= steep.at <= flat.end + REACH
-                and steep.start - REACH <= flat.at <= steep.end + REACH
-            ):
-                parent[root(i)] = root(j)
-    floating = {i for i in range(len(across), len(parent)) if root(i) == i and parent.count(i) == 1}
-    for i, one in enumerate(down, len(across)):  # the middle part of a framed table that goes over three pages
-        for j, other in enumerate(down[: i - len(across)], len(across)):
-            if abs(one.start - other.start) < REACH and abs(one.end - other.end) < REACH:
-                parent[root(i)] = root(j)
-                if i in floating and j in floating:  # its sides: what stands between them is of the same table
-                    low, high = sorted((one.at, other.at))
-                    for k, inner in enumerate(down, len(across)):
-                        if low < inner.at < high and inner.start >= one.start - REACH and inner.end <= one.end + REACH:
-                            parent[root(k)] = root(i)
+        for j in range(bisect_left(places, flat.start - REACH), bisect_right(places, flat.end + REACH)):
+            if down[j].start - REACH <= flat.at <= down[j].end + REACH:
+                parent[root(i)] = root(len(across) + j)
+    _sides(down, len(across), parent, root)
     groups: dict[int, tuple[list[Rule], list[Rule]]] = {}
     for i, rule in enumerate([*across, *down]):
         groups.setdefault(root(i), ([], []))[i >= len(across)].append(rule)
@@ -130,6 +122,26 @@ def regions(page: Page) -> list[Region]:
         if len(distinct([*(r.at for r in steep), region.x0, region.x1], 3.0)) >= 3 and region.bottom - region.top > 6:
             made.append(region)
     return _outermost(sorted(made, key=lambda r: (r.top, r.x0)))
+
+
+def _sides(down: list[Rule], first: int, parent: list[int], root: Callable[[int], int]) -> None:
+    """Puts the sides of a table together whose top and bottom stand on other pages, and what stands between them."""
+    sizes = Counter(root(i) for i in range(len(parent)))
+    floating = {i for i in range(first, len(parent)) if sizes[root(i)] == 1}
+    places = [rule.at for rule in down]
+    near: dict[int, list[int]] = {}  # by where they begin, so that only neighbours are compared
+    for i, one in enumerate(down, first):
+        cell = int(one.start // REACH)
+        for j in sorted(j for c in (cell - 1, cell, cell + 1) for j in near.get(c, ())):
+            other = down[j - first]
+            if abs(one.start - other.start) < REACH and abs(one.end - other.end) < REACH:
+                if i in floating and j in floating:
+                    low, high = sorted((one.at, other.at))
+                    for k in range(bisect_right(places, low), bisect_left(places, high)):
+                        if down[k].start >= one.start - REACH and down[k].end <= one.end + REACH:
+                            parent[root(first + k)] = root(i)
+                parent[root(i)] = root(j)
+        near.setdefault(cell, []).append(i)
 
 
 def _outermost(regions: list[Region]) -> list[Region]:

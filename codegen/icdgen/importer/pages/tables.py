@@ -135,7 +135,7 @@ class Builder:
 
     def header_of(self, piece: Piece):
         for band in piece.bands[:3]:
-            found = headings.match(band.texts(self.known), self.profile)
+            found = headings.match(band.texts(self.known), self.profile, loose=True)
             if found:
                 return found
         return None
@@ -181,11 +181,15 @@ class Builder:
     def header(self, draft: Draft, band: Band, waiting: list[Band]) -> bool:
         """Takes the heading row if the band is it, begins with it, or is its upper half."""
         found = headings.match(band.texts(self.known), self.profile)
+        if found is None and not waiting:
+            found = headings.match(band.texts(self.known), self.profile, loose=True)
         if found is None and waiting and len(lines(band.words)) < 4:
             both = _stacked(band, waiting[0], self.known)
             found = headings.match(both, self.profile) if both else None
             if found is not None:
                 waiting.pop(0)
+            else:
+                found = headings.match(band.texts(self.known), self.profile, loose=True)
         if found is None:
             split = self.split(band)
             if split is None:
@@ -278,10 +282,8 @@ class Builder:
                     self.name(item.table, self.out[owner[index]])
                 blocks.append(item.table)
             elif index not in used:
-                page = item.box.page
-                blocks.append(
-                    Heading(item.number, item.text, page) if item.kind == "heading" else Text(item.text, page)
-                )
+                page, is_heading = item.box.page, item.kind == "heading" or item.strong
+                blocks.append(Heading(item.number, item.text, page) if is_heading else Text(item.text, page))
         return blocks
 
     def table_from(self, index: int, step: int) -> int | None:

@@ -148,7 +148,12 @@ def _look_over(pages: list[Page], document: Document, name: str) -> None:
                 Trouble("IMP011", "the page is a picture without text", Spot(page.number),
                         "look whether it shows a table: it is missing from the ICD")
             )  # fmt: skip
-        elif page.unmapped:
+        if page.unseen:
+            document.troubles.append(
+                Trouble("IMP013", f"{page.unseen} words stand outside the visible page; they were left out",
+                        Spot(page.number), "look whether the page is cut off", "note")
+            )  # fmt: skip
+        if page.unmapped:
             document.troubles.append(
                 Trouble("IMP012", f"{page.unmapped} characters of the page have no meaning: the PDF does not say which they are",
                         Spot(page.number), "compare what was read with the page")

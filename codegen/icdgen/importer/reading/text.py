@@ -88,7 +88,7 @@ class _Reader:
             row = rows[index]
             index += 1
             if table.header is None:
-                found = headings.match(row.cells, self.profile)
+                found = headings.match(row.cells, self.profile, loose=True)
                 both = _stacked(row.cells, rows[index].cells) if index < len(rows) else None
                 stacked = headings.match(both, self.profile) if both else None
                 if stacked and (found is None or _known(stacked) > _known(found)):

@@ -59,19 +59,45 @@ def find(text: str, names: Words) -> Read | None:
     return None
 
 
-def alone(text: str, names: Words) -> str:
-    """The formula of a column of formulas: an expression of the raw value, or just the factor. "" if it is none."""
-    found = find(text, names)
-    if found:
-        return found.formula
-    expression, end = _expression(text, 0, names.raw, "raw")
-    if expression and not text[end:].strip() and _is_good(expression):
-        return expression
-    factor = re.fullmatch(r"\s*(?:[x×*]\s*)?([0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]{1,2})?)\s*", plain(text))
-    if factor and float(factor[1]) != 0:
-        number = factor[1] if factor[1][0] != "." else "0" + factor[1]
-        return "" if float(number) == 1 else f"raw*{number}"
-    return ""
+class Scaled(NamedTuple):
+    """The formula of a factor, "" for the factor 1, and the unit that stands behind it."""
+
+    formula: str
+    unit: str = ""
+
+
+_FACTOR = re.compile(
+    r"\s*(?:LSB\s*=\s*|[x×*]\s*)?(?:(?P<power>2\s*\^\s*[-−–]?\s*[0-9]{1,2})|(?P<over>1\s*/\s*[0-9]+)|"
+    r"(?P<number>[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]{1,2})?))\s*"
+    r"(?P<unit>(?:[^\W\d_]|[°%µΩ\[])[^\s/]*?(?:/[^\s/]+?)??)?\s*(?:/\s*(?:LSB|bit|digit|count)|per (?:LSB|bit|digit|count))?\s*\Z",
+    re.I,
+)
+
+
+def per_step(text: str, names: Words | None) -> Scaled | None:
+    """What a column of formulas or factors says: an expression of the raw value, a factor (``0.01``, ``1e-7``, ``2^-20``,
+    ``1/256``), or a factor with its unit (``10 mV/LSB``). None if it says none of these."""
+    if names is not None:
+        found = find(text, names)
+        if found:
+            return Scaled(found.formula)
+        expression, end = _expression(text, 0, names.raw, "raw")
+        if expression and not text[end:].strip() and _is_good(expression):
+            return Scaled(expression)
+    match = _FACTOR.match(plain(text))
+    if match is None:
+        return None
+    if match["power"]:
+        exponent = int(re.sub(r"[−–]", "-", match["power"].split("^")[1].replace(" ", "")))
+        formula = f"raw/{2**-exponent}" if exponent < 0 else f"raw*{2**exponent}" if exponent else ""
+    elif match["over"]:
+        formula = f"raw/{match['over'].split('/')[1].strip()}"
+    else:
+        number = match["number"] if match["number"][0] != "." else "0" + match["number"]
+        formula = "" if float(number) == 1 else f"raw*{number}"
+    if formula and not _is_good(formula):
+        return None
+    return Scaled(formula, tidy_unit(match["unit"] or ""))
 
 
 def mentions(text: str, names: Words) -> bool:

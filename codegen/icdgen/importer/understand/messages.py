@@ -7,36 +7,45 @@ import re
 from icdgen.importer import labels
 from icdgen.importer.document import DOUBTFUL, Table, Trouble
 from icdgen.importer.profile import Profile
-from icdgen.importer.understand import descriptions, formulas, numbers
-from icdgen.importer.understand.model import ReadField, ReadMessage
-from icdgen.importer.understand.rows import Entry, entries
-from icdgen.importer.words import folded, number, plain, tidy_unit
+from icdgen.importer.understand import around, fields, numbers
+from icdgen.importer.understand.around import Around
+from icdgen.importer.understand.model import ReadMessage
+from icdgen.importer.words import grows, number, plain
 
 KINDS = ("telecommand", "telemetry", "configuration")
 
 
-def read(table: Table, profile: Profile, troubles: list[Trouble]) -> ReadMessage | None:
-    """The message of the table; None where nothing in it says that it is one."""
+def read(table: Table, profile: Profile, troubles: list[Trouble], about: Around | None = None) -> ReadMessage | None:
+    """The message of the table; None where nothing in it, or in what stands around it, says that it is one."""
     given = _labelled(table, profile)
     values = {one.what: one.value for one in given if one.value}
     both = values.get("both_ids", "")
     if not both and "set_id" in values and "get_id" in values:
         both = f"{values['set_id']}/{values['get_id']}"
     has_id = bool(both) or "id" in values
-    if not has_id and table.header is None:
+    said = around.read(about or Around(table.caption), profile)
+    if table.header is None:
+        if not has_id:
+            return None
+    elif not has_id and not said.ids and _is_loose(table.header.roles) and not _is_titled(table, profile):
         return None
     message = ReadMessage("", "", table)
-    _ids(message, values, both, troubles)
+    _ids(message, values, both)
     message.kind = _kind(values, both)
     message.names = _names(table.caption, profile, message)
-    length = values.get("telecommand_length") or values.get("telemetry_length") or values.get("length")
-    if length is not None:
+    _take(message, said)
+    length = values.get("telecommand_length") or values.get("telemetry_length") or values.get("length") or said.length
+    if length and grows(length):
+        message.lacks = f"its length `{length}` depends on a count, which the ICD format cannot hold"
+    elif length:
         message.length = numbers.whole(length, "the length", table.title, table.spot, troubles)
     message.summary = _summary(table, profile)
     if table.header is not None:
-        for entry in entries(table, troubles):
-            if found := _field(entry, table, profile, troubles):
-                message.fields.append(found)
+        try:
+            message.fields = fields.read(table, profile, message.length, troubles)
+        except fields.Unreadable:
+            message.lacks = "-"
+            return message
         _contradictions(message, troubles)
         if not message.fields:
             troubles.append(Trouble("IMP024", f"{table.title}: it has headings for fields and no field", table.spot,
@@ -95,7 +104,33 @@ def _below(label: str, values: list[str], profile: Profile) -> list[labels.Label
     return made
 
 
-def _ids(message: ReadMessage, values: dict[str, str], both: str, troubles: list[Trouble]) -> None:
+def _is_loose(roles: list[str]) -> bool:
+    """Whether headings alone do not make a table a message's: it prints no offsets."""
+    return "at" not in roles and "at_bytes" not in roles
+
+
+def _is_titled(table: Table, profile: Profile) -> bool:
+    return any(pattern.match(plain(table.caption)) for kind in KINDS for pattern in profile.titles[kind])
+
+
+def _take(message: ReadMessage, said: around.Said) -> None:
+    """What stands around the table, where the table does not say it itself."""
+    if message.ids == (None, None, None) and said.ids:
+        message.id = said.id
+        if message.id is None:
+            message.lacks = f"its id `{' '.join(said.ids)}` is none that the ICD format can hold"
+        if said.name:
+            message.names = list(dict.fromkeys([said.name, *message.names]))
+    if not message.names and said.name:
+        message.names = [said.name]
+    if not message.kind and said.kind:
+        message.kind = said.kind
+    if message.kind == "configuration" and message.id is not None:
+        message.set_id = message.get_id = message.id
+        message.id = None
+
+
+def _ids(message: ReadMessage, values: dict[str, str], both: str) -> None:
     if both:
         first, _, second = both.partition("/")
         message.set_id, message.get_id = number(first), number(second)
@@ -144,98 +179,6 @@ def _summary(table: Table, profile: Profile) -> str:
                 if labels.meaning(" ".join(words[:length]), profile) == "description":
                     return " ".join(words[length:]).lstrip(":- ")
     return ""
-
-
-def _field(entry: Entry, table: Table, profile: Profile, troubles: list[Trouble]) -> ReadField | None:
-    name = entry.get("name")
-    where = f"{table.title}, field `{name}`" if name else table.title
-    place = _place(entry, where, troubles)
-    if place is None:
-        return None
-    at, bits = place
-    kind, own_bits = _type(entry, profile, where, bits, troubles)
-    bits = bits or own_bits
-    if not bits:
-        troubles.append(Trouble("IMP023", f"{where}: neither a width nor a type that tells it", entry.spot,
-                                "look at the page; the row was left out", "error"))  # fmt: skip
-        return None
-    if not name:
-        troubles.append(Trouble("IMP025", f"{table.title}: the field at bit {at} has no name", entry.spot,
-                                "name it in the ICD, or by an erratum", "error"))  # fmt: skip
-        name = f"Unnamed {at}"
-    described = _described(entry, profile, kind == "enum")
-    for problem in described.problems:
-        severity = "warning"
-        text = entry.get("description")
-        troubles.append(
-            Trouble("IMP040", f"{where}: {problem}: `{text[-160:]}`", entry.spot, "read the page", severity)
-        )
-    return ReadField(name, at, bits, kind, described, entry.spot)
-
-
-def _place(entry: Entry, where: str, troubles: list[Trouble]) -> tuple[int, int] | None:
-    """Offset and width in bits; 0 for a width that is not given."""
-    by_byte = not entry.get("at") and bool(entry.get("at_bytes"))
-    text = entry.get("at_bytes") if by_byte else entry.get("at")
-    scale = 8 if by_byte else 1
-    bits: int | None = 0
-    if span := numbers.span(text):
-        at, bits = span[0] * scale, span[1] * scale
-    else:
-        first = numbers.whole(text, "the offset", where, entry.spot, troubles)
-        if first is None:
-            return None
-        at = first * scale
-        if not by_byte and number(entry.get("at_bytes")) is not None:
-            at += 8 * (number(entry.get("at_bytes")) or 0)  # a column for the byte, one for the bit in it
-    for role, factor in (("bits", 1), ("bits_bytes", 8)):
-        if entry.get(role):
-            width = numbers.whole(entry.get(role), "the width", where, entry.spot, troubles)
-            if width is None:
-                return None
-            bits = width * factor
-            break
-    return at, bits
-
-
-def _type(entry: Entry, profile: Profile, where: str, bits: int, troubles: list[Trouble]) -> tuple[str, int]:
-    """Type and the width that its name tells (0: none)."""
-    text = entry.get("type")
-    rule = profile.types.get("".join(folded(text)))
-    if rule is None and (match := re.match(r"([A-Za-z]+)\s*[\[(]?\s*([0-9]+)\s*[\])]?\Z", plain(text))):
-        rule = profile.types.get(match[1].casefold())
-        if rule is not None:
-            times = 8 if rule["type"] == "bytes" else 1
-            return rule["type"], int(match[2]) * times
-    if rule is not None:
-        return rule["type"], rule.get("bits", 1 if rule["type"] == "bool" else 0)
-    what = f"the type `{text}` is unknown" if text else "it has no type"
-    fallback = "uint" if bits <= 64 else "bytes"
-    troubles.append(Trouble("IMP026", f"{where}: {what}", entry.spot,
-                            f"held as {fallback}; add the name to `types:` of the profile", "error"))  # fmt: skip
-    return fallback, 0
-
-
-def _described(entry: Entry, profile: Profile, is_enum: bool) -> descriptions.Described:
-    text = entry.get("description")
-    if is_enum and entry.get("values"):
-        text = f"{text} {entry.get('values')}"
-    made = descriptions.read(text, profile, is_enum)
-    if is_enum and made.enum_table is None and not made.enum_title and entry.get("values"):
-        made.enum_title = entry.get("values")
-    unit = tidy_unit(entry.get("unit")).strip("()- ")
-    if unit and unit.casefold() not in ("na", "n/a", "none", "–"):
-        if made.unit and made.unit != unit:
-            made.problems.append(f"its unit is `{unit}` in one column and `{made.unit}` in another")
-        made.unit = unit
-    formula = entry.get("formula").strip()
-    if formula and formula.casefold() not in ("-", "–", "n/a", "na", "none"):
-        found = formulas.alone(formula, descriptions.names(profile))
-        if found:
-            made.formula = found
-        elif number(formula) != 1 and formula not in ("1.0",):
-            made.problems.append(f"the formula `{formula}` cannot be read")
-    return made
 
 
 def gaps(message: ReadMessage) -> list[tuple[int, int]]:

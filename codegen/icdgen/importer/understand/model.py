@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from icdgen.importer.document import Spot, Table
+from icdgen.importer.understand.bitfields import Bits
 from icdgen.importer.understand.descriptions import Described
 
 
@@ -19,6 +20,7 @@ class ReadField:
     described: Described
     spot: Spot
     enum: str = ""
+    bitfields: list[Bits] = field(default_factory=list)
 
 
 @dataclass(slots=True)
@@ -35,8 +37,9 @@ class ReadMessage:
     fields: list[ReadField] = field(default_factory=list)
     names: list[str] = field(default_factory=list)  # what its name may be, by the caption
     group: str = ""
-    listed: dict = field(default_factory=dict)
+    listed: dict[str, object] = field(default_factory=dict)
     summary: str = ""
+    lacks: str = ""  # why it cannot be held; "-" where a finding says so already
 
     @property
     def ids(self) -> tuple[int | None, int | None, int | None]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from icdgen.importer.document import Header, Row, Spot, Table, Trouble
@@ -25,17 +26,18 @@ class Entry:
         return self.cells.get(role, "")
 
 
-def entries(table: Table, troubles: list[Trouble]) -> list[Entry]:
-    """The rows of a table with headings."""
+def entries(table: Table, troubles: list[Trouble], stands_alone: StandsAlone | None = None) -> list[Entry]:
+    """The rows of a table with headings. ``stands_alone`` tells of a row without a key whether it is one all the same."""
     header = table.header
     assert header is not None
     made: list[Entry] = []
+    _unread_columns(table, header, troubles)
     group = ""
     last_page: int | None = None
     for row in table.rows:
         cells = _by_role(row, header)
-        spot = Spot(row.page or table.page, row.line, table.number)
-        if _has_key(cells, header):
+        spot = table.spot_of(row)
+        if _has_key(cells, header) or (stands_alone is not None and stands_alone(cells)):
             made.append(Entry(cells, spot, group, notes=[row.mended] if row.mended else []))
             if row.mended:
                 troubles.append(Trouble("IMP021", f"a row of {table.title}: {row.mended}", spot, _LOOK, "note"))
@@ -44,16 +46,35 @@ def entries(table: Table, troubles: list[Trouble]) -> list[Entry]:
         elif header.kind == "list" and (title := _group(row, header, made, last_page)):
             group = title
         elif made:
-            _tear(made[-1], row, header, spot, table, troubles)
+            _tear(
+                made[-1], row, header, spot, table, troubles, same_page=row.page is not None and row.page == last_page
+            )
         else:
             table.doubts.append("a row before the first one has no key")
             text = " | ".join(c for c in row.cells if c)
             troubles.append(Trouble("IMP022", f"{table.title}: the row `{text[:80]}` belongs to no row", spot, _LOOK))
+        if any(surplus := row.cells[len(header.roles) :]):
+            shown = " | ".join(cell for cell in surplus if cell)
+            troubles.append(Trouble("IMP027", f"{table.title}: cells right of the last heading were left out: "
+                                    f"`{shown[:80]}`", spot, _LOOK))  # fmt: skip
         last_page = row.page
     return made
 
 
+def _unread_columns(table: Table, header: Header, troubles: list[Trouble]) -> None:
+    """Says which columns have headings without a role, so that their cells are not held."""
+    for index, (role, title) in enumerate(zip(header.roles, header.titles, strict=True)):
+        cells = [row.cells[index] for row in table.rows if index < len(row.cells) and row.cells[index]]
+        if not role and title and cells:
+            troubles.append(
+                Trouble("IMP027", f"{table.title}: the column `{title}` has no role, its cells were left out: "
+                        f"`{cells[0][:40]}`" + (f" and {len(cells) - 1} more" if cells[1:] else ""), table.spot,
+                        "give the heading a role in the profile, or name it under `ignored:`")
+            )  # fmt: skip
+
+
 _LOOK = "compare with the page"
+StandsAlone = Callable[[dict[str, str]], bool]
 
 
 def _by_role(row: Row, header: Header) -> dict[str, str]:
@@ -88,8 +109,10 @@ def _group(row: Row, header: Header, made: list[Entry], last_page: int | None) -
     return ""
 
 
-def _tear(entry: Entry, row: Row, header: Header, spot: Spot, table: Table, troubles: list[Trouble]) -> None:
-    """Joins the rest of a row to it."""
+def _tear(
+    entry: Entry, row: Row, header: Header, spot: Spot, table: Table, troubles: list[Trouble], same_page: bool
+) -> None:
+    """Joins the rest of a row to it. On one page nothing tears a row: there it may have been a row of its own."""
     for role, cell in zip(header.roles, row.cells, strict=False):
         if not cell:
             continue
@@ -104,8 +127,9 @@ def _tear(entry: Entry, row: Row, header: Header, spot: Spot, table: Table, trou
         entry.joined = True
     text = " | ".join(c for c in row.cells if c)
     about = entry.get("name") or entry.get("id")
+    cells = _by_role(row, header)
+    doubtful = same_page and bool(cells.get("name")) and len([c for c in cells.values() if c]) > 1
     troubles.append(
-        Trouble(
-            "IMP020", f"{table.title}: the row `{about}` was torn; joined to it: `{text[:100]}`", spot, _LOOK, "note"
-        )
-    )
+        Trouble("IMP020", f"{table.title}: the row `{about}` was torn; joined to it: `{text[:100]}`", spot, _LOOK,
+                "warning" if doubtful else "note")
+    )  # fmt: skip

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from icdgen.importer.document import Document, Heading, Spot, Table, Trouble
+from icdgen.importer.document import Document, Heading, Table, Text, Trouble
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import lists, messages
+from icdgen.importer.understand.around import Around, kind_of
 from icdgen.importer.understand.model import ReadEnum, ReadList, ReadLog, ReadMessage, Thing
-from icdgen.importer.words import folded
 
 BACKGROUND, UNKNOWN = "background", "not understood"
+NEAR = 4  # lines of prose above a table that may speak of it
 
 
 @dataclass(slots=True)
@@ -41,10 +42,14 @@ def survey(document: Document, profile: Profile) -> Survey:
     made = Survey(troubles=list(document.troubles))
     run, last = 1, -1
     sections: list[Heading] = []
+    prose: list[str] = []
+    used: set[str] = set()  # headings whose id a table has
     for block in document.blocks:
         if isinstance(block, Heading):
-            depth = block.number.count(".")
-            sections = [s for s in sections if s.number.count(".") < depth] + [block]
+            sections = [s for s in sections if _depth(s) < _depth(block)] + [block]
+            prose = []
+        elif isinstance(block, Text):
+            prose = [block.text, *prose][:NEAR]
         if not isinstance(block, Table):
             continue
         if block.number is not None:
@@ -52,8 +57,13 @@ def survey(document: Document, profile: Profile) -> Survey:
                 run += 1
             last = block.number
         titles = tuple(s.text for s in sections)
-        what, thing = classify(block, profile, made.troubles, titles)
-        if what == UNKNOWN and block.number is None:
+        inner = [title for title in reversed(titles) if title not in used]
+        about = Around(block.caption, prose, inner if inner and inner[0] == titles[-1] else [])
+        what, thing = classify(block, profile, made.troubles, titles, about)
+        prose = []
+        if isinstance(thing, ReadMessage) and titles:
+            used.add(titles[-1])
+        if what == UNKNOWN and block.number is None and not _is_grid(block):
             continue  # a figure, a listing, a box: nobody called it a table
         made.found.append(Found(block, what, thing, run, titles))
         if what == UNKNOWN:
@@ -62,18 +72,18 @@ def survey(document: Document, profile: Profile) -> Survey:
 
 
 def classify(
-    table: Table, profile: Profile, troubles: list[Trouble], sections: tuple[str, ...]
+    table: Table, profile: Profile, troubles: list[Trouble], sections: tuple[str, ...], about: Around | None = None
 ) -> tuple[str, Thing | None]:
     """What the table is, and what it says."""
     if any(pattern.search(table.caption) for pattern in profile.background):
         return BACKGROUND, None
     kind = table.header.kind if table.header else ""
     if kind in ("", "fields"):
-        message = messages.read(table, profile, troubles)
+        message = messages.read(table, profile, troubles, about)
         if message is None:
             return UNKNOWN, None
         if not message.kind:
-            message.kind = _by_section(sections, profile)
+            message.kind = _by_section(sections, profile) or str(profile.data["defaults"]["kind"])
         return "message", message
     if kind == "enumeration":
         read = lists.enumeration(table, profile, troubles)
@@ -83,15 +93,19 @@ def classify(
     return "loggable frames", lists.log(table, troubles)
 
 
+def _is_grid(table: Table) -> bool:
+    """Whether something without a caption is a table for all that: two rows or more of two cells or more."""
+    rows = [row for row in (*table.head, *table.rows) if sum(bool(cell) for cell in row.cells) > 1]
+    return len(rows) + (table.header is not None) > 1
+
+
+def _depth(heading: Heading) -> int:
+    """How deep a section lies; one without a number lies within those that have one."""
+    return heading.number.count(".") if heading.number else 99
+
+
 def _by_section(sections: tuple[str, ...], profile: Profile) -> str:
-    for title in reversed(sections):
-        words = folded(title)
-        for kind, phrases in profile.data["kinds"].items():
-            for phrase in phrases:
-                parts = folded(phrase)
-                if any(words[i : i + len(parts)] == parts for i in range(len(words))):
-                    return kind
-    return ""
+    return next((kind for title in reversed(sections) if (kind := kind_of(title, profile))), "")
 
 
 def _not_understood(table: Table) -> Trouble:
@@ -99,8 +113,9 @@ def _not_understood(table: Table) -> Trouble:
     cells = [cell for cell in rows[0].cells if cell] if rows else []
     begins = f"; it begins with `{' | '.join(cells)[:100]}`" if cells else ""
     return Trouble(
-        "IMP030", f"{table.title}: none of the tables that icdgen knows{begins}", Spot(table.page, table.line, table.number),
+        "IMP030", f"{table.title}: none of the tables that icdgen knows{begins}", table.spot,
         "if it describes a message or an enumeration add its headings to the profile, else name it under `background:`",
+        "note" if table.number is None else "warning",
     )  # fmt: skip
 
 

@@ -8,16 +8,16 @@ use crate::support::{flags, put, take, Error};
 ///
 /// Up-time, SRAM state and error flags. The error flags stay set until Clear Error Flags.
 ///
-/// Erratum BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
-///
 /// Erratum BOOT-013 (open): Bootloader State: 6 bytes announced, 28 bits described.
+///
+/// Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct BootloaderState {
     /// Up-time (s) (bits 0 to 15): 0 to 65535 s.
     ///
-    /// Erratum BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds.
+    /// Note BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds.
     pub uptime: u16,
     /// SRAM1 is enabled (bit 16).
     pub sram1_is_enabled: bool,
@@ -25,11 +25,11 @@ pub struct BootloaderState {
     pub sram2_is_enabled: bool,
     /// SRAM Latch-up Error occurred and could not be recovered (bit 18).
     ///
-    /// Erratum BOOT-017 (certain): Latch-up has three spellings.
+    /// Note BOOT-017 (certain): Latch-up has three spellings.
     pub sram_latchup_error: bool,
     /// SRAM Latch-up Occurred but recovered after power cycle (bit 19).
     ///
-    /// Erratum BOOT-017 (certain): Latch-up has three spellings.
+    /// Note BOOT-017 (certain): Latch-up has three spellings.
     pub sram_latchup_recovered: bool,
     /// SD card initialisation error (bit 20).
     pub sd_card_initialisation_error: bool,
@@ -55,7 +55,7 @@ pub struct BootloaderState {
     pub boot_register_corrupt: bool,
     /// Communications Error with Radio (bit 27).
     ///
-    /// Erratum BOOT-016 (open): Bootloader State: a radio that the manual does not know.
+    /// Note BOOT-016 (open): Bootloader State: a radio that the manual does not know.
     pub communications_error_with_radio: bool,
 }
 
@@ -126,6 +126,7 @@ impl BootloaderState {
 }
 
 impl crate::wire::Telemetry for BootloaderState {
+    const NODE: &'static str = "bootloader";
     const TELEMETRY_ID: u8 = 132;
 
     #[inline]

@@ -8,11 +8,11 @@ use crate::support::Error;
 ///
 /// Clears the latched error flags of Bootloader State.
 ///
-/// Erratum BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
+/// Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
 ///
-/// Erratum BOOT-005 (certain): Clear Error Flags and Clear Errors.
+/// Note BOOT-005 (certain): Clear Error Flags and Clear Errors.
 ///
-/// Erratum BOOT-006 (open): What the bootloader does with telecommands of the control program.
+/// Note BOOT-006 (open): What the bootloader does with telecommands of the control program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -55,6 +55,7 @@ impl ClearErrorFlags {
 }
 
 impl crate::wire::Telecommand for ClearErrorFlags {
+    const NODE: &'static str = "bootloader";
     const TELECOMMAND_ID: u8 = 7;
 
     #[inline]

@@ -14,13 +14,13 @@ use crate::support::{Coded, Error};
 pub struct CopyProgramToInternalFlash {
     /// Source Program Index (bits 0 to 7).
     ///
-    /// Erratum BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense.
+    /// Note BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense.
     pub source_program_index: Coded<enums::ProgramsList>,
     /// Bootloader overwrite flag (bits 8 to 15): 0 to 255.
     ///
     /// To be used with great caution. 90: overwrite the boot segment.
     ///
-    /// Erratum BOOT-012 (likely): Bootloader overwrite flag is a magic number.
+    /// Note BOOT-012 (likely): Bootloader overwrite flag is a magic number.
     pub bootloader_overwrite_flag: u8,
 }
 
@@ -69,6 +69,7 @@ impl CopyProgramToInternalFlash {
 }
 
 impl crate::wire::Telecommand for CopyProgramToInternalFlash {
+    const NODE: &'static str = "bootloader";
     const TELECOMMAND_ID: u8 = 103;
 
     #[inline]

@@ -6,9 +6,9 @@ use crate::support::Error;
 
 /// Copy To Internal Flash Progress: telemetry 233, 1 byte. Table 71.
 ///
-/// Erratum BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
+/// Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
 ///
-/// Erratum BOOT-020 (open): Progress frame without progress.
+/// Note BOOT-020 (open): Progress frame without progress.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -62,6 +62,7 @@ impl CopyToInternalFlashProgress {
 }
 
 impl crate::wire::Telemetry for CopyToInternalFlashProgress {
+    const NODE: &'static str = "bootloader";
     const TELEMETRY_ID: u8 = 233;
 
     #[inline]

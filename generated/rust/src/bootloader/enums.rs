@@ -6,7 +6,7 @@ use crate::support::Enumeration;
 
 /// BootSetProgramsList: an enumeration. Table 63.
 ///
-/// Erratum BOOT-009 (certain): Three enumerations of program places.
+/// Note BOOT-009 (certain): Three enumerations of program places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -79,16 +79,16 @@ impl From<BootSetProgramsList> for u8 {
 pub enum ProgramsList {
     /// Bootloader (0).
     ///
-    /// Erratum BOOT-009 (certain): Three enumerations of program places.
+    /// Note BOOT-009 (certain): Three enumerations of program places.
     #[default]
     Bootloader,
     /// Internal Flash Program (1).
     InternalFlashProgram,
     /// EEPROM (2).
     ///
-    /// Erratum BOOT-009 (certain): Three enumerations of program places.
+    /// Note BOOT-009 (certain): Three enumerations of program places.
     ///
-    /// Erratum BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
     Eeprom,
     /// External Flash Program 1 (3).
     ExternalFlashProgram1,
@@ -106,35 +106,35 @@ pub enum ProgramsList {
     ExternalFlashProgram7,
     /// SD User file 1 (10).
     ///
-    /// Erratum BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
     SdUserFile1,
     /// SD User file 2 (11).
     ///
-    /// Erratum BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
     SdUserFile2,
     /// SD User file 3 (12).
     ///
-    /// Erratum BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
     SdUserFile3,
     /// SD User file 4 (13).
     ///
-    /// Erratum BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
     SdUserFile4,
     /// SD User file 5 (14).
     ///
-    /// Erratum BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
     SdUserFile5,
     /// SD User file 6 (15).
     ///
-    /// Erratum BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
     SdUserFile6,
     /// SD User file 7 (16).
     ///
-    /// Erratum BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
     SdUserFile7,
     /// SD User file 8 (17).
     ///
-    /// Erratum BOOT-010 (open): ProgramsList: places that are no flash programs.
+    /// Note BOOT-010 (open): ProgramsList: places that are no flash programs.
     SdUserFile8,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),

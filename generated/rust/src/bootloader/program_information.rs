@@ -9,15 +9,14 @@ use crate::support::{put, take, Coded, Error};
 ///
 /// Answer to Read Program Information, to be polled until it is not busy.
 ///
-/// Erratum BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
+/// Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct ProgramInformation {
     /// Program Index (bits 0 to 7).
     ///
-    /// Erratum BOOT-018 (open): Read Program Information: whether the answer belongs to the
-    /// request.
+    /// Note BOOT-018 (open): Read Program Information: whether the answer belongs to the request.
     pub program_index: Coded<enums::ProgramsList>,
     /// Busy (bit 8).
     ///
@@ -25,15 +24,15 @@ pub struct ProgramInformation {
     pub busy: bool,
     /// File Size (bits 16 to 47): 0 to 4294967295 byte.
     ///
-    /// Erratum BOOT-019 (open): Program Information: what the checksum covers.
-    ///
     /// Erratum BOOT-021 (certain): Size of a program has its unit in words only.
+    ///
+    /// Note BOOT-019 (open): Program Information: what the checksum covers.
     pub file_size: u32,
     /// Checksum (bits 48 to 63): 0 to 65535.
     ///
     /// CRC-16.
     ///
-    /// Erratum BOOT-019 (open): Program Information: what the checksum covers.
+    /// Note BOOT-019 (open): Program Information: what the checksum covers.
     pub checksum: u16,
 }
 
@@ -84,6 +83,7 @@ impl ProgramInformation {
 }
 
 impl crate::wire::Telemetry for ProgramInformation {
+    const NODE: &'static str = "bootloader";
     const TELEMETRY_ID: u8 = 232;
 
     #[inline]

@@ -57,6 +57,7 @@ impl ReadProgramInformation {
 }
 
 impl crate::wire::Telecommand for ReadProgramInformation {
+    const NODE: &'static str = "bootloader";
     const TELECOMMAND_ID: u8 = 102;
 
     #[inline]

@@ -8,7 +8,7 @@ use crate::support::Error;
 ///
 /// Starts the program in internal flash at once. The node restarts instead of acknowledging it.
 ///
-/// Erratum BOOT-008 (open): Run Selected Program does not run what was selected elsewhere.
+/// Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -51,6 +51,7 @@ impl RunSelectedProgram {
 }
 
 impl crate::wire::Telecommand for RunSelectedProgram {
+    const NODE: &'static str = "bootloader";
     const TELECOMMAND_ID: u8 = 101;
 
     #[inline]

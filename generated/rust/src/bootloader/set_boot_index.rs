@@ -14,7 +14,7 @@ use crate::support::{Coded, Error};
 pub struct SetBootIndex {
     /// Program Index (bits 0 to 7).
     ///
-    /// Erratum BOOT-007 (certain): Set Boot Index selects among one.
+    /// Note BOOT-007 (certain): Set Boot Index selects among one.
     pub program_index: Coded<enums::BootSetProgramsList>,
 }
 
@@ -59,6 +59,7 @@ impl SetBootIndex {
 }
 
 impl crate::wire::Telecommand for SetBootIndex {
+    const NODE: &'static str = "bootloader";
     const TELECOMMAND_ID: u8 = 100;
 
     #[inline]

@@ -8,7 +8,7 @@ use crate::support::Error;
 ///
 /// Makes File Information describe the next file.
 ///
-/// Erratum COM-040 (certain): A flow diagram is referred to without its number.
+/// Note COM-040 (certain): A flow diagram is referred to without its number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -51,6 +51,7 @@ impl AdvanceFileListReadPointer {
 }
 
 impl crate::wire::Telecommand for AdvanceFileListReadPointer {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 113;
 
     #[inline]

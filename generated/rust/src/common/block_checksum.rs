@@ -8,15 +8,14 @@ use crate::support::{put, take, Error};
 ///
 /// CRC-16 of the received upload block, to be compared before the block is finalized.
 ///
-/// Erratum COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct BlockChecksum {
     /// Checksum (bits 0 to 15): 0 to 65535.
     ///
-    /// Erratum COM-106 (open): Checksum of an uploaded block is asked for before its length is
-    /// known.
+    /// Note COM-106 (open): Checksum of an uploaded block is asked for before its length is known.
     pub checksum: u16,
 }
 
@@ -61,6 +60,7 @@ impl BlockChecksum {
 }
 
 impl crate::wire::Telemetry for BlockChecksum {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 246;
 
     #[inline]

@@ -9,9 +9,9 @@ use crate::support::{put, take, Coded, Error, Scale};
 ///
 /// Causes of the last reset and reboot, and the running program.
 ///
-/// Erratum COM-060 (open): The running program answers more than the text says, or less.
+/// Note COM-060 (open): The running program answers more than the text says, or less.
 ///
-/// Erratum COM-062 (certain): Capitals of the boot status frame differ in the text.
+/// Note COM-062 (certain): Capitals of the boot status frame differ in the text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,19 +20,19 @@ pub struct BootAndRunningProgramStatus {
     ///
     /// From a hardware register of the MCU.
     ///
-    /// Erratum COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
+    /// Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
     pub cause_of_mcu_reset: Coded<enums::ResetCause>,
     /// Boot Cause (bits 4 to 7).
     ///
     /// Why the CubeComputer last rebooted.
     ///
-    /// Erratum COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
+    /// Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
     pub boot_cause: Coded<enums::BootCause>,
     /// Boot Counter (bits 8 to 23): 0 to 65535.
     ///
     /// How often the CubeComputer has booted.
     ///
-    /// Erratum COM-058 (certain): Reset Counter and Boot Counter are the same field.
+    /// Note COM-058 (certain): Reset Counter and Boot Counter are the same field.
     pub boot_counter: u16,
     /// Boot Program Index (bits 24 to 31).
     ///
@@ -40,11 +40,11 @@ pub struct BootAndRunningProgramStatus {
     pub boot_program_index: Coded<enums::BootProgramsList>,
     /// Firmware version (Major) (bits 32 to 39): 0 to 255.
     ///
-    /// Erratum COM-061 (open): Firmware version stands in two frames.
+    /// Note COM-061 (open): Firmware version stands in two frames.
     pub firmware_version_major: u8,
     /// Firmware version (Minor) (bits 40 to 47): 0 to 255.
     ///
-    /// Erratum COM-061 (open): Firmware version stands in two frames.
+    /// Note COM-061 (open): Firmware version stands in two frames.
     pub firmware_version_minor: u8,
 }
 
@@ -131,6 +131,7 @@ const BOOT_CAUSE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for BootAndRunningProgramStatus {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 129;
 
     #[inline]

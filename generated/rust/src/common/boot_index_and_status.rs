@@ -9,14 +9,14 @@ use crate::support::{Coded, Error};
 ///
 /// Program selected for booting, and how the last attempt went.
 ///
-/// Erratum COM-060 (open): The running program answers more than the text says, or less.
+/// Note COM-060 (open): The running program answers more than the text says, or less.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct BootIndexAndStatus {
     /// Program Index (bits 0 to 7).
     ///
-    /// Erratum COM-069 (open): Program Index of the boot status can be the bootloader.
+    /// Note COM-069 (open): Program Index of the boot status can be the bootloader.
     pub program_index: Coded<enums::BootProgramsList>,
     /// Boot Status (bits 8 to 15).
     pub boot_status: Coded<enums::BootStatus>,
@@ -65,6 +65,7 @@ impl BootIndexAndStatus {
 }
 
 impl crate::wire::Telemetry for BootIndexAndStatus {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 130;
 
     #[inline]

@@ -6,14 +6,14 @@ use crate::support::Error;
 
 /// Cache enabled state: configuration, set by 3 and got by 131, 1 byte. Table 48.
 ///
-/// Erratum COM-107 (certain): Get ids do not follow from set ids.
+/// Note COM-107 (certain): Get ids do not follow from set ids.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CacheEnabledState {
     /// Enabled state (bit 0).
     ///
-    /// Erratum COM-108 (open): Cache enabled state: which cache, and the default.
+    /// Note COM-108 (open): Cache enabled state: which cache, and the default.
     pub enabled_state: bool,
 }
 
@@ -60,6 +60,7 @@ impl CacheEnabledState {
 }
 
 impl crate::wire::Telecommand for CacheEnabledState {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 3;
 
     #[inline]
@@ -69,6 +70,7 @@ impl crate::wire::Telecommand for CacheEnabledState {
 }
 
 impl crate::wire::Telemetry for CacheEnabledState {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 131;
 
     #[inline]

@@ -6,7 +6,7 @@ use crate::support::{put, take, Error};
 
 /// Current Unix Time: configuration, set by 2 and got by 140, 6 bytes. Table 50.
 ///
-/// Erratum COM-107 (certain): Get ids do not follow from set ids.
+/// Note COM-107 (certain): Get ids do not follow from set ids.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -15,11 +15,11 @@ pub struct CurrentUnixTime {
     ///
     /// Since 1970-01-01 00:00.
     ///
-    /// Erratum COM-111 (open): Unix time: time zone and leap seconds are not given.
+    /// Note COM-111 (open): Unix time: time zone and leap seconds are not given.
     pub current_unix_time: u32,
     /// Milliseconds (bits 32 to 47): 0 to 65535 ms.
     ///
-    /// Erratum COM-110 (open): Milliseconds: range is not given.
+    /// Note COM-110 (open): Milliseconds: range is not given.
     pub milliseconds: u16,
 }
 
@@ -68,6 +68,7 @@ impl CurrentUnixTime {
 }
 
 impl crate::wire::Telecommand for CurrentUnixTime {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 2;
 
     #[inline]
@@ -77,6 +78,7 @@ impl crate::wire::Telecommand for CurrentUnixTime {
 }
 
 impl crate::wire::Telemetry for CurrentUnixTime {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 140;
 
     #[inline]

@@ -8,7 +8,7 @@ use crate::support::{put, take, Error};
 ///
 /// Whether the block asked for by Load File Download Block is in the buffer.
 ///
-/// Erratum COM-093 (open): Polling has no interval and no time-out.
+/// Note COM-093 (open): Polling has no interval and no time-out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,7 +19,7 @@ pub struct DownloadBlockReady {
     ///
     /// Message length and hole map together led to invalid array lengths.
     ///
-    /// Erratum COM-097 (open): ParameterError refers to arrays that no message has.
+    /// Note COM-097 (open): ParameterError refers to arrays that no message has.
     pub parameter_error: bool,
     /// Block CRC16 Checksum (bits 8 to 23): 0 to 65535.
     pub block_crc16_checksum: u16,
@@ -76,6 +76,7 @@ impl DownloadBlockReady {
 }
 
 impl crate::wire::Telemetry for DownloadBlockReady {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 242;
 
     #[inline]

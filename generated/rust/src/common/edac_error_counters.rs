@@ -19,13 +19,13 @@ pub struct EdacErrorCounters {
     ///
     /// Counted per byte.
     ///
-    /// Erratum COM-077 (likely): EDAC: errors counted as corrected cannot all have been.
+    /// Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been.
     pub double_sram_upsets: u16,
     /// Multiple SRAM upsets (bits 32 to 47): 0 to 65535.
     ///
     /// Counted per byte.
     ///
-    /// Erratum COM-077 (likely): EDAC: errors counted as corrected cannot all have been.
+    /// Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been.
     pub multiple_sram_upsets: u16,
 }
 
@@ -74,6 +74,7 @@ impl EdacErrorCounters {
 }
 
 impl crate::wire::Telemetry for EdacErrorCounters {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 143;
 
     #[inline]

@@ -6,7 +6,7 @@ use crate::support::Enumeration;
 
 /// FileType: an enumeration. Table 16.
 ///
-/// Erratum COM-037 (open): FileType begins at 2 and jumps to 15.
+/// Note COM-037 (open): FileType begins at 2 and jumps to 15.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,7 +20,7 @@ pub enum FileType {
     BmpImage,
     /// Index (15).
     ///
-    /// Erratum COM-038 (open): Index file: neither length nor counter is given.
+    /// Note COM-038 (open): Index file: neither length nor counter is given.
     Index,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -92,7 +92,7 @@ impl From<FileType> for u8 {
 ///
 /// The SD card destinations are not supported.
 ///
-/// Erratum COM-045 (certain): Names of the flash areas differ between two lists.
+/// Note COM-045 (certain): Names of the flash areas differ between two lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -100,7 +100,7 @@ impl From<FileType> for u8 {
 pub enum FileUploadDestination {
     /// EEPROM (2).
     ///
-    /// Erratum COM-044 (open): FileUploadDestination: EEPROM is listed, the text knows flash only.
+    /// Note COM-044 (open): FileUploadDestination: EEPROM is listed, the text knows flash only.
     Eeprom,
     /// Flash program 1 (3).
     FlashProgram1,
@@ -118,35 +118,35 @@ pub enum FileUploadDestination {
     FlashProgram7,
     /// SD User file 1 (10).
     ///
-    /// Erratum COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
     SdUserFile1,
     /// SD User file 2 (11).
     ///
-    /// Erratum COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
     SdUserFile2,
     /// SD User file 3 (12).
     ///
-    /// Erratum COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
     SdUserFile3,
     /// SD User file 4 (13).
     ///
-    /// Erratum COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
     SdUserFile4,
     /// SD User file 5 (14).
     ///
-    /// Erratum COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
     SdUserFile5,
     /// SD User file 6 (15).
     ///
-    /// Erratum COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
     SdUserFile6,
     /// SD User file 7 (16).
     ///
-    /// Erratum COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
     SdUserFile7,
     /// SD User file 8 (17).
     ///
-    /// Erratum COM-043 (certain): FileUploadDestination: eight members are not supported.
+    /// Note COM-043 (certain): FileUploadDestination: eight members are not supported.
     SdUserFile8,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -281,23 +281,23 @@ pub enum ResetCause {
     BackupBrownOut,
     /// Backup Mode Reset (10).
     ///
-    /// Erratum COM-064 (certain): ResetCause: two spellings of one source.
+    /// Note COM-064 (certain): ResetCause: two spellings of one source.
     BackupModeReset,
     /// Backup Mode RST and Backup Brown-Out Vdd Regulated (11).
     ///
     /// Backup mode reset together with a brown-out of the backup domain on regulated VDD.
     ///
-    /// Erratum COM-064 (certain): ResetCause: two spellings of one source.
+    /// Note COM-064 (certain): ResetCause: two spellings of one source.
     BackupModeAndBackupBrownOut,
     /// BackupModeRST and Backup Brown-Out Vdd Regulated and Brown-Out Regulated (12).
     ///
     /// As 11, and a brown-out on regulated power.
     ///
-    /// Erratum COM-064 (certain): ResetCause: two spellings of one source.
+    /// Note COM-064 (certain): ResetCause: two spellings of one source.
     BackupModeAndBothBrownOuts,
     /// Backup Mode RST and Watchdog Reset (13).
     ///
-    /// Erratum COM-064 (certain): ResetCause: two spellings of one source.
+    /// Note COM-064 (certain): ResetCause: two spellings of one source.
     BackupModeAndWatchdogReset,
     /// Backup Brown-Out BuvIn and System Request Reset (14).
     ///
@@ -426,7 +426,7 @@ pub enum BootCause {
     ///
     /// Nothing was received for too long.
     ///
-    /// Erratum COM-067 (open): BootCause: a communications time-out that is described nowhere.
+    /// Note COM-067 (open): BootCause: a communications time-out that is described nowhere.
     CommunicationsTimeout,
     /// Commanded (3).
     Commanded,
@@ -512,7 +512,7 @@ pub enum BootProgramsList {
     InternalFlashProgram,
     /// Bootloader (2).
     ///
-    /// Erratum COM-068 (certain): BootProgramsList numbers the bootloader 2, ProgramsList 0.
+    /// Note COM-068 (certain): BootProgramsList numbers the bootloader 2, ProgramsList 0.
     Bootloader,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -579,7 +579,7 @@ impl From<BootProgramsList> for u8 {
 /// Kept in flash. The bootloader counts up before each attempt, the program sets Boot Success once
 /// it runs.
 ///
-/// Erratum COM-070 (open): Boot Status: whether the third attempt still takes place.
+/// Note COM-070 (open): Boot Status: whether the third attempt still takes place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -592,15 +592,15 @@ pub enum BootStatus {
     BootSuccess,
     /// 1 Failed boot attempt (2).
     ///
-    /// Erratum COM-071 (certain): Boot Status values are named differently in the text.
+    /// Note COM-071 (certain): Boot Status values are named differently in the text.
     ///
-    /// Erratum COM-072 (likely): Boot Status 2 is also written before the very first start.
+    /// Note COM-072 (likely): Boot Status 2 is also written before the very first start.
     FailedBootAttempt1,
     /// 2 Failed boot attempts (3).
     FailedBootAttempts2,
     /// 3 Failed boot attempts (4).
     ///
-    /// Erratum COM-071 (certain): Boot Status values are named differently in the text.
+    /// Note COM-071 (certain): Boot Status values are named differently in the text.
     FailedBootAttempts3,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -678,15 +678,15 @@ pub enum TcErrorReason {
     InvalidTc,
     /// Incorrect Length (2).
     ///
-    /// Erratum COM-094 (open): What happens to a telecommand of the wrong length.
+    /// Note COM-094 (open): What happens to a telecommand of the wrong length.
     IncorrectLength,
     /// Incorrect Parameter (3).
     IncorrectParameter,
     /// CRC check failed (4).
     ///
-    /// Erratum COM-095 (certain): Reasons for a TC error: three in the text, four in the table.
+    /// Note COM-095 (certain): Reasons for a TC error: three in the text, four in the table.
     ///
-    /// Erratum COM-096 (likely): CRC check failed is common, the checksum is not.
+    /// Note COM-096 (likely): CRC check failed is common, the checksum is not.
     CrcCheckFailed,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),

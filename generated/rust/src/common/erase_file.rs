@@ -10,7 +10,7 @@ use crate::support::{Coded, Error};
 /// Deletes one file of the SD card or all of them. Erasing all takes some time: see SD card
 /// format/erase progress.
 ///
-/// Erratum COM-034 (open): Erase File: what the other fields mean with Erase All.
+/// Note COM-034 (open): Erase File: what the other fields mean with Erase All.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,7 +19,7 @@ pub struct EraseFile {
     pub file_type: Coded<enums::FileType>,
     /// File Counter (bits 8 to 15): 0 to 255.
     ///
-    /// Erratum COM-035 (open): File counter of 8 bits.
+    /// Note COM-035 (open): File counter of 8 bits.
     pub file_counter: u8,
     /// Erase All (bit 16).
     ///
@@ -72,6 +72,7 @@ impl EraseFile {
 }
 
 impl crate::wire::Telecommand for EraseFile {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 108;
 
     #[inline]

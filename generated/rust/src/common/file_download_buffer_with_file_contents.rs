@@ -9,9 +9,9 @@ use crate::support::{array, put, put_array, take, Error};
 /// One packet of a download burst. On the UART the packets come unasked, with the id of Initiate
 /// Download Burst.
 ///
-/// Erratum COM-051 (certain): Messages of the download have other names in the text.
+/// Note COM-051 (certain): Messages of the download have other names in the text.
 ///
-/// Erratum COM-052 (open): Download packets: id of the telecommand or of the frame.
+/// Note COM-052 (open): Download packets: id of the telecommand or of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,13 +20,13 @@ pub struct FileDownloadBufferWithFileContents {
     ///
     /// Position of the packet in the burst.
     ///
-    /// Erratum COM-047 (likely): Packet numbers: from 0 or from 1.
+    /// Note COM-047 (likely): Packet numbers: from 0 or from 1.
     pub packet_counter: u16,
     /// File bytes (bits 16 to 175): 20 bytes.
     ///
-    /// Erratum COM-029 (certain): One field, several spellings.
+    /// Note COM-029 (certain): One field, several spellings.
     ///
-    /// Erratum COM-048 (open): Last packet of a block: fill is not defined.
+    /// Note COM-048 (open): Last packet of a block: fill is not defined.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub file_bytes: [u8; 20],
 }
@@ -74,6 +74,7 @@ impl FileDownloadBufferWithFileContents {
 }
 
 impl crate::wire::Telemetry for FileDownloadBufferWithFileContents {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 241;
 
     #[inline]

@@ -9,30 +9,30 @@ use crate::support::{put, take, Coded, Error, Scale};
 ///
 /// The file at the list pointer. All zeros with Busy Updating clear: the end of the list.
 ///
-/// Erratum COM-093 (open): Polling has no interval and no time-out.
+/// Note COM-093 (open): Polling has no interval and no time-out.
 ///
-/// Erratum COM-102 (certain): File information and index entry order the same items differently.
+/// Note COM-102 (certain): File information and index entry order the same items differently.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct FileInformation {
     /// File Type (bits 0 to 3).
     ///
-    /// Erratum COM-098 (certain): File Type is 8 bits in telecommands and 4 bits in the frame.
+    /// Note COM-098 (certain): File Type is 8 bits in telecommands and 4 bits in the frame.
     pub file_type: Coded<enums::FileType>,
     /// Busy Updating (bit 4).
     ///
     /// The other fields are valid once this is clear.
     ///
-    /// Erratum COM-101 (certain): Busy Updating has no description.
+    /// Note COM-101 (certain): Busy Updating has no description.
     pub busy_updating: bool,
     /// File Ctr (bits 8 to 15): 0 to 255.
     ///
     /// With the type it identifies the file.
     ///
-    /// Erratum COM-029 (certain): One field, several spellings.
+    /// Note COM-029 (certain): One field, several spellings.
     ///
-    /// Erratum COM-035 (open): File counter of 8 bits.
+    /// Note COM-035 (open): File counter of 8 bits.
     pub file_ctr: u8,
     /// File Size (bits 16 to 47): 0 to 4294967295 byte.
     ///
@@ -44,7 +44,7 @@ pub struct FileInformation {
     ///
     /// Erratum COM-099 (certain): File Date and Time: a packed date in seconds.
     ///
-    /// Erratum COM-100 (open): Time zone of file times is not given.
+    /// Note COM-100 (open): Time zone of file times is not given.
     pub file_date_and_time: u32,
     /// File CRC16 Checksum (bits 80 to 95): 0 to 65535.
     pub file_crc16_checksum: u16,
@@ -123,6 +123,7 @@ const FILE_TYPE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for FileInformation {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 243;
 
     #[inline]

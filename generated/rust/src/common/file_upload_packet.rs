@@ -8,22 +8,22 @@ use crate::support::{array, put, put_array, take, Error};
 ///
 /// One packet of a block. Packets may follow one another without a pause. It is not acknowledged.
 ///
-/// Erratum COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
 ///
-/// Erratum COM-046 (likely): File Upload Packet is not acknowledged, against the rule.
+/// Note COM-046 (likely): File Upload Packet is not acknowledged, against the rule.
 ///
-/// Erratum COM-125 (certain): File Upload Packet: messages of 20 bytes, parameters of 22.
+/// Note COM-125 (certain): File Upload Packet: messages of 20 bytes, parameters of 22.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct FileUploadPacket {
     /// Packet Number (bits 0 to 15): 0 to 65535.
     ///
-    /// Erratum COM-047 (likely): Packet numbers: from 0 or from 1.
+    /// Note COM-047 (likely): Packet numbers: from 0 or from 1.
     pub packet_number: u16,
     /// File Bytes (bits 16 to 175): 20 bytes.
     ///
-    /// Erratum COM-048 (open): Last packet of a block: fill is not defined.
+    /// Note COM-048 (open): Last packet of a block: fill is not defined.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub file_bytes: [u8; 20],
 }
@@ -71,6 +71,7 @@ impl FileUploadPacket {
 }
 
 impl crate::wire::Telecommand for FileUploadPacket {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 115;
 
     #[inline]

@@ -9,9 +9,9 @@ use crate::support::{put, take, Coded, Error};
 ///
 /// Commits the received block to its destination.
 ///
-/// Erratum COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
 ///
-/// Erratum COM-049 (likely): Finalize Upload Block is missing from the procedure.
+/// Note COM-049 (likely): Finalize Upload Block is missing from the procedure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -75,6 +75,7 @@ impl FinalizeUploadBlock {
 }
 
 impl crate::wire::Telecommand for FinalizeUploadBlock {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 116;
 
     #[inline]

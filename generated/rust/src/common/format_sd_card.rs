@@ -66,6 +66,7 @@ impl Default for FormatSdCard {
 }
 
 impl crate::wire::Telecommand for FormatSdCard {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 33;
 
     #[inline]

@@ -8,15 +8,15 @@ use crate::support::{array, put_array, Error};
 ///
 /// Packets 256 to 383 of a file block.
 ///
-/// Erratum COM-115 (certain): Hole maps are named for the upload and serve the download too.
+/// Note COM-115 (certain): Hole maps are named for the upload and serve the download too.
 ///
-/// Erratum COM-116 (open): Hole map: who clears it before a download.
+/// Note COM-116 (open): Hole map: who clears it before a download.
 ///
-/// Erratum COM-117 (likely): Hole map: bits beyond the last packet.
+/// Note COM-117 (likely): Hole map: bits beyond the last packet.
 ///
-/// Erratum COM-118 (likely): Hole map: order of the eight parts.
+/// Note COM-118 (likely): Hole map: order of the eight parts.
 ///
-/// Erratum COM-124 (certain): The hole map is read with eight frames, one table is referred to.
+/// Note COM-124 (certain): The hole map is read with eight frames, one table is referred to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -71,6 +71,7 @@ impl HoleMap3 {
 }
 
 impl crate::wire::Telecommand for HoleMap3 {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 122;
 
     #[inline]
@@ -80,6 +81,7 @@ impl crate::wire::Telecommand for HoleMap3 {
 }
 
 impl crate::wire::Telemetry for HoleMap3 {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 249;
 
     #[inline]

@@ -8,7 +8,7 @@ use crate::support::{put, take, Error};
 ///
 /// Tells which program is running. Requesting it from the bootloader keeps it from booting on.
 ///
-/// Erratum COM-054 (open): Waiting times before the identification request differ, and the request
+/// Note COM-054 (open): Waiting times before the identification request differ, and the request
 /// itself stops the boot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -30,9 +30,9 @@ pub struct Identification {
     ///
     /// Since the processor started.
     ///
-    /// Erratum COM-056 (open): Runtime wraps after 18 hours.
-    ///
     /// Erratum COM-057 (certain): Runtime has its unit in words only.
+    ///
+    /// Note COM-056 (open): Runtime wraps after 18 hours.
     pub runtime_seconds: u16,
     /// Runtime (milliseconds) (bits 48 to 63): 0 to 65535 ms.
     ///
@@ -93,6 +93,7 @@ impl Identification {
 }
 
 impl crate::wire::Telemetry for Identification {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 128;
 
     #[inline]

@@ -8,11 +8,11 @@ use crate::support::Error;
 ///
 /// Polled after Initiate File Upload.
 ///
-/// Erratum COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
 ///
-/// Erratum COM-104 (certain): Upload is initiated, initialized and finalized under changing names.
+/// Note COM-104 (certain): Upload is initiated, initialized and finalized under changing names.
 ///
-/// Erratum COM-105 (open): Initialisation of an upload can fail silently.
+/// Note COM-105 (open): Initialisation of an upload can fail silently.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -21,7 +21,7 @@ pub struct InitializeUploadComplete {
     ///
     /// Still preparing, for instance erasing flash.
     ///
-    /// Erratum COM-103 (certain): Frames named complete report busy.
+    /// Note COM-103 (certain): Frames named complete report busy.
     pub busy: bool,
 }
 
@@ -66,6 +66,7 @@ impl InitializeUploadComplete {
 }
 
 impl crate::wire::Telemetry for InitializeUploadComplete {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 244;
 
     #[inline]

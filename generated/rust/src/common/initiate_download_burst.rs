@@ -9,18 +9,18 @@ use crate::support::Error;
 /// Starts the transfer of the loaded block. On the UART the packets come in rapid succession, on
 /// I2C the master reads them one by one.
 ///
-/// Erratum COM-051 (certain): Messages of the download have other names in the text.
+/// Note COM-051 (certain): Messages of the download have other names in the text.
 ///
-/// Erratum COM-052 (open): Download packets: id of the telecommand or of the frame.
+/// Note COM-052 (open): Download packets: id of the telecommand or of the frame.
 ///
-/// Erratum COM-053 (open): Download over CAN is not described.
+/// Note COM-053 (open): Download over CAN is not described.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct InitiateDownloadBurst {
     /// Message Length (bits 0 to 7): 0 to 255.
     ///
-    /// Erratum COM-050 (open): Initiate Download Burst: Message Length is not explained.
+    /// Note COM-050 (open): Initiate Download Burst: Message Length is not explained.
     pub message_length: u8,
     /// Ignore Hole Map (bit 8).
     ///
@@ -71,6 +71,7 @@ impl InitiateDownloadBurst {
 }
 
 impl crate::wire::Telecommand for InitiateDownloadBurst {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 119;
 
     #[inline]

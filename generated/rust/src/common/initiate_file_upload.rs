@@ -9,7 +9,7 @@ use crate::support::{Coded, Error};
 ///
 /// Erases the destination. Initialize Upload Complete tells when that is done.
 ///
-/// Erratum COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -22,7 +22,7 @@ pub struct InitiateFileUpload {
     ///
     /// Ignored, may be 0.
     ///
-    /// Erratum COM-042 (certain): BlockSize is a byte and ignored.
+    /// Note COM-042 (certain): BlockSize is a byte and ignored.
     pub block_size: u8,
 }
 
@@ -69,6 +69,7 @@ impl InitiateFileUpload {
 }
 
 impl crate::wire::Telecommand for InitiateFileUpload {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 114;
 
     #[inline]

@@ -8,22 +8,22 @@ use crate::support::{put, take, Error};
 ///
 /// The event at the log pointer, which Reset Log Pointer and Advance Log Pointer move.
 ///
-/// Erratum COM-073 (certain): Last Logged Event: wrong telecommands, and a bracket left open.
+/// Note COM-073 (certain): Last Logged Event: wrong telecommands, and a bracket left open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct LastLoggedEvent {
     /// Time of Event (bits 0 to 31): 0 to 4294967295.
     ///
-    /// Erratum COM-074 (open): Time of Event has no description.
+    /// Note COM-074 (open): Time of Event has no description.
     pub time_of_event: u32,
     /// Event ID (bits 32 to 39): 0 to 255.
     ///
-    /// Erratum COM-075 (open): Events are not listed.
+    /// Note COM-075 (open): Events are not listed.
     pub event_id: u8,
     /// Event Parameter (bits 40 to 47): 0 to 255.
     ///
-    /// Erratum COM-075 (open): Events are not listed.
+    /// Note COM-075 (open): Events are not listed.
     pub event_parameter: u8,
 }
 
@@ -72,6 +72,7 @@ impl LastLoggedEvent {
 }
 
 impl crate::wire::Telemetry for LastLoggedEvent {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 141;
 
     #[inline]

@@ -18,9 +18,9 @@ pub struct LoadFileDownloadBlock {
     ///
     /// Of the file: with the type it identifies the file.
     ///
-    /// Erratum COM-029 (certain): One field, several spellings.
+    /// Note COM-029 (certain): One field, several spellings.
     ///
-    /// Erratum COM-035 (open): File counter of 8 bits.
+    /// Note COM-035 (open): File counter of 8 bits.
     pub counter: u8,
     /// Offset (bits 16 to 47): 0 to 4294967295 byte.
     ///
@@ -32,9 +32,9 @@ pub struct LoadFileDownloadBlock {
     ///
     /// 20 kB at most. Must be at most 20480 byte.
     ///
-    /// Erratum COM-029 (certain): One field, several spellings.
-    ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
+    ///
+    /// Note COM-029 (certain): One field, several spellings.
     pub block_length: u16,
 }
 
@@ -87,6 +87,7 @@ impl LoadFileDownloadBlock {
 }
 
 impl crate::wire::Telecommand for LoadFileDownloadBlock {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 112;
 
     #[inline]

@@ -8,7 +8,7 @@ use crate::support::Error;
 ///
 /// Restarts the CubeComputer. The node restarts instead of acknowledging it.
 ///
-/// Erratum COM-028 (open): The Reset telecommand: acknowledged or not.
+/// Note COM-028 (open): The Reset telecommand: acknowledged or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -17,7 +17,7 @@ pub struct Reset {
     ///
     /// Guards against an accidental reset. Always 90.
     ///
-    /// Erratum COM-029 (certain): One field, several spellings.
+    /// Note COM-029 (certain): One field, several spellings.
     pub magic_number: u8,
 }
 
@@ -70,6 +70,7 @@ impl Default for Reset {
 }
 
 impl crate::wire::Telecommand for Reset {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 1;
 
     #[inline]

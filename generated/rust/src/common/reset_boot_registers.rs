@@ -8,7 +8,7 @@ use crate::support::Error;
 ///
 /// Resets the boot counter, boot state and boot cause.
 ///
-/// Erratum COM-032 (likely): Reset Boot Registers: a Boot State that no frame has, and no values to
+/// Note COM-032 (likely): Reset Boot Registers: a Boot State that no frame has, and no values to
 /// reset to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -52,6 +52,7 @@ impl ResetBootRegisters {
 }
 
 impl crate::wire::Telecommand for ResetBootRegisters {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 6;
 
     #[inline]

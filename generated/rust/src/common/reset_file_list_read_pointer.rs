@@ -49,6 +49,7 @@ impl ResetFileListReadPointer {
 }
 
 impl crate::wire::Telecommand for ResetFileListReadPointer {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 118;
 
     #[inline]

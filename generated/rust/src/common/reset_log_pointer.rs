@@ -8,9 +8,9 @@ use crate::support::Error;
 ///
 /// Resets the pointer at which Last Logged Event reads the event buffer.
 ///
-/// Erratum COM-030 (certain): Log pointer telecommands speak of a frame that is named otherwise.
+/// Note COM-030 (certain): Log pointer telecommands speak of a frame that is named otherwise.
 ///
-/// Erratum COM-031 (open): Log pointer: where it starts and which way it advances.
+/// Note COM-031 (open): Log pointer: where it starts and which way it advances.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -53,6 +53,7 @@ impl ResetLogPointer {
 }
 
 impl crate::wire::Telecommand for ResetLogPointer {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 4;
 
     #[inline]

@@ -8,9 +8,9 @@ use crate::support::Error;
 ///
 /// Announces a new block by clearing the hole map.
 ///
-/// Erratum COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
 ///
-/// Erratum COM-126 (certain): Reset Upload Block tells the node of a block, and does not say which.
+/// Note COM-126 (certain): Reset Upload Block tells the node of a block, and does not say which.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -53,6 +53,7 @@ impl ResetUploadBlock {
 }
 
 impl crate::wire::Telecommand for ResetUploadBlock {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 117;
 
     #[inline]

@@ -8,7 +8,7 @@ use crate::support::Error;
 ///
 /// Whether the SD card is still being formatted or erased.
 ///
-/// Erratum COM-085 (open): Erase File: progress and failure.
+/// Note COM-085 (open): Erase File: progress and failure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,7 +19,7 @@ pub struct SdCardFormatEraseProgress {
     ///
     /// All files are being erased.
     ///
-    /// Erratum COM-086 (certain): Erase All Busy: two verbs for one.
+    /// Note COM-086 (certain): Erase All Busy: two verbs for one.
     pub erase_all_busy: bool,
 }
 
@@ -66,6 +66,7 @@ impl SdCardFormatEraseProgress {
 }
 
 impl crate::wire::Telemetry for SdCardFormatEraseProgress {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 234;
 
     #[inline]

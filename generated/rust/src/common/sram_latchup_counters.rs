@@ -60,6 +60,7 @@ impl SramLatchupCounters {
 }
 
 impl crate::wire::Telemetry for SramLatchupCounters {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 142;
 
     #[inline]

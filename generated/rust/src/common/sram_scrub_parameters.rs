@@ -6,14 +6,14 @@ use crate::support::{put, take, Error};
 
 /// SRAM Scrub Parameters: configuration, set by 8 and got by 134, 2 bytes. Table 49.
 ///
-/// Erratum COM-107 (certain): Get ids do not follow from set ids.
+/// Note COM-107 (certain): Get ids do not follow from set ids.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SramScrubParameters {
     /// Scrub Size (bits 0 to 15): 0 to 65535.
     ///
-    /// Erratum COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit.
+    /// Note COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit.
     pub scrub_size: u16,
 }
 
@@ -60,6 +60,7 @@ impl SramScrubParameters {
 }
 
 impl crate::wire::Telecommand for SramScrubParameters {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 8;
 
     #[inline]
@@ -69,6 +70,7 @@ impl crate::wire::Telecommand for SramScrubParameters {
 }
 
 impl crate::wire::Telemetry for SramScrubParameters {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 134;
 
     #[inline]

@@ -10,36 +10,36 @@ use crate::support::{Coded, Error};
 /// What became of the last telecommand. Meant for I2C, where the node cannot answer of its own
 /// accord.
 ///
-/// Erratum COM-092 (certain): The procedure polls a thing called Telemetry Format.
+/// Note COM-092 (certain): The procedure polls a thing called Telemetry Format.
 ///
-/// Erratum COM-093 (open): Polling has no interval and no time-out.
+/// Note COM-093 (open): Polling has no interval and no time-out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct TelecommandAcknowledge {
     /// Last TC ID (bits 0 to 7): 0 to 255.
     ///
-    /// Erratum COM-090 (open): Last TC ID is of the last received, the error of the last processed.
+    /// Note COM-090 (open): Last TC ID is of the last received, the error of the last processed.
     pub last_tc_id: u8,
     /// Processed flag (bit 8).
     ///
     /// The next telecommand may be sent. Says nothing about the outcome of the last one.
     ///
-    /// Erratum COM-088 (certain): Processed flag has three names.
+    /// Note COM-088 (certain): Processed flag has three names.
     ///
-    /// Erratum COM-089 (open): Processed flag: processed or merely taken over.
+    /// Note COM-089 (open): Processed flag: processed or merely taken over.
     pub processed_flag: bool,
     /// TC error status (bits 16 to 23).
     ///
-    /// Erratum COM-087 (certain): TC Error is called a flag and is a code.
+    /// Note COM-087 (certain): TC Error is called a flag and is a code.
     ///
-    /// Erratum COM-090 (open): Last TC ID is of the last received, the error of the last processed.
+    /// Note COM-090 (open): Last TC ID is of the last received, the error of the last processed.
     pub tc_error_status: Coded<enums::TcErrorReason>,
     /// TC parameter error index (bits 24 to 31): 0 to 255.
     ///
     /// Which parameter was wrong.
     ///
-    /// Erratum COM-091 (open): TC parameter error index: index of what.
+    /// Note COM-091 (open): TC parameter error index: index of what.
     pub tc_parameter_error_index: u8,
 }
 
@@ -90,6 +90,7 @@ impl TelecommandAcknowledge {
 }
 
 impl crate::wire::Telemetry for TelecommandAcknowledge {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 240;
 
     #[inline]

@@ -8,9 +8,9 @@ use crate::support::Error;
 ///
 /// When the Unix time is kept in flash, so that it survives a power cycle.
 ///
-/// Erratum COM-107 (certain): Get ids do not follow from set ids.
+/// Note COM-107 (certain): Get ids do not follow from set ids.
 ///
-/// Erratum COM-112 (certain): Unix Time Save to Flash is described in two spellings.
+/// Note COM-112 (certain): Unix Time Save to Flash is described in two spellings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,7 +19,7 @@ pub struct UnixTimeSaveToFlash {
     ///
     /// Saves once.
     ///
-    /// Erratum COM-113 (open): Save Now is an action among settings.
+    /// Note COM-113 (open): Save Now is an action among settings.
     pub save_now: bool,
     /// Save On Update (bit 1).
     ///
@@ -31,7 +31,7 @@ pub struct UnixTimeSaveToFlash {
     pub save_periodic: bool,
     /// Period (bits 8 to 15): 0 to 255 s.
     ///
-    /// Erratum COM-114 (open): Saving period: meaning of 0.
+    /// Note COM-114 (open): Saving period: meaning of 0.
     pub period: u8,
 }
 
@@ -84,6 +84,7 @@ impl UnixTimeSaveToFlash {
 }
 
 impl crate::wire::Telecommand for UnixTimeSaveToFlash {
+    const NODE: &'static str = "common";
     const TELECOMMAND_ID: u8 = 9;
 
     #[inline]
@@ -93,6 +94,7 @@ impl crate::wire::Telecommand for UnixTimeSaveToFlash {
 }
 
 impl crate::wire::Telemetry for UnixTimeSaveToFlash {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 145;
 
     #[inline]

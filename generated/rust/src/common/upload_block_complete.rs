@@ -8,13 +8,13 @@ use crate::support::Error;
 ///
 /// Polled after Finalize Upload Block.
 ///
-/// Erratum COM-041 (open): File upload is listed as common but described for the bootloader only.
+/// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
 ///
-/// Erratum COM-049 (likely): Finalize Upload Block is missing from the procedure.
+/// Note COM-049 (likely): Finalize Upload Block is missing from the procedure.
 ///
-/// Erratum COM-093 (open): Polling has no interval and no time-out.
+/// Note COM-093 (open): Polling has no interval and no time-out.
 ///
-/// Erratum COM-104 (certain): Upload is initiated, initialized and finalized under changing names.
+/// Note COM-104 (certain): Upload is initiated, initialized and finalized under changing names.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -23,7 +23,7 @@ pub struct UploadBlockComplete {
     ///
     /// Still finalizing the block.
     ///
-    /// Erratum COM-103 (certain): Frames named complete report busy.
+    /// Note COM-103 (certain): Frames named complete report busy.
     pub busy: bool,
     /// Error (bit 1).
     ///
@@ -74,6 +74,7 @@ impl UploadBlockComplete {
 }
 
 impl crate::wire::Telemetry for UploadBlockComplete {
+    const NODE: &'static str = "common";
     const TELEMETRY_ID: u8 = 245;
 
     #[inline]

@@ -63,6 +63,7 @@ impl AcpExecutionState {
 }
 
 impl crate::wire::Telemetry for AcpExecutionState {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 220;
 
     #[inline]

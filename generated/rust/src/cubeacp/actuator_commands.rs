@@ -6,7 +6,7 @@ use crate::support::{put, take, Error};
 
 /// Actuator Commands: telemetry 192, 12 bytes. Table 151.
 ///
-/// Erratum ACP-106 (certain): Messages have the names of groups.
+/// Note ACP-106 (certain): Messages have the names of groups.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -15,40 +15,37 @@ pub struct ActuatorCommands {
     ///
     /// On-time.
     ///
-    /// Erratum ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    /// on-time.
+    /// Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
     ///
-    /// Erratum ACP-071 (likely): 10ms units is a factor, not a unit.
+    /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
     pub x_magnetorquer_command: i16,
     /// Y Magnetorquer Command (bits 16 to 31): -32768 to 32767 10ms units.
     ///
     /// On-time.
     ///
-    /// Erratum ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    /// on-time.
+    /// Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
     ///
-    /// Erratum ACP-071 (likely): 10ms units is a factor, not a unit.
+    /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
     pub y_magnetorquer_command: i16,
     /// Z Magnetorquer Command (bits 32 to 47): -32768 to 32767 10ms units.
     ///
     /// On-time.
     ///
-    /// Erratum ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    /// on-time.
+    /// Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
     ///
-    /// Erratum ACP-071 (likely): 10ms units is a factor, not a unit.
+    /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
     pub z_magnetorquer_command: i16,
     /// Commanded X Wheel Speed (bits 48 to 63): -32768 to 32767 rpm.
     ///
-    /// Erratum ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
     pub commanded_x_wheel_speed: i16,
     /// Commanded Y Wheel Speed (bits 64 to 79): -32768 to 32767 rpm.
     ///
-    /// Erratum ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
     pub commanded_y_wheel_speed: i16,
     /// Commanded Z Wheel Speed (bits 80 to 95): -32768 to 32767 rpm.
     ///
-    /// Erratum ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
     pub commanded_z_wheel_speed: i16,
 }
 
@@ -103,6 +100,7 @@ impl ActuatorCommands {
 }
 
 impl crate::wire::Telemetry for ActuatorCommands {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 192;
 
     #[inline]

@@ -9,11 +9,11 @@ use crate::support::{array, flags, put, put_array, take, Coded, Error, Scale};
 ///
 /// Most configuration messages in one frame.
 ///
-/// Erratum ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits.
 ///
-/// Erratum ACP-158 (certain): ADCS configuration in list order, not in id order.
+/// Note ACP-158 (certain): ADCS configuration in list order, not in id order.
 ///
-/// Erratum ACP-159 (open): The current configuration is not all of it.
+/// Note ACP-159 (open): The current configuration is not all of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -42,24 +42,18 @@ pub struct AdcsConfiguration {
     pub gyro3_configuration: Coded<enums::AxisSelect>,
     /// X-Rate Sensor Offset (bits 80 to 95): raw, -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub x_rate_sensor_offset: i16,
     /// Y-Rate Sensor Offset (bits 96 to 111): raw, -32768 to 32767; physical `raw*0.001`, -32.768
     /// to 32.767 deg/s.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub y_rate_sensor_offset: i16,
     /// Z-Rate Sensor Offset (bits 112 to 127): raw, -32768 to 32767; physical `raw*0.001`, -32.768
     /// to 32.767 deg/s.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub z_rate_sensor_offset: i16,
     /// RateSensorMult (bits 128 to 135): 0 to 255.
     ///
     /// Factor on the rate sensor measurements.
     ///
-    /// Erratum ACP-130 (open): RateSensorMult has no scale and no blanks.
+    /// Note ACP-130 (open): RateSensorMult has no scale and no blanks.
     pub rate_sensor_mult: u8,
     /// CSS1 Configuration (bits 136 to 143).
     pub css1_configuration: Coded<enums::AxisSelect>,
@@ -82,63 +76,37 @@ pub struct AdcsConfiguration {
     /// CSS10 Configuration (bits 208 to 215).
     pub css10_configuration: Coded<enums::AxisSelect>,
     /// CSS1 Relative Scale (bits 216 to 223): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css1_relative_scale: u8,
     /// CSS2 Relative Scale (bits 224 to 231): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css2_relative_scale: u8,
     /// CSS3 Relative Scale (bits 232 to 239): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css3_relative_scale: u8,
     /// CSS4 Relative Scale (bits 240 to 247): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css4_relative_scale: u8,
     /// CSS5 Relative Scale (bits 248 to 255): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css5_relative_scale: u8,
     /// CSS6 Relative Scale (bits 256 to 263): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css6_relative_scale: u8,
     /// CSS7 Relative Scale (bits 264 to 271): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css7_relative_scale: u8,
     /// CSS8 Relative Scale (bits 272 to 279): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css8_relative_scale: u8,
     /// CSS9 Relative Scale (bits 280 to 287): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css9_relative_scale: u8,
     /// CSS10 Relative Scale (bits 288 to 295): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css10_relative_scale: u8,
     /// CSS Threshold (bits 296 to 303): 0 to 255.
     ///
-    /// Erratum ACP-133 (open): CSS threshold has no description.
+    /// Note ACP-133 (open): CSS threshold has no description.
     pub css_threshold: u8,
     /// Cam1 Sensor Mounting Transform Alpha Angle (bits 304 to 319): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub cam1_sensor_mounting_transform_alpha_angle: i16,
     /// Cam1 Sensor Mounting Transform Beta Angle (bits 320 to 335): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub cam1_sensor_mounting_transform_beta_angle: i16,
     /// Cam1 Sensor Mounting Transform Gamma Angle (bits 336 to 351): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub cam1_sensor_mounting_transform_gamma_angle: i16,
     /// Cam1 detection threshold (bits 352 to 359): 0 to 255.
     pub cam1_detection_threshold: u8,
@@ -153,33 +121,23 @@ pub struct AdcsConfiguration {
     ///
     /// Where the boresight meets the image.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-149 (open): Boresight ends at 655 pixels.
+    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam1_boresight_x: u16,
     /// Cam1 Boresight Y (bits 400 to 415): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35
     /// pixels.
     ///
     /// Where the boresight meets the image.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-149 (open): Boresight ends at 655 pixels.
+    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam1_boresight_y: u16,
     /// Cam2 Sensor Mounting Transform Alpha Angle (bits 416 to 431): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub cam2_sensor_mounting_transform_alpha_angle: i16,
     /// Cam2 Sensor Mounting Transform Beta Angle (bits 432 to 447): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub cam2_sensor_mounting_transform_beta_angle: i16,
     /// Cam2 Sensor Mounting Transform Gamma Angle (bits 448 to 463): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub cam2_sensor_mounting_transform_gamma_angle: i16,
     /// Cam2 detection threshold (bits 464 to 471): 0 to 255.
     pub cam2_detection_threshold: u8,
@@ -194,18 +152,14 @@ pub struct AdcsConfiguration {
     ///
     /// Where the boresight meets the image.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-149 (open): Boresight ends at 655 pixels.
+    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam2_boresight_x: u16,
     /// Cam2 Boresight Y (bits 512 to 527): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35
     /// pixels.
     ///
     /// Where the boresight meets the image.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-149 (open): Boresight ends at 655 pixels.
+    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam2_boresight_y: u16,
     /// Nadir Max Deviation Percentage (bits 528 to 535): 0 to 255 %.
     ///
@@ -217,7 +171,7 @@ pub struct AdcsConfiguration {
     ///
     /// Most edges that may deviate further. Above 50 the test is off.
     ///
-    /// Erratum ACP-152 (open): More than 50 bad edges disable the check.
+    /// Note ACP-152 (open): More than 50 bad edges disable the check.
     pub nadir_max_bad_edges: u8,
     /// Nadir Max Radius (bits 544 to 551): 0 to 255 deg.
     ///
@@ -309,198 +263,132 @@ pub struct AdcsConfiguration {
     pub cam_2_maximum_y_of_area_5: u16,
     /// Magnetometer Mounting Transform Alpha Angle (bits 1200 to 1215): raw, -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_mounting_transform_alpha_angle: i16,
     /// Magnetometer Mounting Transform Beta Angle (bits 1216 to 1231): raw, -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_mounting_transform_beta_angle: i16,
     /// Magnetometer Mounting Transform Gamma Angle (bits 1232 to 1247): raw, -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_mounting_transform_gamma_angle: i16,
     /// Magnetometer Channel 1 Offset (bits 1248 to 1263): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_channel_1_offset: i16,
     /// Magnetometer Channel 2 Offset (bits 1264 to 1279): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_channel_2_offset: i16,
     /// Magnetometer Channel 3 Offset (bits 1280 to 1295): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_channel_3_offset: i16,
     /// Magnetometer Sensitivity Matrix S11 (bits 1296 to 1311): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_sensitivity_matrix_s11: i16,
     /// Magnetometer Sensitivity Matrix S22 (bits 1312 to 1327): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_sensitivity_matrix_s22: i16,
     /// Magnetometer Sensitivity Matrix S33 (bits 1328 to 1343): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_sensitivity_matrix_s33: i16,
     /// Magnetometer Sensitivity Matrix S12 (bits 1344 to 1359): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_sensitivity_matrix_s12: i16,
     /// Magnetometer Sensitivity Matrix S13 (bits 1360 to 1375): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_sensitivity_matrix_s13: i16,
     /// Magnetometer Sensitivity Matrix S21 (bits 1376 to 1391): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_sensitivity_matrix_s21: i16,
     /// Magnetometer Sensitivity Matrix S23 (bits 1392 to 1407): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_sensitivity_matrix_s23: i16,
     /// Magnetometer Sensitivity Matrix S31 (bits 1408 to 1423): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_sensitivity_matrix_s31: i16,
     /// Magnetometer Sensitivity Matrix S32 (bits 1424 to 1439): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub magnetometer_sensitivity_matrix_s32: i16,
     /// Redundant Magnetometer Mounting Transform Alpha Angle (bits 1440 to 1455): raw, -32768 to
     /// 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_mounting_transform_alpha_angle: i16,
     /// Redundant Magnetometer Mounting Transform Beta Angle (bits 1456 to 1471): raw, -32768 to
     /// 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_mounting_transform_beta_angle: i16,
     /// Redundant Magnetometer Mounting Transform Gamma Angle (bits 1472 to 1487): raw, -32768 to
     /// 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_mounting_transform_gamma_angle: i16,
     /// Redundant Magnetometer Channel 1 Offset (bits 1488 to 1503): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_channel_1_offset: i16,
     /// Redundant Magnetometer Channel 2 Offset (bits 1504 to 1519): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_channel_2_offset: i16,
     /// Redundant Magnetometer Channel 3 Offset (bits 1520 to 1535): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_channel_3_offset: i16,
     /// Redundant Magnetometer Sensitivity Matrix S11 (bits 1536 to 1551): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_sensitivity_matrix_s11: i16,
     /// Redundant Magnetometer Sensitivity Matrix S22 (bits 1552 to 1567): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_sensitivity_matrix_s22: i16,
     /// Redundant Magnetometer Sensitivity Matrix S33 (bits 1568 to 1583): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_sensitivity_matrix_s33: i16,
     /// Redundant Magnetometer Sensitivity Matrix S12 (bits 1584 to 1599): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_sensitivity_matrix_s12: i16,
     /// Redundant Magnetometer Sensitivity Matrix S13 (bits 1600 to 1615): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_sensitivity_matrix_s13: i16,
     /// Redundant Magnetometer Sensitivity Matrix S21 (bits 1616 to 1631): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_sensitivity_matrix_s21: i16,
     /// Redundant Magnetometer Sensitivity Matrix S23 (bits 1632 to 1647): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_sensitivity_matrix_s23: i16,
     /// Redundant Magnetometer Sensitivity Matrix S31 (bits 1648 to 1663): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_sensitivity_matrix_s31: i16,
     /// Redundant Magnetometer Sensitivity Matrix S32 (bits 1664 to 1679): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub redundant_magnetometer_sensitivity_matrix_s32: i16,
     /// StarTracker Mounting Transform Alpha Angle (bits 1680 to 1695): raw, -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub star_tracker_mounting_transform_alpha_angle: i16,
     /// StarTracker Mounting Transform Beta Angle (bits 1696 to 1711): raw, -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub star_tracker_mounting_transform_beta_angle: i16,
     /// StarTracker Mounting Transform Gamma Angle (bits 1712 to 1727): raw, -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub star_tracker_mounting_transform_gamma_angle: i16,
     /// StarTracker exposure time (bits 1728 to 1743): 0 to 65535.
     ///
     /// Register value.
     ///
-    /// Erratum ACP-145 (open): Exposure and gain are register values.
+    /// Note ACP-145 (open): Exposure and gain are register values.
     pub star_tracker_exposure_time: u16,
     /// StarTracker analog gain (bits 1744 to 1759): 0 to 65535.
     ///
     /// Register value.
     ///
-    /// Erratum ACP-145 (open): Exposure and gain are register values.
+    /// Note ACP-145 (open): Exposure and gain are register values.
     pub star_tracker_analog_gain: u16,
     /// StarTracker detection threshold (bits 1760 to 1767): 0 to 255.
     ///
-    /// Erratum ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     pub star_tracker_detection_threshold: u8,
     /// StarTracker star threshold (bits 1768 to 1775): 0 to 255.
     ///
-    /// Erratum ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     pub star_tracker_star_threshold: u8,
     /// Maximum Star Matched (bits 1776 to 1783): 0 to 255.
     ///
     /// Most stars that are matched.
     ///
-    /// Erratum ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     pub maximum_star_matched: u8,
     /// Detection Timeout duration (bits 1784 to 1799): 0 to 65535.
     ///
-    /// Erratum ACP-141 (open): Detection timeout has no unit.
+    /// Note ACP-141 (open): Detection timeout has no unit.
     pub detection_timeout_duration: u16,
     /// Maximum Star Pixel (bits 1800 to 1807): 0 to 255.
     ///
@@ -515,9 +403,7 @@ pub struct AdcsConfiguration {
     ///
     /// Of the star identification.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
+    /// Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
     pub star_tracker_error_margin: u8,
     /// Star Tracker Delay Time (bits 1824 to 1839): 0 to 65535 ms.
     ///
@@ -535,35 +421,31 @@ pub struct AdcsConfiguration {
     pub star_tracker_focal_length: f32,
     /// K1 radial distortion coefficient (bits 1936 to 1967): 32-bit float, in gain.
     ///
-    /// Erratum ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): gain is no unit.
     pub k1_radial_distortion_coefficient: f32,
     /// K2 radial distortion coefficient (bits 1968 to 1999): 32-bit float, in gain.
     ///
-    /// Erratum ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): gain is no unit.
     pub k2_radial_distortion_coefficient: f32,
     /// P1 tangential distortion coefficient (bits 2000 to 2031): 32-bit float, in gain.
     ///
-    /// Erratum ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): gain is no unit.
     pub p1_tangential_distortion_coefficient: f32,
     /// P2 tangential distortion coefficient (bits 2032 to 2063): 32-bit float, in gain.
     ///
-    /// Erratum ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): gain is no unit.
     pub p2_tangential_distortion_coefficient: f32,
     /// Star tracking window width (bits 2064 to 2071): 0 to 255.
     ///
-    /// Erratum ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     pub star_tracking_window_width: u8,
     /// Star Tracking Margin (bits 2072 to 2079): raw, 0 to 255; physical `raw/100.0`, 0 to 2.55.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-143 (open): Margins and search width have no unit.
+    /// Note ACP-143 (open): Margins and search width have no unit.
     pub star_tracking_margin: u8,
     /// Star Validation Margin (bits 2080 to 2087): raw, 0 to 255; physical `raw/100.0`, 0 to 2.55.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-143 (open): Margins and search width have no unit.
+    /// Note ACP-143 (open): Margins and search width have no unit.
     pub star_validation_margin: u8,
     /// Star Tracking Module Enable (bit 2088).
     pub star_tracking_module_enable: bool,
@@ -571,9 +453,7 @@ pub struct AdcsConfiguration {
     pub star_tracking_location_prediction_enable: bool,
     /// Star Tracking Search Width (bits 2096 to 2103): raw, 0 to 255; physical `raw/5.0`, 0 to 51.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-143 (open): Margins and search width have no unit.
+    /// Note ACP-143 (open): Margins and search width have no unit.
     pub star_tracking_search_width: u8,
     /// Detumbling Spin Gain (bits 2104 to 2135): 32-bit float.
     ///
@@ -588,9 +468,7 @@ pub struct AdcsConfiguration {
     ///
     /// wy-ref. Must be below 0 deg/s.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-162 (certain): Limits of a sign in words only.
+    /// Note ACP-162 (certain): Limits of a sign in words only.
     pub reference_spin_rate: i16,
     /// Fast BDot Detumbling Gain (bits 2184 to 2215): 32-bit float.
     ///
@@ -616,7 +494,7 @@ pub struct AdcsConfiguration {
     ///
     /// H-ref. Must be below 0 Nms.
     ///
-    /// Erratum ACP-162 (certain): Limits of a sign in words only.
+    /// Note ACP-162 (certain): Limits of a sign in words only.
     pub reference_wheel_momentum: f32,
     /// RWheel Proportional Gain (bits 2376 to 2407): 32-bit float.
     ///
@@ -634,7 +512,7 @@ pub struct AdcsConfiguration {
     ///
     /// Body axis that is turned towards the sun.
     ///
-    /// Erratum ACP-166 (certain): Facets have 7 bits and 8 bits.
+    /// Note ACP-166 (certain): Facets have 7 bits and 8 bits.
     pub sun_pointing_facet: Coded<enums::AxisSelect>,
     /// Automatic Control Transition due to Wheel Errors (bit 2479).
     ///
@@ -672,19 +550,19 @@ pub struct AdcsConfiguration {
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     ///
-    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
+    /// Note ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_ixy: f32,
     /// Product Of Inertia - Ixz (bits 2712 to 2743): 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     ///
-    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
+    /// Note ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_ixz: f32,
     /// Product Of Inertia - Iyz (bits 2744 to 2775): 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     ///
-    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
+    /// Note ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_iyz: f32,
     /// Magnetometer Rate Filter System Noise (bits 2776 to 2807): 32-bit float.
     pub magnetometer_rate_filter_system_noise: f32,
@@ -728,7 +606,7 @@ pub struct AdcsConfiguration {
     ///
     /// The magnetometer that estimation and control use.
     ///
-    /// Erratum ACP-049 (open): Magnetometer mode can be set in two places.
+    /// Note ACP-049 (open): Magnetometer mode can be set in two places.
     pub magnetometer_mode: Coded<enums::MagModeVal>,
     /// Magnetometer Selection for RAW MTM TLM (bits 3008 to 3009).
     ///
@@ -755,44 +633,30 @@ pub struct AdcsConfiguration {
     /// Incl. coefficient (bits 3024 to 3039): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the inclination.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub incl_coefficient: u16,
     /// Raan coefficient (bits 3040 to 3055): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the RAAN.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub raan_coefficient: u16,
     /// Ecc coefficient (bits 3056 to 3071): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the eccentricity.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub ecc_coefficient: u16,
     /// Aop coefficient (bits 3072 to 3087): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the argument of perigee.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub aop_coefficient: u16,
     /// Time coefficient (bits 3088 to 3103): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the time.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub time_coefficient: u16,
     /// Pos coefficient (bits 3104 to 3119): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the position.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub pos_coefficient: u16,
     /// Maximum position error (bits 3120 to 3127): raw, 0 to 255; physical `raw*0.1`, 0 to 25.5.
     ///
     /// ASGP4 stops working beyond it.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub maximum_position_error: u8,
     /// ASGP4 filter (bits 3128 to 3135).
     pub asgp4_filter: Coded<enums::AsgpFilter>,
@@ -800,29 +664,21 @@ pub struct AdcsConfiguration {
     /// `raw*0.0000001`, -214.7483648 to 214.7483647.
     ///
     /// Polar coefficient.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub xp_coefficient: i32,
     /// yp coefficient (bits 3168 to 3199): raw, -2147483648 to 2147483647; physical
     /// `raw*0.0000001`, -214.7483648 to 214.7483647.
     ///
     /// Polar coefficient.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub yp_coefficient: i32,
     /// GPS roll over (bits 3200 to 3207): 0 to 255.
     pub gps_roll_over: u8,
     /// Position sd (bits 3208 to 3215): raw, 0 to 255; physical `raw*0.1`, 0 to 25.5.
     ///
     /// Largest standard deviation with which ASGP4 works.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub position_sd: u8,
     /// Velocity sd (bits 3216 to 3223): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Largest standard deviation with which ASGP4 works.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub velocity_sd: u8,
     /// Min. satellites (bits 3224 to 3231): 0 to 255.
     ///
@@ -831,14 +687,10 @@ pub struct AdcsConfiguration {
     /// Time gain (bits 3232 to 3239): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Of the compensation of the time offset.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub time_gain: u8,
     /// Max. lag (bits 3240 to 3247): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Largest lag of the time stamps that are still used.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub max_lag: u8,
     /// Min. samples (bits 3248 to 3263): 0 to 65535.
     ///
@@ -846,12 +698,12 @@ pub struct AdcsConfiguration {
     pub min_samples: u16,
     /// User Coded Controller Settings (bits 3264 to 3647): 48 bytes.
     ///
-    /// Erratum ACP-178 (open): User coded settings: content of the arrays.
+    /// Note ACP-178 (open): User coded settings: content of the arrays.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub user_coded_controller_settings: [u8; 48],
     /// User Coded Estimator Settings (bits 3648 to 4031): 48 bytes.
     ///
-    /// Erratum ACP-178 (open): User coded settings: content of the arrays.
+    /// Note ACP-178 (open): User coded settings: content of the arrays.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub user_coded_estimator_settings: [u8; 48],
 }
@@ -3702,6 +3554,7 @@ const MAX_LAG: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for AdcsConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 20;
 
     #[inline]
@@ -3711,6 +3564,7 @@ impl crate::wire::Telecommand for AdcsConfiguration {
 }
 
 impl crate::wire::Telemetry for AdcsConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 206;
 
     #[inline]

@@ -8,7 +8,7 @@ use crate::support::{put, take, Error};
 ///
 /// How long the parts of the control program take.
 ///
-/// Erratum ACP-107 (certain): ADCS is Adcs in one message, a model a computation.
+/// Note ACP-107 (certain): ADCS is Adcs in one message, a model a computation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -71,6 +71,7 @@ impl AdcsExecutionTimes {
 }
 
 impl crate::wire::Telemetry for AdcsExecutionTimes {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 196;
 
     #[inline]

@@ -1066,6 +1066,7 @@ const STAR3_ORBIT_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for AdcsMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 191;
 
     #[inline]

@@ -13,16 +13,16 @@ use crate::support::{put, take, Error, Scale};
 pub struct AdcsMiscCurrentMeasurements {
     /// CubeStarCurrent (bits 0 to 15): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Erratum ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub cubestar_current: u16,
     /// Magnetorquer Current (bits 16 to 31): raw, 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
     pub magnetorquer_current: u16,
     /// CubeStar MCU temperature (bits 32 to 47): raw, -32768 to 32767; physical `raw/100.0`,
     /// -327.68 to 327.67 C.
     ///
-    /// Erratum ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
-    /// Erratum ACP-108 (certain): ADCS Misc Current Measurements holds a temperature.
+    /// Note ACP-108 (certain): ADCS Misc Current Measurements holds a temperature.
     pub cubestar_mcu_temperature: i16,
 }
 
@@ -146,6 +146,7 @@ const CUBESTAR_MCU_TEMPERATURE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for AdcsMiscCurrentMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 198;
 
     #[inline]

@@ -9,7 +9,7 @@ use crate::support::{Coded, Error, Scale};
 ///
 /// Switches components on and off.
 ///
-/// Erratum ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,13 +18,13 @@ pub struct AdcsPowerControl {
     ///
     /// Electronics of the signal PIC.
     ///
-    /// Erratum ACP-136 (certain): Power control calls the controllers PIC.
+    /// Note ACP-136 (certain): Power control calls the controllers PIC.
     pub cubecontrol_signal_power_selection: Coded<enums::PowerSelect>,
     /// CubeControl Motor Power Selection (bits 2 to 3).
     ///
     /// Electronics of the motor PIC.
     ///
-    /// Erratum ACP-136 (certain): Power control calls the controllers PIC.
+    /// Note ACP-136 (certain): Power control calls the controllers PIC.
     pub cubecontrol_motor_power_selection: Coded<enums::PowerSelect>,
     /// CubeSense1 Power Selection (bits 4 to 5).
     pub cubesense1_power_selection: Coded<enums::PowerSelect>,
@@ -32,35 +32,35 @@ pub struct AdcsPowerControl {
     pub cubesense2_power_selection: Coded<enums::PowerSelect>,
     /// CubeStarPower Power Selection (bits 8 to 9).
     ///
-    /// Erratum ACP-134 (certain): Power is doubled in four names.
+    /// Note ACP-134 (certain): Power is doubled in four names.
     pub cubestar_power_selection: Coded<enums::PowerSelect>,
     /// CubeWheel1Power Power Selection (bits 10 to 11).
     ///
-    /// Erratum ACP-134 (certain): Power is doubled in four names.
+    /// Note ACP-134 (certain): Power is doubled in four names.
     pub cubewheel1_power_selection: Coded<enums::PowerSelect>,
     /// CubeWheel2Power Power Selection (bits 12 to 13).
     ///
-    /// Erratum ACP-134 (certain): Power is doubled in four names.
+    /// Note ACP-134 (certain): Power is doubled in four names.
     pub cubewheel2_power_selection: Coded<enums::PowerSelect>,
     /// CubeWheel3Power Power Selection (bits 14 to 15).
     ///
-    /// Erratum ACP-134 (certain): Power is doubled in four names.
+    /// Note ACP-134 (certain): Power is doubled in four names.
     pub cubewheel3_power_selection: Coded<enums::PowerSelect>,
     /// Motor Power (bits 16 to 17).
     ///
     /// Motor electronics.
     ///
-    /// Erratum ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): Power switches and enabled flags do not match.
     ///
-    /// Erratum ACP-135 (certain): Motor Power and GPS Power are not called selections.
+    /// Note ACP-135 (certain): Motor Power and GPS Power are not called selections.
     pub motor_power: Coded<enums::PowerSelect>,
     /// GPS Power (bits 18 to 19).
     ///
     /// LNA of the GPS.
     ///
-    /// Erratum ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): Power switches and enabled flags do not match.
     ///
-    /// Erratum ACP-135 (certain): Motor Power and GPS Power are not called selections.
+    /// Note ACP-135 (certain): Motor Power and GPS Power are not called selections.
     pub gps_power: Coded<enums::PowerSelect>,
 }
 
@@ -245,6 +245,7 @@ const GPS_POWER: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for AdcsPowerControl {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 11;
 
     #[inline]
@@ -254,6 +255,7 @@ impl crate::wire::Telecommand for AdcsPowerControl {
 }
 
 impl crate::wire::Telemetry for AdcsPowerControl {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 197;
 
     #[inline]

@@ -9,30 +9,30 @@ use crate::support::{flags, put, take, Coded, Error, Scale};
 ///
 /// State, attitude, rates and position in one frame.
 ///
-/// Erratum ACP-059 (certain): Current ADCS State and ADCS State.
+/// Note ACP-059 (certain): Current ADCS State and ADCS State.
 ///
-/// Erratum ACP-101 (likely): ADCS State: 30 bits between the flags and the angles.
+/// Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct AdcsState {
     /// Attitude Estimation Mode (bits 0 to 3).
     ///
-    /// Erratum ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub attitude_estimation_mode: Coded<enums::EstimModeSelect>,
     /// Control Mode (bits 4 to 7).
     ///
-    /// Erratum ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub control_mode: Coded<enums::ConModeSelect>,
     /// ADCS Run Mode (bits 8 to 9).
     ///
-    /// Erratum ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub adcs_run_mode: Coded<enums::AdcsRunMode>,
     /// ASGP4 Mode (bits 10 to 11).
     ///
-    /// Erratum ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
     ///
-    /// Erratum ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub asgp4_mode: Coded<enums::Asgp4ModeSelect>,
     /// CubeControl Signal Enabled (bit 12).
     pub cubecontrol_signal_enabled: bool,
@@ -82,7 +82,7 @@ pub struct AdcsState {
     ///
     /// About a measured field of 65 uT. Whether above or below is not printed.
     ///
-    /// Erratum ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
+    /// Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
     pub magnetometer_range_error: bool,
     /// Cam1 SRAM Overcurrent Detected (bit 33).
     pub cam1_sram_overcurrent_detected: bool,
@@ -100,7 +100,7 @@ pub struct AdcsState {
     ///
     /// A detected sun angle was beyond +/-90 deg.
     ///
-    /// Erratum ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
     pub sun_sensor_range_error: bool,
     /// Cam2 SRAM Overcurrent Detected (bit 38).
     pub cam2_sram_overcurrent_detected: bool,
@@ -118,7 +118,7 @@ pub struct AdcsState {
     ///
     /// A detected nadir angle was beyond +/-60 deg.
     ///
-    /// Erratum ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
     pub nadir_sensor_range_error: bool,
     /// Rate Sensor Range Error (bit 43).
     ///
@@ -142,16 +142,16 @@ pub struct AdcsState {
     ///
     /// A parameter is out of bounds, or the SGP4 propagator could not start from them.
     ///
-    /// Erratum ACP-104 (open): Orbit parameter flag has two reasons.
+    /// Note ACP-104 (open): Orbit parameter flag has two reasons.
     pub orbit_parameters_are_invalid: bool,
     /// Configuration is Invalid (bit 49).
     ///
     /// Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at least one
     /// CSS.
     ///
-    /// Erratum ACP-102 (certain): Configuration flag: is invalid, in invalid.
+    /// Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
     ///
-    /// Erratum ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
     pub configuration_is_invalid: bool,
     /// Control Mode Change is not allowed (bit 50).
     ///
@@ -205,15 +205,15 @@ pub struct AdcsState {
     pub estimated_yaw_angle: i16,
     /// Estimated q1 (bits 144 to 159): -32768 to 32767.
     ///
-    /// Erratum ACP-100 (open): Estimated quaternion has no formula.
+    /// Note ACP-100 (open): Estimated quaternion has no formula.
     pub estimated_q1: i16,
     /// Estimated q2 (bits 160 to 175): -32768 to 32767.
     ///
-    /// Erratum ACP-100 (open): Estimated quaternion has no formula.
+    /// Note ACP-100 (open): Estimated quaternion has no formula.
     pub estimated_q2: i16,
     /// Estimated q3 (bits 176 to 191): -32768 to 32767.
     ///
-    /// Erratum ACP-100 (open): Estimated quaternion has no formula.
+    /// Note ACP-100 (open): Estimated quaternion has no formula.
     pub estimated_q3: i16,
     /// Estimated X Angular Rate (bits 192 to 207): raw, -32768 to 32767; physical `raw*0.01`,
     /// -327.68 to 327.67 deg/s.
@@ -248,29 +248,29 @@ pub struct AdcsState {
     /// Longitude (bits 352 to 367): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
     /// deg.
     ///
-    /// Erratum ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
+    /// Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
     pub longitude: i16,
     /// Altitude (bits 368 to 383): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
     ///
-    /// Erratum ACP-067 (open): Position and altitude do not reach equally far.
+    /// Note ACP-067 (open): Position and altitude do not reach equally far.
     pub altitude: u16,
     /// ECEF Position X (bits 384 to 399): -32768 to 32767.
     ///
     /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
-    /// Erratum ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_x: i16,
     /// ECEF Position Y (bits 400 to 415): -32768 to 32767.
     ///
     /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
-    /// Erratum ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_y: i16,
     /// ECEF Position Z (bits 416 to 431): -32768 to 32767.
     ///
     /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
-    /// Erratum ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_z: i16,
 }
 
@@ -917,6 +917,7 @@ const ALTITUDE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for AdcsState {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 190;
 
     #[inline]

@@ -9,9 +9,9 @@ use crate::support::{put, take, Coded, Error, Scale};
 ///
 /// What is hard-coded: versions, ratings, calibration and pins.
 ///
-/// Erratum ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits.
 ///
-/// Erratum ACP-170 (open): System configuration is hard-coded and can be set.
+/// Note ACP-170 (open): System configuration is hard-coded and can be set.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -22,19 +22,19 @@ pub struct AdcsSystemConfiguration {
     pub special_control_selection: Coded<enums::SpecialConSelect>,
     /// CubeControl Signal Version (bits 8 to 15): 0 to 255.
     ///
-    /// Erratum ACP-171 (open): Versions of the units: format of the number.
+    /// Note ACP-171 (open): Versions of the units: format of the number.
     pub cubecontrol_signal_version: u8,
     /// CubeControl Motor Version (bits 16 to 23): 0 to 255.
     ///
-    /// Erratum ACP-171 (open): Versions of the units: format of the number.
+    /// Note ACP-171 (open): Versions of the units: format of the number.
     pub cubecontrol_motor_version: u8,
     /// CubeSense1 Version (bits 24 to 31): 0 to 255.
     ///
-    /// Erratum ACP-171 (open): Versions of the units: format of the number.
+    /// Note ACP-171 (open): Versions of the units: format of the number.
     pub cubesense1_version: u8,
     /// CubeSense2 Version (bits 32 to 39): 0 to 255.
     ///
-    /// Erratum ACP-171 (open): Versions of the units: format of the number.
+    /// Note ACP-171 (open): Versions of the units: format of the number.
     pub cubesense2_version: u8,
     /// CubeSense1 Camera Type (bits 40 to 43).
     pub cubesense1_camera_type: Coded<enums::CsCamType>,
@@ -42,7 +42,7 @@ pub struct AdcsSystemConfiguration {
     pub cubesense2_camera_type: Coded<enums::CsCamType>,
     /// CubeStar Version (bits 48 to 55): 0 to 255.
     ///
-    /// Erratum ACP-171 (open): Versions of the units: format of the number.
+    /// Note ACP-171 (open): Versions of the units: format of the number.
     pub cubestar_version: u8,
     /// GPS Type (bits 56 to 59).
     pub gps_type: Coded<enums::GpsSelect>,
@@ -66,151 +66,151 @@ pub struct AdcsSystemConfiguration {
     pub magnetorquer_maximum_on_time: f32,
     /// RW-X Maximum Torque (bits 224 to 255): 32-bit float, in N.m.
     ///
-    /// Erratum ACP-173 (certain): N.m and Nms.
+    /// Note ACP-173 (certain): N.m and Nms.
     pub rw_x_maximum_torque: f32,
     /// RW-Y Maximum Torque (bits 256 to 287): 32-bit float, in N.m.
     ///
-    /// Erratum ACP-173 (certain): N.m and Nms.
+    /// Note ACP-173 (certain): N.m and Nms.
     pub rw_y_maximum_torque: f32,
     /// RW-Z Maximum Torque (bits 288 to 319): 32-bit float, in N.m.
     ///
-    /// Erratum ACP-173 (certain): N.m and Nms.
+    /// Note ACP-173 (certain): N.m and Nms.
     pub rw_z_maximum_torque: f32,
     /// RW-X Maximum Momentum (bits 320 to 351): 32-bit float, in Nms.
     ///
-    /// Erratum ACP-173 (certain): N.m and Nms.
+    /// Note ACP-173 (certain): N.m and Nms.
     pub rw_x_maximum_momentum: f32,
     /// RW-Y Maximum Momentum (bits 352 to 383): 32-bit float, in Nms.
     ///
-    /// Erratum ACP-173 (certain): N.m and Nms.
+    /// Note ACP-173 (certain): N.m and Nms.
     pub rw_y_maximum_momentum: f32,
     /// RW-Z Maximum Momentum (bits 384 to 415): 32-bit float, in Nms.
     ///
-    /// Erratum ACP-173 (certain): N.m and Nms.
+    /// Note ACP-173 (certain): N.m and Nms.
     pub rw_z_maximum_momentum: f32,
     /// RW-X Inertia (bits 416 to 447): 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     ///
-    /// Erratum ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
     pub rw_x_inertia: f32,
     /// RW-Y Inertia (bits 448 to 479): 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     ///
-    /// Erratum ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
     pub rw_y_inertia: f32,
     /// RW-Z Inertia (bits 480 to 511): 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     ///
-    /// Erratum ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
     pub rw_z_inertia: f32,
     /// RW Torque Increment (bits 512 to 543): 32-bit float, in N.m.
     pub rw_torque_increment: f32,
     /// Primary MTM X-Bias d1 (bits 544 to 575): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_x_bias_d1: f32,
     /// Primary MTM Y-Bias d1 (bits 576 to 607): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_y_bias_d1: f32,
     /// Primary MTM Z-Bias d1 (bits 608 to 639): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_z_bias_d1: f32,
     /// Primary MTM X-Bias d2 (bits 640 to 671): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_x_bias_d2: f32,
     /// Primary MTM Y-Bias d2 (bits 672 to 703): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_y_bias_d2: f32,
     /// Primary MTM Z-Bias d2 (bits 704 to 735): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_z_bias_d2: f32,
     /// Primary MTM X-Sens s1 (bits 736 to 767): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_x_sens_s1: f32,
     /// Primary MTM Y-Sens s1 (bits 768 to 799): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_y_sens_s1: f32,
     /// Primary MTM Z-Sens s1 (bits 800 to 831): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_z_sens_s1: f32,
     /// Primary MTM X-Sens s2 (bits 832 to 863): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_x_sens_s2: f32,
     /// Primary MTM Y-Sens s2 (bits 864 to 895): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_y_sens_s2: f32,
     /// Primary MTM Z-Sens s2 (bits 896 to 927): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_z_sens_s2: f32,
     /// Redundant MTM X-Bias d1 (bits 928 to 959): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_x_bias_d1: f32,
     /// Redundant MTM Y-Bias d1 (bits 960 to 991): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_y_bias_d1: f32,
     /// Redundant MTM Z-Bias d1 (bits 992 to 1023): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_z_bias_d1: f32,
     /// Redundant MTM X-Bias d2 (bits 1024 to 1055): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_x_bias_d2: f32,
     /// Redundant MTM Y-Bias d2 (bits 1056 to 1087): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_y_bias_d2: f32,
     /// Redundant MTM Z-Bias d2 (bits 1088 to 1119): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_z_bias_d2: f32,
     /// Redundant MTM X-Sens s1 (bits 1120 to 1151): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_x_sens_s1: f32,
     /// Redundant MTM Y-Sens s1 (bits 1152 to 1183): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_y_sens_s1: f32,
     /// Redundant MTM Z-Sens s1 (bits 1184 to 1215): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_z_sens_s1: f32,
     /// Redundant MTM X-Sens s2 (bits 1216 to 1247): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_x_sens_s2: f32,
     /// Redundant MTM Y-Sens s2 (bits 1248 to 1279): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_y_sens_s2: f32,
     /// Redundant MTM Z-Sens s2 (bits 1280 to 1311): 32-bit float.
     ///
-    /// Erratum ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
+    /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_z_sens_s2: f32,
     /// CC Signal Enable Port (bits 1312 to 1315).
     ///
-    /// Erratum ACP-175 (likely): CC is not explained.
+    /// Note ACP-175 (likely): CC is not explained.
     pub cc_signal_enable_port: Coded<enums::GpioPort>,
     /// CC Signal Enable Pin (bits 1316 to 1319).
     ///
-    /// Erratum ACP-175 (likely): CC is not explained.
+    /// Note ACP-175 (likely): CC is not explained.
     pub cc_signal_enable_pin: Coded<enums::GpioPortPin>,
     /// CC Motor Enable Port (bits 1320 to 1323).
     pub cc_motor_enable_port: Coded<enums::GpioPort>,
@@ -218,11 +218,11 @@ pub struct AdcsSystemConfiguration {
     pub cc_motor_enable_pin: Coded<enums::GpioPortPin>,
     /// CC Common Enable Port (bits 1328 to 1331).
     ///
-    /// Erratum ACP-175 (likely): CC is not explained.
+    /// Note ACP-175 (likely): CC is not explained.
     pub cc_common_enable_port: Coded<enums::GpioPort>,
     /// CC Common Enable Pin (bits 1332 to 1335).
     ///
-    /// Erratum ACP-175 (likely): CC is not explained.
+    /// Note ACP-175 (likely): CC is not explained.
     pub cc_common_enable_pin: Coded<enums::GpioPortPin>,
     /// CubeSense1 Enable Port (bits 1336 to 1339).
     pub cubesense1_enable_port: Coded<enums::GpioPort>,
@@ -684,6 +684,7 @@ const CUBEWHEEL3_ENABLE_PIN: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for AdcsSystemConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 30;
 
     #[inline]
@@ -693,6 +694,7 @@ impl crate::wire::Telecommand for AdcsSystemConfiguration {
 }
 
 impl crate::wire::Telemetry for AdcsSystemConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 225;
 
     #[inline]

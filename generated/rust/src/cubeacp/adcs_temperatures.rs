@@ -13,21 +13,21 @@ use crate::support::{put, take, Error, Scale};
 pub struct AdcsTemperatures {
     /// MCU Temperature (bits 0 to 15): -32768 to 32767 C.
     ///
-    /// Erratum ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
-    /// Erratum ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): Temperatures have three scales.
     pub mcu_temperature: i16,
     /// Magnetometer Temperature (bits 16 to 31): raw, -32768 to 32767; physical `raw/10.0`, -3276.8
     /// to 3276.7 C.
     ///
-    /// Erratum ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb.
     pub magnetometer_temperature: i16,
     /// Redundant Magnetometer Temperature (bits 32 to 47): raw, -32768 to 32767; physical
     /// `raw/10.0`, -3276.8 to 3276.7 C.
     ///
-    /// Erratum ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
-    /// Erratum ACP-086 (certain): ADCS Temperatures: the redundant magnetometer is left out of the
+    /// Note ACP-086 (certain): ADCS Temperatures: the redundant magnetometer is left out of the
     /// description.
     pub redundant_magnetometer_temperature: i16,
 }
@@ -128,6 +128,7 @@ const REDUNDANT_MAGNETOMETER_TEMPERATURE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for AdcsTemperatures {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 174;
 
     #[inline]

@@ -12,17 +12,17 @@ pub struct AngularRateCovariance {
     /// X Angular Rate Covariance (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Erratum ACP-077 (open): Angular rate covariance: unit and sign.
+    /// Note ACP-077 (open): Angular rate covariance: unit and sign.
     pub x_angular_rate_covariance: i16,
     /// Y Angular Rate Covariance (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Erratum ACP-077 (open): Angular rate covariance: unit and sign.
+    /// Note ACP-077 (open): Angular rate covariance: unit and sign.
     pub y_angular_rate_covariance: i16,
     /// Z Angular Rate Covariance (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Erratum ACP-077 (open): Angular rate covariance: unit and sign.
+    /// Note ACP-077 (open): Angular rate covariance: unit and sign.
     pub z_angular_rate_covariance: i16,
 }
 
@@ -146,6 +146,7 @@ const Z_ANGULAR_RATE_COVARIANCE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for AngularRateCovariance {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 165;
 
     #[inline]

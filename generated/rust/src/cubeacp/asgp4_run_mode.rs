@@ -7,14 +7,14 @@ use crate::support::{Coded, Error};
 
 /// ASGP4 Run Mode: telecommand 31, 1 byte. Table 86.
 ///
-/// Erratum ACP-046 (likely): Telecommand 31 has the id of the escape byte.
+/// Note ACP-046 (likely): Telecommand 31 has the id of the escape byte.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Asgp4RunMode {
     /// ASGP4 Mode (bits 0 to 7).
     ///
-    /// Erratum ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
     pub asgp4_mode: Coded<enums::Asgp4ModeSelect>,
 }
 
@@ -59,6 +59,7 @@ impl Asgp4RunMode {
 }
 
 impl crate::wire::Telecommand for Asgp4RunMode {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 31;
 
     #[inline]

@@ -20,63 +20,63 @@ pub struct Asgp4Tles {
     pub asgp4_error: Coded<enums::AsgpError>,
     /// ASGP4 Epoch (bits 8 to 39): 32-bit float.
     ///
-    /// Erratum ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): ASGP4 elements have no units.
     ///
-    /// Erratum ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_epoch: f32,
     /// ASGP4 inclination (bits 40 to 71): 32-bit float.
     ///
-    /// Erratum ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): ASGP4 elements have no units.
     ///
-    /// Erratum ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_inclination: f32,
     /// ASGP4 RAAN (bits 72 to 103): 32-bit float.
     ///
     /// Right ascension of the ascending node.
     ///
-    /// Erratum ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): ASGP4 elements have no units.
     ///
-    /// Erratum ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_raan: f32,
     /// ASGP4 ECC (bits 104 to 135): 32-bit float.
     ///
     /// Eccentricity.
     ///
-    /// Erratum ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): ASGP4 elements have no units.
     ///
-    /// Erratum ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_ecc: f32,
     /// ASGP4 AOP (bits 136 to 167): 32-bit float.
     ///
     /// Argument of perigee.
     ///
-    /// Erratum ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): ASGP4 elements have no units.
     ///
-    /// Erratum ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_aop: f32,
     /// ASGP4 MA (bits 168 to 199): 32-bit float.
     ///
     /// Mean anomaly.
     ///
-    /// Erratum ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): ASGP4 elements have no units.
     ///
-    /// Erratum ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_ma: f32,
     /// ASGP4 MM (bits 200 to 231): 32-bit float.
     ///
     /// Mean motion.
     ///
-    /// Erratum ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): ASGP4 elements have no units.
     ///
-    /// Erratum ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_mm: f32,
     /// ASGP4 Bstar (bits 232 to 263): 32-bit float.
     ///
     /// Drag term.
     ///
-    /// Erratum ACP-121 (open): ASGP4 elements have no units.
+    /// Note ACP-121 (open): ASGP4 elements have no units.
     ///
-    /// Erratum ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
+    /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_bstar: f32,
 }
 
@@ -161,6 +161,7 @@ const ASGP4_ERROR: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for Asgp4Tles {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 228;
 
     #[inline]

@@ -49,6 +49,7 @@ impl Asgp4Trigger {
 }
 
 impl crate::wire::Telecommand for Asgp4Trigger {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 32;
 
     #[inline]

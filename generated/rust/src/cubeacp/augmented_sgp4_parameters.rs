@@ -16,65 +16,51 @@ pub struct AugmentedSgp4Parameters {
     ///
     /// Of the filter of the inclination.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
+    /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
     ///
-    /// Erratum ACP-181 (certain): Augmented SGP4: names are cut short.
-    ///
-    /// Erratum ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
     pub incl_coefficient: u16,
     /// Raan coefficient (bits 16 to 31): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the RAAN.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
     pub raan_coefficient: u16,
     /// Ecc coefficient (bits 32 to 47): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the eccentricity.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
+    /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
     ///
-    /// Erratum ACP-181 (certain): Augmented SGP4: names are cut short.
-    ///
-    /// Erratum ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
     pub ecc_coefficient: u16,
     /// Aop coefficient (bits 48 to 63): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the argument of perigee.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
+    /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
     ///
-    /// Erratum ACP-181 (certain): Augmented SGP4: names are cut short.
-    ///
-    /// Erratum ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
     pub aop_coefficient: u16,
     /// Time coefficient (bits 64 to 79): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the time.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
     pub time_coefficient: u16,
     /// Pos coefficient (bits 80 to 95): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the position.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
+    /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
     ///
-    /// Erratum ACP-181 (certain): Augmented SGP4: names are cut short.
-    ///
-    /// Erratum ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
     pub pos_coefficient: u16,
     /// Maximum position error (bits 96 to 103): raw, 0 to 255; physical `raw*0.1`, 0 to 25.5.
     ///
     /// ASGP4 stops working beyond it.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-179 (open): Augmented SGP4: limits have no units.
+    /// Note ACP-179 (open): Augmented SGP4: limits have no units.
     pub maximum_position_error: u8,
     /// ASGP4 filter (bits 104 to 111).
     pub asgp4_filter: Coded<enums::AsgpFilter>,
@@ -83,18 +69,14 @@ pub struct AugmentedSgp4Parameters {
     ///
     /// Polar coefficient.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-180 (open): Augmented SGP4: polar coefficients have no unit.
+    /// Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit.
     pub xp_coefficient: i32,
     /// yp coefficient (bits 144 to 175): raw, -2147483648 to 2147483647; physical `raw*0.0000001`,
     /// -214.7483648 to 214.7483647.
     ///
     /// Polar coefficient.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-180 (open): Augmented SGP4: polar coefficients have no unit.
+    /// Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit.
     pub yp_coefficient: i32,
     /// GPS roll over (bits 176 to 183): 0 to 255.
     pub gps_roll_over: u8,
@@ -102,43 +84,35 @@ pub struct AugmentedSgp4Parameters {
     ///
     /// Largest standard deviation with which ASGP4 works.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
+    /// Note ACP-179 (open): Augmented SGP4: limits have no units.
     ///
-    /// Erratum ACP-179 (open): Augmented SGP4: limits have no units.
-    ///
-    /// Erratum ACP-181 (certain): Augmented SGP4: names are cut short.
+    /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
     pub position_sd: u8,
     /// Velocity sd (bits 192 to 199): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Largest standard deviation with which ASGP4 works.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-179 (open): Augmented SGP4: limits have no units.
+    /// Note ACP-179 (open): Augmented SGP4: limits have no units.
     pub velocity_sd: u8,
     /// Min. satellites (bits 200 to 207): 0 to 255.
     ///
     /// Fewest satellites with which ASGP4 works.
     ///
-    /// Erratum ACP-181 (certain): Augmented SGP4: names are cut short.
+    /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
     pub min_satellites: u8,
     /// Time gain (bits 208 to 215): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Of the compensation of the time offset.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
     pub time_gain: u8,
     /// Max. lag (bits 216 to 223): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Largest lag of the time stamps that are still used.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
+    /// Note ACP-179 (open): Augmented SGP4: limits have no units.
     ///
-    /// Erratum ACP-179 (open): Augmented SGP4: limits have no units.
-    ///
-    /// Erratum ACP-181 (certain): Augmented SGP4: names are cut short.
+    /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
     pub max_lag: u8,
     /// Min. samples (bits 224 to 239): 0 to 65535.
     ///
@@ -546,6 +520,7 @@ const MAX_LAG: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for AugmentedSgp4Parameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 28;
 
     #[inline]
@@ -555,6 +530,7 @@ impl crate::wire::Telecommand for AugmentedSgp4Parameters {
 }
 
 impl crate::wire::Telemetry for AugmentedSgp4Parameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 227;
 
     #[inline]

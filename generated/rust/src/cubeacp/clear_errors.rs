@@ -8,20 +8,20 @@ use crate::support::Error;
 ///
 /// Clears the latched error flags that are selected.
 ///
-/// Erratum ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct ClearErrors {
     /// ADCS Error Flags (bit 0).
     ///
-    /// Erratum ACP-021 (open): Clear Errors: which flags.
+    /// Note ACP-021 (open): Clear Errors: which flags.
     pub adcs_error_flags: bool,
     /// HK Error Flags (bit 1).
     ///
     /// Housekeeping errors.
     ///
-    /// Erratum ACP-021 (open): Clear Errors: which flags.
+    /// Note ACP-021 (open): Clear Errors: which flags.
     pub hk_error_flags: bool,
 }
 
@@ -68,6 +68,7 @@ impl ClearErrors {
 }
 
 impl crate::wire::Telecommand for ClearErrors {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 12;
 
     #[inline]

@@ -6,25 +6,19 @@ use crate::support::{put, take, Error, Scale};
 
 /// Commanded Attitude Angles: configuration, set by 15 and got by 199, 6 bytes. Table 186.
 ///
-/// Erratum ACP-066 (open): Attitude angles: order of rotation and frame.
+/// Note ACP-066 (open): Attitude angles: order of rotation and frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CommandedAttitudeAngles {
     /// Commanded Roll Angle (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub commanded_roll_angle: i16,
     /// Commanded Pitch Angle (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub commanded_pitch_angle: i16,
     /// Commanded Yaw Angle (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub commanded_yaw_angle: i16,
 }
 
@@ -150,6 +144,7 @@ const COMMANDED_YAW_ANGLE: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for CommandedAttitudeAngles {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 15;
 
     #[inline]
@@ -159,6 +154,7 @@ impl crate::wire::Telecommand for CommandedAttitudeAngles {
 }
 
 impl crate::wire::Telemetry for CommandedAttitudeAngles {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 199;
 
     #[inline]

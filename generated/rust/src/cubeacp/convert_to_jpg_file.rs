@@ -13,15 +13,15 @@ use crate::support::Error;
 pub struct ConvertToJpgFile {
     /// Source File Counter (bits 0 to 7): 0 to 255.
     ///
-    /// Erratum ACP-052 (open): Convert to JPG: which file.
+    /// Note ACP-052 (open): Convert to JPG: which file.
     pub source_file_counter: u8,
     /// Quality Factor (bits 8 to 15): 0 to 255.
     ///
-    /// Erratum ACP-053 (open): Convert to JPG: quality and white balance have no scale.
+    /// Note ACP-053 (open): Convert to JPG: quality and white balance have no scale.
     pub quality_factor: u8,
     /// White Balance (bits 16 to 23): 0 to 255.
     ///
-    /// Erratum ACP-053 (open): Convert to JPG: quality and white balance have no scale.
+    /// Note ACP-053 (open): Convert to JPG: quality and white balance have no scale.
     pub white_balance: u8,
 }
 
@@ -70,6 +70,7 @@ impl ConvertToJpgFile {
 }
 
 impl crate::wire::Telecommand for ConvertToJpgFile {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 57;
 
     #[inline]

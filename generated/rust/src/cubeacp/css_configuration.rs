@@ -33,48 +33,28 @@ pub struct CssConfiguration {
     /// CSS10 Configuration (bits 72 to 79).
     pub css10_configuration: Coded<enums::AxisSelect>,
     /// CSS1 Relative Scale (bits 80 to 87): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css1_relative_scale: u8,
     /// CSS2 Relative Scale (bits 88 to 95): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css2_relative_scale: u8,
     /// CSS3 Relative Scale (bits 96 to 103): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css3_relative_scale: u8,
     /// CSS4 Relative Scale (bits 104 to 111): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css4_relative_scale: u8,
     /// CSS5 Relative Scale (bits 112 to 119): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css5_relative_scale: u8,
     /// CSS6 Relative Scale (bits 120 to 127): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css6_relative_scale: u8,
     /// CSS7 Relative Scale (bits 128 to 135): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css7_relative_scale: u8,
     /// CSS8 Relative Scale (bits 136 to 143): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css8_relative_scale: u8,
     /// CSS9 Relative Scale (bits 144 to 151): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css9_relative_scale: u8,
     /// CSS10 Relative Scale (bits 152 to 159): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
-    ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
     pub css10_relative_scale: u8,
     /// CSS Threshold (bits 160 to 167): 0 to 255.
     ///
-    /// Erratum ACP-133 (open): CSS threshold has no description.
+    /// Note ACP-133 (open): CSS threshold has no description.
     pub css_threshold: u8,
 }
 
@@ -411,6 +391,7 @@ const CSS10_RELATIVE_SCALE: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for CssConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 24;
 
     #[inline]
@@ -420,6 +401,7 @@ impl crate::wire::Telecommand for CssConfiguration {
 }
 
 impl crate::wire::Telemetry for CssConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 139;
 
     #[inline]

@@ -8,7 +8,7 @@ use crate::support::{flags, Error};
 ///
 /// Errors in loading settings from flash and in using the SD card.
 ///
-/// Erratum ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -17,19 +17,19 @@ pub struct CubeacpState {
     ///
     /// Reading it from flash failed.
     ///
-    /// Erratum ACP-054 (open): Two saves for three stored sets.
+    /// Note ACP-054 (open): Two saves for three stored sets.
     pub adcs_config_load_error: bool,
     /// Orbit Parameter Load Error (bit 1).
     ///
     /// Reading them from flash failed.
     ///
-    /// Erratum ACP-054 (open): Two saves for three stored sets.
+    /// Note ACP-054 (open): Two saves for three stored sets.
     pub orbit_parameter_load_error: bool,
     /// System Configuration Load Error (bit 2).
     ///
     /// Reading it from flash failed.
     ///
-    /// Erratum ACP-054 (open): Two saves for three stored sets.
+    /// Note ACP-054 (open): Two saves for three stored sets.
     pub system_configuration_load_error: bool,
     /// SD card initialisation error (bit 3).
     pub sd_card_initialisation_error: bool,
@@ -91,6 +91,7 @@ impl CubeacpState {
 }
 
 impl crate::wire::Telemetry for CubeacpState {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 135;
 
     #[inline]

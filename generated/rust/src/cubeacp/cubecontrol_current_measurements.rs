@@ -140,6 +140,7 @@ const CUBECONTROL_VBAT_CURRENT: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for CubecontrolCurrentMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 172;
 
     #[inline]

@@ -6,7 +6,7 @@ use crate::support::{put, take, Error, Scale};
 
 /// CubeSense1 Current Measurements: telemetry 171, 4 bytes. Table 129.
 ///
-/// Erratum ACP-194 (open): Size of a log file follows from 6 bytes a frame.
+/// Note ACP-194 (open): Size of a log file follows from 6 bytes a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -111,6 +111,7 @@ const CUBESENSE1_CAM_SRAM_CURRENT: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for Cubesense1CurrentMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 171;
 
     #[inline]

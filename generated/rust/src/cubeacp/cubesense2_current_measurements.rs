@@ -6,9 +6,9 @@ use crate::support::{put, take, Error, Scale};
 
 /// CubeSense2 Current Measurements: telemetry 232, 4 bytes. Table 175.
 ///
-/// Erratum ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
+/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
 ///
-/// Erratum ACP-194 (open): Size of a log file follows from 6 bytes a frame.
+/// Note ACP-194 (open): Size of a log file follows from 6 bytes a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -113,6 +113,7 @@ const CUBESENSE2_CAM_SRAM_CURRENT: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for Cubesense2CurrentMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 232;
 
     #[inline]

@@ -6,7 +6,7 @@ use crate::support::{put, take, Error, Scale};
 
 /// CubeSense Configuration: configuration, set by 25 and got by 203, 112 bytes. Table 189.
 ///
-/// Erratum ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -14,27 +14,21 @@ pub struct CubesenseConfiguration {
     /// Cam1 Sensor Mounting Transform Alpha Angle (bits 0 to 15): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub cam1_sensor_mounting_transform_alpha_angle: i16,
     /// Cam1 Sensor Mounting Transform Beta Angle (bits 16 to 31): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub cam1_sensor_mounting_transform_beta_angle: i16,
     /// Cam1 Sensor Mounting Transform Gamma Angle (bits 32 to 47): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub cam1_sensor_mounting_transform_gamma_angle: i16,
     /// Cam1 detection threshold (bits 48 to 55): 0 to 255.
     ///
-    /// Erratum ACP-150 (certain): Cam1 detection threshold has no description in one table.
+    /// Note ACP-150 (certain): Cam1 detection threshold has no description in one table.
     pub cam1_detection_threshold: u8,
     /// Cam1 sensor auto adjust mode (bit 56).
     pub cam1_sensor_auto_adjust_mode: bool,
@@ -42,46 +36,36 @@ pub struct CubesenseConfiguration {
     ///
     /// Register value.
     ///
-    /// Erratum ACP-145 (open): Exposure and gain are register values.
+    /// Note ACP-145 (open): Exposure and gain are register values.
     pub cam1_sensor_exposure_time: u16,
     /// Cam1 Boresight X (bits 80 to 95): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels.
     ///
     /// Where the boresight meets the image.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
+    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     ///
-    /// Erratum ACP-149 (open): Boresight ends at 655 pixels.
-    ///
-    /// Erratum ACP-154 (certain): Cam1 and Cam 1.
+    /// Note ACP-154 (certain): Cam1 and Cam 1.
     pub cam1_boresight_x: u16,
     /// Cam1 Boresight Y (bits 96 to 111): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels.
     ///
     /// Where the boresight meets the image.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-149 (open): Boresight ends at 655 pixels.
+    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam1_boresight_y: u16,
     /// Cam2 Sensor Mounting Transform Alpha Angle (bits 112 to 127): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub cam2_sensor_mounting_transform_alpha_angle: i16,
     /// Cam2 Sensor Mounting Transform Beta Angle (bits 128 to 143): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub cam2_sensor_mounting_transform_beta_angle: i16,
     /// Cam2 Sensor Mounting Transform Gamma Angle (bits 144 to 159): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub cam2_sensor_mounting_transform_gamma_angle: i16,
     /// Cam2 detection threshold (bits 160 to 167): 0 to 255.
     pub cam2_detection_threshold: u8,
@@ -91,27 +75,23 @@ pub struct CubesenseConfiguration {
     ///
     /// Register value.
     ///
-    /// Erratum ACP-145 (open): Exposure and gain are register values.
+    /// Note ACP-145 (open): Exposure and gain are register values.
     pub cam2_sensor_exposure_time: u16,
     /// Cam2 Boresight X (bits 192 to 207): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35
     /// pixels.
     ///
     /// Where the boresight meets the image.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
+    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     ///
-    /// Erratum ACP-149 (open): Boresight ends at 655 pixels.
-    ///
-    /// Erratum ACP-154 (certain): Cam1 and Cam 1.
+    /// Note ACP-154 (certain): Cam1 and Cam 1.
     pub cam2_boresight_x: u16,
     /// Cam2 Boresight Y (bits 208 to 223): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35
     /// pixels.
     ///
     /// Where the boresight meets the image.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-149 (open): Boresight ends at 655 pixels.
+    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam2_boresight_y: u16,
     /// Nadir Max Deviation Percentage (bits 224 to 231): 0 to 255 %.
     ///
@@ -123,7 +103,7 @@ pub struct CubesenseConfiguration {
     ///
     /// Most edges that may deviate further. Above 50 the test is off.
     ///
-    /// Erratum ACP-152 (open): More than 50 bad edges disable the check.
+    /// Note ACP-152 (open): More than 50 bad edges disable the check.
     pub nadir_max_bad_edges: u8,
     /// Nadir Max Radius (bits 240 to 247): 0 to 255 deg.
     ///
@@ -135,167 +115,167 @@ pub struct CubesenseConfiguration {
     pub nadir_min_radius: u8,
     /// Cam 1 Minimum X of area 1 (bits 256 to 271): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     ///
-    /// Erratum ACP-154 (certain): Cam1 and Cam 1.
+    /// Note ACP-154 (certain): Cam1 and Cam 1.
     pub cam_1_minimum_x_of_area_1: u16,
     /// Cam 1 Maximum X of area 1 (bits 272 to 287): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_x_of_area_1: u16,
     /// Cam 1 Minimum Y of area 1 (bits 288 to 303): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_y_of_area_1: u16,
     /// Cam 1 Maximum Y of area 1 (bits 304 to 319): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_y_of_area_1: u16,
     /// Cam 1 Minimum X of area 2 (bits 320 to 335): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_x_of_area_2: u16,
     /// Cam 1 Maximum X of area 2 (bits 336 to 351): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_x_of_area_2: u16,
     /// Cam 1 Minimum Y of area 2 (bits 352 to 367): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_y_of_area_2: u16,
     /// Cam 1 Maximum Y of area 2 (bits 368 to 383): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_y_of_area_2: u16,
     /// Cam 1 Minimum X of area 3 (bits 384 to 399): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_x_of_area_3: u16,
     /// Cam 1 Maximum X of area 3 (bits 400 to 415): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_x_of_area_3: u16,
     /// Cam 1 Minimum Y of area 3 (bits 416 to 431): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_y_of_area_3: u16,
     /// Cam 1 Maximum Y of area 3 (bits 432 to 447): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_y_of_area_3: u16,
     /// Cam 1 Minimum X of area 4 (bits 448 to 463): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_x_of_area_4: u16,
     /// Cam 1 Maximum X of area 4 (bits 464 to 479): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_x_of_area_4: u16,
     /// Cam 1 Minimum Y of area 4 (bits 480 to 495): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_y_of_area_4: u16,
     /// Cam 1 Maximum Y of area 4 (bits 496 to 511): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_y_of_area_4: u16,
     /// Cam 1 Minimum X of area 5 (bits 512 to 527): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_x_of_area_5: u16,
     /// Cam 1 Maximum X of area 5 (bits 528 to 543): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_x_of_area_5: u16,
     /// Cam 1 Minimum Y of area 5 (bits 544 to 559): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_y_of_area_5: u16,
     /// Cam 1 Maximum Y of area 5 (bits 560 to 575): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_y_of_area_5: u16,
     /// Cam 2 Minimum X of area 1 (bits 576 to 591): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     ///
-    /// Erratum ACP-154 (certain): Cam1 and Cam 1.
+    /// Note ACP-154 (certain): Cam1 and Cam 1.
     pub cam_2_minimum_x_of_area_1: u16,
     /// Cam 2 Maximum X of area 1 (bits 592 to 607): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_x_of_area_1: u16,
     /// Cam 2 Minimum Y of area 1 (bits 608 to 623): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_y_of_area_1: u16,
     /// Cam 2 Maximum Y of area 1 (bits 624 to 639): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_y_of_area_1: u16,
     /// Cam 2 Minimum X of area 2 (bits 640 to 655): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_x_of_area_2: u16,
     /// Cam 2 Maximum X of area 2 (bits 656 to 671): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_x_of_area_2: u16,
     /// Cam 2 Minimum Y of area 2 (bits 672 to 687): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_y_of_area_2: u16,
     /// Cam 2 Maximum Y of area 2 (bits 688 to 703): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_y_of_area_2: u16,
     /// Cam 2 Minimum X of area 3 (bits 704 to 719): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_x_of_area_3: u16,
     /// Cam 2 Maximum X of area 3 (bits 720 to 735): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_x_of_area_3: u16,
     /// Cam 2 Minimum Y of area 3 (bits 736 to 751): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_y_of_area_3: u16,
     /// Cam 2 Maximum Y of area 3 (bits 752 to 767): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_y_of_area_3: u16,
     /// Cam 2 Minimum X of area 4 (bits 768 to 783): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_x_of_area_4: u16,
     /// Cam 2 Maximum X of area 4 (bits 784 to 799): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_x_of_area_4: u16,
     /// Cam 2 Minimum Y of area 4 (bits 800 to 815): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_y_of_area_4: u16,
     /// Cam 2 Maximum Y of area 4 (bits 816 to 831): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_y_of_area_4: u16,
     /// Cam 2 Minimum X of area 5 (bits 832 to 847): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_x_of_area_5: u16,
     /// Cam 2 Maximum X of area 5 (bits 848 to 863): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_x_of_area_5: u16,
     /// Cam 2 Minimum Y of area 5 (bits 864 to 879): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_y_of_area_5: u16,
     /// Cam 2 Maximum Y of area 5 (bits 880 to 895): 0 to 65535.
     ///
-    /// Erratum ACP-153 (open): Masked areas: purpose, unit and an unused area.
+    /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_y_of_area_5: u16,
 }
 
@@ -752,6 +732,7 @@ const CAM2_BORESIGHT_Y: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for CubesenseConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 25;
 
     #[inline]
@@ -761,6 +742,7 @@ impl crate::wire::Telecommand for CubesenseConfiguration {
 }
 
 impl crate::wire::Telemetry for CubesenseConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 203;
 
     #[inline]

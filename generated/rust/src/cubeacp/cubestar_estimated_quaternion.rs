@@ -6,7 +6,7 @@ use crate::support::{put, take, Error, Scale};
 
 /// CubeStar Estimated Quaternion: telemetry 230, 6 bytes. Table 173.
 ///
-/// Erratum ACP-075 (open): Quaternions: the fourth component.
+/// Note ACP-075 (open): Quaternions: the fourth component.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -15,19 +15,19 @@ pub struct CubestarEstimatedQuaternion {
     ///
     /// Of the attitude estimated by CubeStar, described as Q1.
     ///
-    /// Erratum ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     pub q0: i16,
     /// Q1 (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q2.
     ///
-    /// Erratum ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     pub q1: i16,
     /// Q2 (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q3.
     ///
-    /// Erratum ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     pub q2: i16,
 }
 
@@ -151,6 +151,7 @@ const Q2: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for CubestarEstimatedQuaternion {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 230;
 
     #[inline]

@@ -13,21 +13,21 @@ pub struct CubestarEstimatedRates {
     ///
     /// Estimated by CubeStar, about its own X axis.
     ///
-    /// Erratum ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): CubeStar rates have no unit.
     pub x_axis_rate: i16,
     /// y-Axis rate (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
     /// Estimated by CubeStar, about its own Y axis.
     ///
-    /// Erratum ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): CubeStar rates have no unit.
     pub y_axis_rate: i16,
     /// z-Axis rate (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
     /// Estimated by CubeStar, about its own Z axis.
     ///
-    /// Erratum ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): CubeStar rates have no unit.
     pub z_axis_rate: i16,
 }
 
@@ -151,6 +151,7 @@ const Z_AXIS_RATE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for CubestarEstimatedRates {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 229;
 
     #[inline]

@@ -9,34 +9,34 @@ use crate::support::{flags, Coded, Error, Scale};
 ///
 /// State of the control processor, frame 1.
 ///
-/// Erratum ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
+/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
 ///
-/// Erratum ACP-057 (certain): ACP stands for two things.
+/// Note ACP-057 (certain): ACP stands for two things.
 ///
-/// Erratum ACP-059 (certain): Current ADCS State and ADCS State.
+/// Note ACP-059 (certain): Current ADCS State and ADCS State.
 ///
-/// Erratum ACP-064 (open): Which flags are latched.
+/// Note ACP-064 (open): Which flags are latched.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CurrentAdcsState {
     /// Attitude Estimation Mode (bits 0 to 3).
     ///
-    /// Erratum ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub attitude_estimation_mode: Coded<enums::EstimModeSelect>,
     /// Control Mode (bits 4 to 7).
     ///
-    /// Erratum ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub control_mode: Coded<enums::ConModeSelect>,
     /// ADCS Run Mode (bits 8 to 9).
     ///
-    /// Erratum ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub adcs_run_mode: Coded<enums::AdcsRunMode>,
     /// ASGP4 Mode (bits 10 to 11).
     ///
-    /// Erratum ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
     ///
-    /// Erratum ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub asgp4_mode: Coded<enums::Asgp4ModeSelect>,
     /// CubeControl Signal Enabled (bit 12).
     pub cubecontrol_signal_enabled: bool,
@@ -54,21 +54,21 @@ pub struct CurrentAdcsState {
     pub cubewheel3_enabled: bool,
     /// CubeStar Enabled (bit 19).
     ///
-    /// Erratum ACP-063 (certain): Star tracker has four spellings.
+    /// Note ACP-063 (certain): Star tracker has four spellings.
     pub cubestar_enabled: bool,
     /// GPS Receiver Enabled (bit 20).
     ///
-    /// Erratum ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): Power switches and enabled flags do not match.
     pub gps_receiver_enabled: bool,
     /// GPS LNA Power Enabled (bit 21).
     ///
     /// Amplifier of the GPS antenna.
     ///
-    /// Erratum ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): Power switches and enabled flags do not match.
     pub gps_lna_power_enabled: bool,
     /// Motor Driver Enabled (bit 22).
     ///
-    /// Erratum ACP-062 (open): Power switches and enabled flags do not match.
+    /// Note ACP-062 (open): Power switches and enabled flags do not match.
     pub motor_driver_enabled: bool,
     /// Sun is Above Local Horizon (bit 23).
     ///
@@ -94,7 +94,7 @@ pub struct CurrentAdcsState {
     ///
     /// About a measured field of 65 uT. Whether above or below is not printed.
     ///
-    /// Erratum ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
+    /// Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
     pub magnetometer_range_error: bool,
     /// Cam1 SRAM Overcurrent Detected (bit 33).
     pub cam1_sram_overcurrent_detected: bool,
@@ -112,7 +112,7 @@ pub struct CurrentAdcsState {
     ///
     /// A detected sun angle was beyond +/-90 deg.
     ///
-    /// Erratum ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
     pub sun_sensor_range_error: bool,
     /// Cam2 SRAM Overcurrent Detected (bit 38).
     pub cam2_sram_overcurrent_detected: bool,
@@ -130,7 +130,7 @@ pub struct CurrentAdcsState {
     ///
     /// A detected nadir angle was beyond +/-60 deg.
     ///
-    /// Erratum ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
     pub nadir_sensor_range_error: bool,
     /// Rate Sensor Range Error (bit 43).
     ///
@@ -148,11 +148,11 @@ pub struct CurrentAdcsState {
     ///
     /// Too few stars were matched.
     ///
-    /// Erratum ACP-063 (certain): Star tracker has four spellings.
+    /// Note ACP-063 (certain): Star tracker has four spellings.
     pub star_tracker_match_error: bool,
     /// Star Tracker Overcurrent Detected (bit 47).
     ///
-    /// Erratum ACP-063 (certain): Star tracker has four spellings.
+    /// Note ACP-063 (certain): Star tracker has four spellings.
     pub star_tracker_overcurrent_detected: bool,
 }
 
@@ -335,6 +335,7 @@ const ASGP4_MODE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for CurrentAdcsState {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 132;
 
     #[inline]

@@ -9,11 +9,11 @@ use crate::support::{flags, Coded, Error, Scale};
 ///
 /// State of the control processor, frame 2.
 ///
-/// Erratum ACP-057 (certain): ACP stands for two things.
-///
-/// Erratum ACP-064 (open): Which flags are latched.
-///
 /// Erratum ACP-120 (open): Current ADCS State 2: 6 bytes announced, 18 bits described.
+///
+/// Note ACP-057 (certain): ACP stands for two things.
+///
+/// Note ACP-064 (open): Which flags are latched.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -22,14 +22,14 @@ pub struct CurrentAdcsState2 {
     ///
     /// A parameter is out of bounds, or the SGP4 propagator could not start from them.
     ///
-    /// Erratum ACP-104 (open): Orbit parameter flag has two reasons.
+    /// Note ACP-104 (open): Orbit parameter flag has two reasons.
     pub orbit_parameters_are_invalid: bool,
     /// Configuration is Invalid (bit 1).
     ///
     /// Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at least one
     /// CSS.
     ///
-    /// Erratum ACP-102 (certain): Configuration flag: is invalid, in invalid.
+    /// Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
     pub configuration_is_invalid: bool,
     /// Control Mode Change is not allowed (bit 2).
     ///
@@ -172,6 +172,7 @@ const CURRENT_MAGNETOMETER_SAMPLING_MODE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for CurrentAdcsState2 {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 224;
 
     #[inline]

@@ -6,7 +6,7 @@ use crate::support::Error;
 
 /// Deploy Magnetometer Boom: telecommand 7, 1 byte. Table 73.
 ///
-/// Erratum ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
+/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -15,7 +15,7 @@ pub struct DeployMagnetometerBoom {
     ///
     /// Of the deployment actuation.
     ///
-    /// Erratum ACP-016 (open): Deployment timeout: range and default.
+    /// Note ACP-016 (open): Deployment timeout: range and default.
     pub timeout: u8,
 }
 
@@ -58,6 +58,7 @@ impl DeployMagnetometerBoom {
 }
 
 impl crate::wire::Telecommand for DeployMagnetometerBoom {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 7;
 
     #[inline]

@@ -13,19 +13,19 @@ pub struct EcefPosition {
     ///
     /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
-    /// Erratum ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_x: i16,
     /// ECEF Position Y (bits 16 to 31): -32768 to 32767.
     ///
     /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
-    /// Erratum ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_y: i16,
     /// ECEF Position Z (bits 32 to 47): -32768 to 32767.
     ///
     /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
-    /// Erratum ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_z: i16,
 }
 
@@ -74,6 +74,7 @@ impl EcefPosition {
 }
 
 impl crate::wire::Telemetry for EcefPosition {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 219;
 
     #[inline]

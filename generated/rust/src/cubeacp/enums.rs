@@ -6,7 +6,7 @@ use crate::support::Enumeration;
 
 /// AdcsRunMode: an enumeration. Table 75.
 ///
-/// Erratum ACP-018 (certain): ADCS Run Mode is a message and an enumeration.
+/// Note ACP-018 (certain): ADCS Run Mode is a message and an enumeration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -16,7 +16,7 @@ pub enum AdcsRunMode {
     ///
     /// The loop does not run.
     ///
-    /// Erratum ACP-019 (certain): Disabled is Off.
+    /// Note ACP-019 (certain): Disabled is Off.
     #[default]
     Off,
     /// Enabled (1).
@@ -29,7 +29,7 @@ pub enum AdcsRunMode {
     Triggered,
     /// Simulation (3).
     ///
-    /// Erratum ACP-032 (open): Simulated data are accepted while triggered, not while simulating.
+    /// Note ACP-032 (open): Simulated data are accepted while triggered, not while simulating.
     Simulation,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -93,7 +93,7 @@ impl From<AdcsRunMode> for u8 {
 
 /// ConModeSelect: an enumeration. Table 78.
 ///
-/// Erratum ACP-024 (open): Control modes that are named and not listed.
+/// Note ACP-024 (open): Control modes that are named and not listed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -101,74 +101,74 @@ impl From<AdcsRunMode> for u8 {
 pub enum ConModeSelect {
     /// No control (0).
     ///
-    /// Erratum ACP-023 (certain): Control mode None does not exist.
+    /// Note ACP-023 (certain): Control mode None does not exist.
     #[default]
     NoControl,
     /// Detumbling control (1).
     DetumblingControl,
     /// Y-Thomson spin (2).
     ///
-    /// Erratum ACP-028 (certain): Y-Thomson is a spin or a mode.
+    /// Note ACP-028 (certain): Y-Thomson is a spin or a mode.
     YThomsonSpin,
     /// Y-Wheel momentum stabilized - Initial Pitch Acquisition (3).
     ///
-    /// Erratum ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
     YWheelInitialPitchAcquisition,
     /// Y-Wheel momentum stabilized - Steady State (4).
     ///
-    /// Erratum ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
     YWheelSteadyState,
     /// XYZ-Wheel control (5).
     ///
-    /// Erratum ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
     XyzWheelControl,
     /// Rwheel sun tracking control (6).
     ///
-    /// Erratum ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
     RwheelSunTrackingControl,
     /// Rwheel target tracking control (7).
     ///
-    /// Erratum ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
     RwheelTargetTrackingControl,
     /// Very Fast-spin Detumbling control (8).
     ///
     /// At 10 Hz, within CubeControl.
     ///
-    /// Erratum ACP-026 (certain): Control modes 8 and 9 have other names in their descriptions.
+    /// Note ACP-026 (certain): Control modes 8 and 9 have other names in their descriptions.
     VeryFastSpinDetumblingControl,
     /// Fast-spin Detumbling control (9).
     ///
-    /// Erratum ACP-026 (certain): Control modes 8 and 9 have other names in their descriptions.
+    /// Note ACP-026 (certain): Control modes 8 and 9 have other names in their descriptions.
     FastSpinDetumblingControl,
     /// User Specific Control Mode 1 (10).
     ///
     /// User-defined or custom.
     ///
-    /// Erratum ACP-025 (open): Control modes: specific, defined, custom and coded.
+    /// Note ACP-025 (open): Control modes: specific, defined, custom and coded.
     UserSpecificControlMode1,
     /// User Specific Control Mode 2 (11).
     ///
     /// User-defined or custom.
     ///
-    /// Erratum ACP-025 (open): Control modes: specific, defined, custom and coded.
+    /// Note ACP-025 (open): Control modes: specific, defined, custom and coded.
     UserSpecificControlMode2,
     /// Stop R-wheels (12).
     ///
-    /// Erratum ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
     StopRWheels,
     /// User Coded Control Mode (13).
     ///
-    /// Erratum ACP-025 (open): Control modes: specific, defined, custom and coded.
+    /// Note ACP-025 (open): Control modes: specific, defined, custom and coded.
     UserCodedControlMode,
     /// Sun-tracking yaw- or roll-only wheel control mode (14).
     ///
-    /// Erratum ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
     SunTrackingYawOrRollOnly,
     /// Target-tracking yaw-only wheel control Mode (15).
     ///
     /// Turns the selected facet towards a ground target.
     ///
-    /// Erratum ACP-027 (certain): Wheel control modes are written in five ways.
+    /// Note ACP-027 (certain): Wheel control modes are written in five ways.
     TargetTrackingYawOnly,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -279,11 +279,11 @@ pub enum EstimModeSelect {
     NoAttitudeEstimation,
     /// MEMS rate sensing (1).
     ///
-    /// Erratum ACP-029 (certain): Estimation modes have other names in settings.
+    /// Note ACP-029 (certain): Estimation modes have other names in settings.
     MemsRateSensing,
     /// Magnetometer rate filter (2).
     ///
-    /// Erratum ACP-029 (certain): Estimation modes have other names in settings.
+    /// Note ACP-029 (certain): Estimation modes have other names in settings.
     MagnetometerRateFilter,
     /// Magnetometer rate filter with pitch estimation (3).
     MagnetometerRateFilterWithPitchEstimation,
@@ -373,7 +373,7 @@ impl From<EstimModeSelect> for u8 {
 
 /// GpsSolutionStatus: an enumeration. Table 85.
 ///
-/// Erratum ACP-045 (open): One GPS status for different receivers.
+/// Note ACP-045 (open): One GPS status for different receivers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -492,7 +492,7 @@ impl From<GpsSolutionStatus> for u8 {
 
 /// Asgp4ModeSelect: an enumeration. Table 87.
 ///
-/// Erratum ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
+/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -577,9 +577,9 @@ impl From<Asgp4ModeSelect> for u8 {
 ///
 /// MTM is the magnetometer, Signal and Motor are the microcontrollers that sample it.
 ///
-/// Erratum ACP-050 (open): MagModeVal: one combination is missing, and None is not explained.
+/// Note ACP-050 (open): MagModeVal: one combination is missing, and None is not explained.
 ///
-/// Erratum ACP-051 (certain): Magnetometers have four names for two.
+/// Note ACP-051 (certain): Magnetometers have four names for two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -594,7 +594,7 @@ pub enum MagModeVal {
     MainMtmSampledThroughMotor,
     /// None (3).
     ///
-    /// Erratum ACP-050 (open): MagModeVal: one combination is missing, and None is not explained.
+    /// Note ACP-050 (open): MagModeVal: one combination is missing, and None is not explained.
     None,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -658,7 +658,7 @@ impl From<MagModeVal> for u8 {
 
 /// CamSelect: an enumeration. Table 95.
 ///
-/// Erratum ACP-056 (likely): Cameras: Cam, CubeSense, and star.
+/// Note ACP-056 (likely): Cameras: Cam, CubeSense, and star.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -984,7 +984,7 @@ impl From<CaptureResult> for u8 {
 
 /// DetectResult: an enumeration. Table 124.
 ///
-/// Erratum ACP-079 (certain): DetectResult mixes sun and nadir.
+/// Note ACP-079 (certain): DetectResult mixes sun and nadir.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1091,7 +1091,7 @@ impl From<DetectResult> for u8 {
 
 /// StarIDModeVal: an enumeration. Table 147.
 ///
-/// Erratum ACP-097 (open): StarIDModeVal is not described.
+/// Note ACP-097 (open): StarIDModeVal is not described.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1187,7 +1187,7 @@ pub enum ExecutionWaypoints {
     Logging,
     /// Log File Compression (10).
     ///
-    /// Erratum ACP-119 (open): Loop waypoints: logs are compressed.
+    /// Note ACP-119 (open): Loop waypoints: logs are compressed.
     LogFileCompression,
     /// Saving Log to SD Card (11).
     SavingLogToSdCard,
@@ -1282,7 +1282,7 @@ impl From<ExecutionWaypoints> for u8 {
 
 /// AsgpError: an enumeration. Table 171.
 ///
-/// Erratum ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
+/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1292,7 +1292,7 @@ pub enum AsgpError {
     ///
     /// No error.
     ///
-    /// Erratum ACP-123 (certain): AsgpError: no error is called Off.
+    /// Note ACP-123 (certain): AsgpError: no error is called Off.
     #[default]
     Off,
     /// Unix Time (1).
@@ -1468,7 +1468,7 @@ pub enum AxisSelect {
     NegativeZ,
     /// Not Used (6).
     ///
-    /// Erratum ACP-126 (open): AxisSelect is used where Not Used is no answer.
+    /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
     NotUsed,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -1552,7 +1552,7 @@ pub enum PowerSelect {
     On,
     /// Power state kept the same (2).
     ///
-    /// Erratum ACP-137 (open): Power state kept the same, when read.
+    /// Note ACP-137 (open): Power state kept the same, when read.
     PowerStateKeptTheSame,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -1613,7 +1613,7 @@ impl From<PowerSelect> for u8 {
 
 /// AsgpFilter: an enumeration. Table 193.
 ///
-/// Erratum ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
+/// Note ACP-048 (certain): ASGP4 is Asgp4, Asgp and asgp4.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1747,7 +1747,7 @@ impl From<AcpProgramType> for u8 {
 
 /// SpecialConSelect: an enumeration. Table 203.
 ///
-/// Erratum ACP-024 (open): Control modes that are named and not listed.
+/// Note ACP-024 (open): Control modes that are named and not listed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -1758,17 +1758,17 @@ pub enum SpecialConSelect {
     None,
     /// Z-axis Sun pointing (1).
     ///
-    /// Erratum ACP-177 (open): Sun-pointing facet and special control selection.
+    /// Note ACP-177 (open): Sun-pointing facet and special control selection.
     ZAxisSunPointing,
     /// GEO Tracking (2).
     ///
-    /// Erratum ACP-176 (open): Satellite position: range against GEO tracking.
+    /// Note ACP-176 (open): Satellite position: range against GEO tracking.
     GeoTracking,
     /// Inertial pointing (3).
     InertialPointing,
     /// Y-axis Sun pointing (4).
     ///
-    /// Erratum ACP-177 (open): Sun-pointing facet and special control selection.
+    /// Note ACP-177 (open): Sun-pointing facet and special control selection.
     YAxisSunPointing,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),
@@ -2201,7 +2201,7 @@ pub enum SdLogSelect {
     PrimarySdCard,
     /// Secondary SD Card (1).
     ///
-    /// Erratum ACP-187 (open): A secondary SD card.
+    /// Note ACP-187 (open): A secondary SD card.
     SecondarySdCard,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),

@@ -142,6 +142,7 @@ const ESTIMATED_Z_ANGULAR_RATE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for EstimatedAngularRates {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 147;
 
     #[inline]

@@ -6,7 +6,7 @@ use crate::support::{put, take, Error, Scale};
 
 /// Estimated Attitude Angles: telemetry 146, 6 bytes. Table 102.
 ///
-/// Erratum ACP-066 (open): Attitude angles: order of rotation and frame.
+/// Note ACP-066 (open): Attitude angles: order of rotation and frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -142,6 +142,7 @@ const ESTIMATED_YAW_ANGLE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for EstimatedAttitudeAngles {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 146;
 
     #[inline]

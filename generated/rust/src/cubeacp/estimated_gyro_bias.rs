@@ -142,6 +142,7 @@ const ESTIMATED_Z_GYRO_BIAS: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for EstimatedGyroBias {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 161;
 
     #[inline]

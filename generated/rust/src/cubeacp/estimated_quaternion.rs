@@ -6,22 +6,22 @@ use crate::support::{put, take, Error};
 
 /// Estimated Quaternion: telemetry 218, 6 bytes. Table 165.
 ///
-/// Erratum ACP-075 (open): Quaternions: the fourth component.
+/// Note ACP-075 (open): Quaternions: the fourth component.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct EstimatedQuaternion {
     /// Estimated q1 (bits 0 to 15): -32768 to 32767.
     ///
-    /// Erratum ACP-100 (open): Estimated quaternion has no formula.
+    /// Note ACP-100 (open): Estimated quaternion has no formula.
     pub estimated_q1: i16,
     /// Estimated q2 (bits 16 to 31): -32768 to 32767.
     ///
-    /// Erratum ACP-100 (open): Estimated quaternion has no formula.
+    /// Note ACP-100 (open): Estimated quaternion has no formula.
     pub estimated_q2: i16,
     /// Estimated q3 (bits 32 to 47): -32768 to 32767.
     ///
-    /// Erratum ACP-100 (open): Estimated quaternion has no formula.
+    /// Note ACP-100 (open): Estimated quaternion has no formula.
     pub estimated_q3: i16,
 }
 
@@ -70,6 +70,7 @@ impl EstimatedQuaternion {
 }
 
 impl crate::wire::Telemetry for EstimatedQuaternion {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 218;
 
     #[inline]

@@ -41,17 +41,17 @@ pub struct EstimationData {
     /// Innovation Vector X (bits 144 to 159): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
     /// to 3.2767.
     ///
-    /// Erratum ACP-074 (open): Innovation has no unit.
+    /// Note ACP-074 (open): Innovation has no unit.
     pub innovation_vector_x: i16,
     /// Innovation Vector Y (bits 160 to 175): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
     /// to 3.2767.
     ///
-    /// Erratum ACP-074 (open): Innovation has no unit.
+    /// Note ACP-074 (open): Innovation has no unit.
     pub innovation_vector_y: i16,
     /// Innovation Vector Z (bits 176 to 191): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
     /// to 3.2767.
     ///
-    /// Erratum ACP-074 (open): Innovation has no unit.
+    /// Note ACP-074 (open): Innovation has no unit.
     pub innovation_vector_z: i16,
     /// Quaternion Error - Q1 (bits 192 to 207): raw, -32768 to 32767; physical `raw*0.0001`,
     /// -3.2768 to 3.2767.
@@ -65,32 +65,32 @@ pub struct EstimationData {
     /// Quaternion Covariance - Q1 RMS (bits 240 to 255): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
     pub quaternion_covariance_q1_rms: i16,
     /// Quaternion Covariance - Q2 RMS (bits 256 to 271): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
     pub quaternion_covariance_q2_rms: i16,
     /// Quaternion Covariance - Q3 RMS (bits 272 to 287): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
     pub quaternion_covariance_q3_rms: i16,
     /// X Angular Rate Covariance (bits 288 to 303): raw, -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Erratum ACP-077 (open): Angular rate covariance: unit and sign.
+    /// Note ACP-077 (open): Angular rate covariance: unit and sign.
     pub x_angular_rate_covariance: i16,
     /// Y Angular Rate Covariance (bits 304 to 319): raw, -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Erratum ACP-077 (open): Angular rate covariance: unit and sign.
+    /// Note ACP-077 (open): Angular rate covariance: unit and sign.
     pub y_angular_rate_covariance: i16,
     /// Z Angular Rate Covariance (bits 320 to 335): raw, -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Erratum ACP-077 (open): Angular rate covariance: unit and sign.
+    /// Note ACP-077 (open): Angular rate covariance: unit and sign.
     pub z_angular_rate_covariance: i16,
 }
 
@@ -703,6 +703,7 @@ const Z_ANGULAR_RATE_COVARIANCE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for EstimationData {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 193;
 
     #[inline]

@@ -12,23 +12,23 @@ pub struct EstimationInnovationVector {
     /// Innovation Vector X (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768 to
     /// 3.2767.
     ///
-    /// Erratum ACP-073 (certain): One factor, several notations.
+    /// Note ACP-073 (certain): One factor, several notations.
     ///
-    /// Erratum ACP-074 (open): Innovation has no unit.
+    /// Note ACP-074 (open): Innovation has no unit.
     pub innovation_vector_x: i16,
     /// Innovation Vector Y (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768 to
     /// 3.2767.
     ///
-    /// Erratum ACP-073 (certain): One factor, several notations.
+    /// Note ACP-073 (certain): One factor, several notations.
     ///
-    /// Erratum ACP-074 (open): Innovation has no unit.
+    /// Note ACP-074 (open): Innovation has no unit.
     pub innovation_vector_y: i16,
     /// Innovation Vector Z (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768 to
     /// 3.2767.
     ///
-    /// Erratum ACP-073 (certain): One factor, several notations.
+    /// Note ACP-073 (certain): One factor, several notations.
     ///
-    /// Erratum ACP-074 (open): Innovation has no unit.
+    /// Note ACP-074 (open): Innovation has no unit.
     pub innovation_vector_z: i16,
 }
 
@@ -152,6 +152,7 @@ const INNOVATION_VECTOR_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for EstimationInnovationVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 162;
 
     #[inline]

@@ -9,40 +9,40 @@ use crate::support::{flags, put, take, Coded, Error, Scale};
 ///
 /// Noise covariances, and which sensors the estimator uses.
 ///
-/// Erratum ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits.
 ///
-/// Erratum ACP-167 (certain): Estimation Parameters: more than its description.
+/// Note ACP-167 (certain): Estimation Parameters: more than its description.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct EstimationParameters {
     /// Magnetometer Rate Filter System Noise (bits 0 to 31): 32-bit float.
     ///
-    /// Erratum ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
     pub magnetometer_rate_filter_system_noise: f32,
     /// EKF System Noise (bits 32 to 63): 32-bit float.
     ///
-    /// Erratum ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
     pub ekf_system_noise: f32,
     /// CSS Measurement Noise (bits 64 to 95): 32-bit float.
     ///
-    /// Erratum ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
     pub css_measurement_noise: f32,
     /// Sun Sensor Measurement Noise (bits 96 to 127): 32-bit float.
     ///
-    /// Erratum ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
     pub sun_sensor_measurement_noise: f32,
     /// Nadir Sensor Measurement Noise (bits 128 to 159): 32-bit float.
     ///
-    /// Erratum ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
     pub nadir_sensor_measurement_noise: f32,
     /// Magnetometer Measurement Noise (bits 160 to 191): 32-bit float.
     ///
-    /// Erratum ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
     pub magnetometer_measurement_noise: f32,
     /// Star Tracker Measurement Noise (bits 192 to 223): 32-bit float.
     ///
-    /// Erratum ACP-168 (open): Noise: covariance or deviation, and no unit.
+    /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
     pub star_tracker_measurement_noise: f32,
     /// Use Sun Sensor (bit 224).
     ///
@@ -72,15 +72,15 @@ pub struct EstimationParameters {
     ///
     /// The magnetometer that estimation and control use.
     ///
-    /// Erratum ACP-049 (open): Magnetometer mode can be set in two places.
+    /// Note ACP-049 (open): Magnetometer mode can be set in two places.
     ///
-    /// Erratum ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub magnetometer_mode: Coded<enums::MagModeVal>,
     /// Magnetometer Selection for RAW MTM TLM (bits 232 to 233).
     ///
     /// Magnetometer and sampling path for the second raw magnetometer frame.
     ///
-    /// Erratum ACP-118 (likely): Secondary magnetometer: fixed or selected.
+    /// Note ACP-118 (likely): Secondary magnetometer: fixed or selected.
     pub raw_magnetometer_selection: Coded<enums::MagModeVal>,
     /// Automatic Estimation Transition due to Rate Sensor Errors (bit 234).
     ///
@@ -235,6 +235,7 @@ const CAM2_PERIOD: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for EstimationParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 27;
 
     #[inline]
@@ -244,6 +245,7 @@ impl crate::wire::Telecommand for EstimationParameters {
 }
 
 impl crate::wire::Telemetry for EstimationParameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 223;
 
     #[inline]

@@ -14,23 +14,23 @@ pub struct FineEstimatedAngularRates {
     /// Estimated X Angular Rate (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.001`, -32.768
     /// to 32.767 deg/s.
     ///
-    /// Erratum ACP-109 (certain): Fine and normal rates have the same field names.
+    /// Note ACP-109 (certain): Fine and normal rates have the same field names.
     ///
-    /// Erratum ACP-110 (open): Fine rates end at 32 deg/s.
+    /// Note ACP-110 (open): Fine rates end at 32 deg/s.
     pub estimated_x_angular_rate: i16,
     /// Estimated Y Angular Rate (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767 deg/s.
     ///
-    /// Erratum ACP-109 (certain): Fine and normal rates have the same field names.
+    /// Note ACP-109 (certain): Fine and normal rates have the same field names.
     ///
-    /// Erratum ACP-110 (open): Fine rates end at 32 deg/s.
+    /// Note ACP-110 (open): Fine rates end at 32 deg/s.
     pub estimated_y_angular_rate: i16,
     /// Estimated Z Angular Rate (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767 deg/s.
     ///
-    /// Erratum ACP-109 (certain): Fine and normal rates have the same field names.
+    /// Note ACP-109 (certain): Fine and normal rates have the same field names.
     ///
-    /// Erratum ACP-110 (open): Fine rates end at 32 deg/s.
+    /// Note ACP-110 (open): Fine rates end at 32 deg/s.
     pub estimated_z_angular_rate: i16,
 }
 
@@ -154,6 +154,7 @@ const ESTIMATED_Z_ANGULAR_RATE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for FineEstimatedAngularRates {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 201;
 
     #[inline]

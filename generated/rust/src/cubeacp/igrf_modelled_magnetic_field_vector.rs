@@ -142,6 +142,7 @@ const IGRF_MODELLED_MAGNETIC_FIELD_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for IgrfModelledMagneticFieldVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 159;
 
     #[inline]

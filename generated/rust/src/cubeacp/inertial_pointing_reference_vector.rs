@@ -8,7 +8,7 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// Unit vector for the inertial pointing mode.
 ///
-/// Erratum ACP-024 (open): Control modes that are named and not listed.
+/// Note ACP-024 (open): Control modes that are named and not listed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -16,23 +16,17 @@ pub struct InertialPointingReferenceVector {
     /// Inertial Reference X (bits 0 to 15): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768
     /// to 3.2767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-188 (open): Inertial reference: unit vector without a frame.
+    /// Note ACP-188 (open): Inertial reference: unit vector without a frame.
     pub inertial_reference_x: i16,
     /// Inertial Reference Y (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768
     /// to 3.2767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-188 (open): Inertial reference: unit vector without a frame.
+    /// Note ACP-188 (open): Inertial reference: unit vector without a frame.
     pub inertial_reference_y: i16,
     /// Inertial Reference Z (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768
     /// to 3.2767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-188 (open): Inertial reference: unit vector without a frame.
+    /// Note ACP-188 (open): Inertial reference: unit vector without a frame.
     pub inertial_reference_z: i16,
 }
 
@@ -158,6 +152,7 @@ const INERTIAL_REFERENCE_Z: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for InertialPointingReferenceVector {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 34;
 
     #[inline]
@@ -167,6 +162,7 @@ impl crate::wire::Telecommand for InertialPointingReferenceVector {
 }
 
 impl crate::wire::Telemetry for InertialPointingReferenceVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 238;
 
     #[inline]

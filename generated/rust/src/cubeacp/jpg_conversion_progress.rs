@@ -65,6 +65,7 @@ impl JpgConversionProgress {
 }
 
 impl crate::wire::Telemetry for JpgConversionProgress {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 133;
 
     #[inline]

@@ -8,7 +8,7 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// As measured.
 ///
-/// Erratum ACP-069 (open): Reference frames of measured vectors are not named.
+/// Note ACP-069 (open): Reference frames of measured vectors are not named.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -144,6 +144,7 @@ const MAGNETIC_FIELD_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for MagneticFieldVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 151;
 
     #[inline]

@@ -13,28 +13,25 @@ pub struct MagnetorquerCommand {
     ///
     /// On-time.
     ///
-    /// Erratum ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    /// on-time.
+    /// Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
     ///
-    /// Erratum ACP-071 (likely): 10ms units is a factor, not a unit.
+    /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
     pub x_magnetorquer_command: i16,
     /// Y Magnetorquer Command (bits 16 to 31): -32768 to 32767 10ms units.
     ///
     /// On-time.
     ///
-    /// Erratum ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    /// on-time.
+    /// Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
     ///
-    /// Erratum ACP-071 (likely): 10ms units is a factor, not a unit.
+    /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
     pub y_magnetorquer_command: i16,
     /// Z Magnetorquer Command (bits 32 to 47): -32768 to 32767 10ms units.
     ///
     /// On-time.
     ///
-    /// Erratum ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an
-    /// on-time.
+    /// Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
     ///
-    /// Erratum ACP-071 (likely): 10ms units is a factor, not a unit.
+    /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
     pub z_magnetorquer_command: i16,
 }
 
@@ -83,6 +80,7 @@ impl MagnetorquerCommand {
 }
 
 impl crate::wire::Telemetry for MagnetorquerCommand {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 157;
 
     #[inline]

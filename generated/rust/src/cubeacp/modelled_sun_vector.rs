@@ -142,6 +142,7 @@ const MODELLED_SUN_VECTOR_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for ModelledSunVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 160;
 
     #[inline]

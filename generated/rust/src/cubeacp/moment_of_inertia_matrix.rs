@@ -19,15 +19,15 @@ pub struct MomentOfInertiaMatrix {
     pub moment_of_inertia_izz: f32,
     /// Product Of Inertia - Ixy (bits 96 to 127): 32-bit float, in kg.m^2.
     ///
-    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
+    /// Note ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_ixy: f32,
     /// Product Of Inertia - Ixz (bits 128 to 159): 32-bit float, in kg.m^2.
     ///
-    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
+    /// Note ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_ixz: f32,
     /// Product Of Inertia - Iyz (bits 160 to 191): 32-bit float, in kg.m^2.
     ///
-    /// Erratum ACP-201 (open): Products of inertia: the sign is not given.
+    /// Note ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_iyz: f32,
 }
 
@@ -84,6 +84,7 @@ impl MomentOfInertiaMatrix {
 }
 
 impl crate::wire::Telecommand for MomentOfInertiaMatrix {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 41;
 
     #[inline]
@@ -93,6 +94,7 @@ impl crate::wire::Telecommand for MomentOfInertiaMatrix {
 }
 
 impl crate::wire::Telemetry for MomentOfInertiaMatrix {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 222;
 
     #[inline]

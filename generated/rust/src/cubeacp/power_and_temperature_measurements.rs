@@ -30,66 +30,66 @@ pub struct PowerAndTemperatureMeasurements {
     pub cubecontrol_vbat_current: u16,
     /// Wheel1Current (bits 112 to 127): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Erratum ACP-083 (open): Wheel currents: by number, described by axis.
+    /// Note ACP-083 (open): Wheel currents: by number, described by axis.
     ///
-    /// Erratum ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub wheel1_current: u16,
     /// Wheel2Current (bits 128 to 143): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Erratum ACP-083 (open): Wheel currents: by number, described by axis.
+    /// Note ACP-083 (open): Wheel currents: by number, described by axis.
     ///
-    /// Erratum ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub wheel2_current: u16,
     /// Wheel3Current (bits 144 to 159): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Erratum ACP-083 (open): Wheel currents: by number, described by axis.
+    /// Note ACP-083 (open): Wheel currents: by number, described by axis.
     ///
-    /// Erratum ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub wheel3_current: u16,
     /// CubeStarCurrent (bits 160 to 175): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Erratum ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub cubestar_current: u16,
     /// Magnetorquer Current (bits 176 to 191): raw, 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
     pub magnetorquer_current: u16,
     /// CubeStar MCU temperature (bits 192 to 207): raw, -32768 to 32767; physical `raw/100.0`,
     /// -327.68 to 327.67 C.
     ///
-    /// Erratum ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb.
     pub cubestar_mcu_temperature: i16,
     /// MCU Temperature (bits 208 to 223): -32768 to 32767 C.
     ///
-    /// Erratum ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
-    /// Erratum ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): Temperatures have three scales.
     pub mcu_temperature: i16,
     /// Magnetometer Temperature (bits 224 to 239): raw, -32768 to 32767; physical `raw/10.0`,
     /// -3276.8 to 3276.7 C.
     ///
-    /// Erratum ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb.
     pub magnetometer_temperature: i16,
     /// Redundant Magnetometer Temperature (bits 240 to 255): raw, -32768 to 32767; physical
     /// `raw/10.0`, -3276.8 to 3276.7 C.
     ///
-    /// Erratum ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb.
     pub redundant_magnetometer_temperature: i16,
     /// X-Rate Sensor Temperature (bits 256 to 271): -32768 to 32767 C.
     ///
-    /// Erratum ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
-    /// Erratum ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): Temperatures have three scales.
     pub x_rate_sensor_temperature: i16,
     /// Y-Rate Sensor Temperature (bits 272 to 287): -32768 to 32767 C.
     ///
-    /// Erratum ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
-    /// Erratum ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): Temperatures have three scales.
     pub y_rate_sensor_temperature: i16,
     /// Z-Rate Sensor Temperature (bits 288 to 303): -32768 to 32767 C.
     ///
-    /// Erratum ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
-    /// Erratum ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): Temperatures have three scales.
     pub z_rate_sensor_temperature: i16,
 }
 
@@ -546,6 +546,7 @@ const REDUNDANT_MAGNETOMETER_TEMPERATURE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for PowerAndTemperatureMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 195;
 
     #[inline]

@@ -12,17 +12,17 @@ pub struct QuaternionCovariance {
     /// Quaternion Covariance - Q1 RMS (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Erratum ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
     pub quaternion_covariance_q1_rms: i16,
     /// Quaternion Covariance - Q2 RMS (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Erratum ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
     pub quaternion_covariance_q2_rms: i16,
     /// Quaternion Covariance - Q3 RMS (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
-    /// Erratum ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
     pub quaternion_covariance_q3_rms: i16,
 }
 
@@ -149,6 +149,7 @@ const QUATERNION_COVARIANCE_Q3_RMS: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for QuaternionCovariance {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 164;
 
     #[inline]

@@ -6,7 +6,7 @@ use crate::support::{put, take, Error, Scale};
 
 /// Quaternion Error Vector: telemetry 163, 6 bytes. Table 119.
 ///
-/// Erratum ACP-075 (open): Quaternions: the fourth component.
+/// Note ACP-075 (open): Quaternions: the fourth component.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -14,17 +14,17 @@ pub struct QuaternionErrorVector {
     /// Quaternion Error - Q1 (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
     /// to 3.2767.
     ///
-    /// Erratum ACP-073 (certain): One factor, several notations.
+    /// Note ACP-073 (certain): One factor, several notations.
     pub quaternion_error_q1: i16,
     /// Quaternion Error - Q2 (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
     /// to 3.2767.
     ///
-    /// Erratum ACP-073 (certain): One factor, several notations.
+    /// Note ACP-073 (certain): One factor, several notations.
     pub quaternion_error_q2: i16,
     /// Quaternion Error - Q3 (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
     /// to 3.2767.
     ///
-    /// Erratum ACP-073 (certain): One factor, several notations.
+    /// Note ACP-073 (certain): One factor, several notations.
     pub quaternion_error_q3: i16,
 }
 
@@ -148,6 +148,7 @@ const QUATERNION_ERROR_Q3: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for QuaternionErrorVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 163;
 
     #[inline]

@@ -11,21 +11,21 @@ use crate::support::{put, take, Error};
 pub struct RateSensorTemperatures {
     /// X-Rate Sensor Temperature (bits 0 to 15): -32768 to 32767 C.
     ///
-    /// Erratum ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
-    /// Erratum ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): Temperatures have three scales.
     pub x_rate_sensor_temperature: i16,
     /// Y-Rate Sensor Temperature (bits 16 to 31): -32768 to 32767 C.
     ///
-    /// Erratum ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
-    /// Erratum ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): Temperatures have three scales.
     pub y_rate_sensor_temperature: i16,
     /// Z-Rate Sensor Temperature (bits 32 to 47): -32768 to 32767 C.
     ///
-    /// Erratum ACP-005 (likely): Symbol C is the coulomb.
+    /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
-    /// Erratum ACP-085 (open): Temperatures have three scales.
+    /// Note ACP-085 (open): Temperatures have three scales.
     pub z_rate_sensor_temperature: i16,
 }
 
@@ -74,6 +74,7 @@ impl RateSensorTemperatures {
 }
 
 impl crate::wire::Telemetry for RateSensorTemperatures {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 175;
 
     #[inline]

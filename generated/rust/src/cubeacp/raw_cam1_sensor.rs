@@ -9,7 +9,7 @@ use crate::support::{put, take, Coded, Error};
 ///
 /// What Cam1 captured and detected.
 ///
-/// Erratum ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+/// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,13 +18,13 @@ pub struct RawCam1Sensor {
     ///
     /// Azimuth angle.
     ///
-    /// Erratum ACP-078 (open): Camera results: centroid or angle.
+    /// Note ACP-078 (open): Camera results: centroid or angle.
     pub cam1_centroid_x: i16,
     /// Cam1 centroid Y (bits 16 to 31): -32768 to 32767.
     ///
     /// Elevation angle.
     ///
-    /// Erratum ACP-078 (open): Camera results: centroid or angle.
+    /// Note ACP-078 (open): Camera results: centroid or angle.
     pub cam1_centroid_y: i16,
     /// Cam1 Capture status (bits 32 to 39).
     pub cam1_capture_status: Coded<enums::CaptureResult>,
@@ -79,6 +79,7 @@ impl RawCam1Sensor {
 }
 
 impl crate::wire::Telemetry for RawCam1Sensor {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 167;
 
     #[inline]

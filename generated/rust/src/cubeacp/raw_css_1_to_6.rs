@@ -13,37 +13,37 @@ pub struct RawCss1To6 {
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Erratum ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): CSS raw values have no scale.
     pub css1: u8,
     /// CSS2 (bits 8 to 15): 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Erratum ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): CSS raw values have no scale.
     pub css2: u8,
     /// CSS3 (bits 16 to 23): 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Erratum ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): CSS raw values have no scale.
     pub css3: u8,
     /// CSS4 (bits 24 to 31): 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Erratum ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): CSS raw values have no scale.
     pub css4: u8,
     /// CSS5 (bits 32 to 39): 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Erratum ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): CSS raw values have no scale.
     pub css5: u8,
     /// CSS6 (bits 40 to 47): 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Erratum ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): CSS raw values have no scale.
     pub css6: u8,
 }
 
@@ -98,6 +98,7 @@ impl RawCss1To6 {
 }
 
 impl crate::wire::Telemetry for RawCss1To6 {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 168;
 
     #[inline]

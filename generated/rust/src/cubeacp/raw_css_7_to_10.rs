@@ -15,25 +15,25 @@ pub struct RawCss7To10 {
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Erratum ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): CSS raw values have no scale.
     pub css7: u8,
     /// CSS8 (bits 8 to 15): 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Erratum ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): CSS raw values have no scale.
     pub css8: u8,
     /// CSS9 (bits 16 to 23): 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Erratum ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): CSS raw values have no scale.
     pub css9: u8,
     /// CSS10 (bits 24 to 31): 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
-    /// Erratum ACP-080 (open): CSS raw values have no scale.
+    /// Note ACP-080 (open): CSS raw values have no scale.
     pub css10: u8,
 }
 
@@ -84,6 +84,7 @@ impl RawCss7To10 {
 }
 
 impl crate::wire::Telemetry for RawCss7To10 {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 169;
 
     #[inline]

@@ -12,7 +12,7 @@ use crate::support::{put, take, Coded, Error, Scale};
 pub struct RawGpsMeasurements {
     /// Gps Solution Status (bits 0 to 7).
     ///
-    /// Erratum ACP-042 (certain): GPS is spelt Gps in one field.
+    /// Note ACP-042 (certain): GPS is spelt Gps in one field.
     pub gps_solution_status: Coded<enums::GpsSolutionStatus>,
     /// Number of tracked GPS satellites (bits 8 to 15): 0 to 255.
     pub number_of_tracked_gps_satellites: u8,
@@ -28,37 +28,37 @@ pub struct RawGpsMeasurements {
     ///
     /// Explained on page 656 of the OEMV615 reference manual.
     ///
-    /// Erratum ACP-088 (open): GPS response: explained in another manual.
+    /// Note ACP-088 (open): GPS response: explained in another manual.
     pub response_message_for_gps_log_setup: u8,
     /// GPS Reference Week (bits 48 to 63): 0 to 65535.
     ///
-    /// Erratum ACP-089 (open): GPS week: with or without roll-overs.
+    /// Note ACP-089 (open): GPS week: with or without roll-overs.
     pub gps_reference_week: u16,
     /// GPS Time Milliseconds (bits 64 to 95): 0 to 4294967295 ms.
     pub gps_time_milliseconds: u32,
     /// ECEF Position X (bits 96 to 127): -2147483648 to 2147483647 m.
     ///
-    /// Erratum ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_x: i32,
     /// ECEF Velocity X (bits 128 to 143): -32768 to 32767 m/s.
     ///
-    /// Erratum ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
     pub ecef_velocity_x: i16,
     /// ECEF Position Y (bits 144 to 175): -2147483648 to 2147483647 m.
     ///
-    /// Erratum ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_y: i32,
     /// ECEF Velocity Y (bits 176 to 191): -32768 to 32767 m/s.
     ///
-    /// Erratum ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
     pub ecef_velocity_y: i16,
     /// ECEF Position Z (bits 192 to 223): -2147483648 to 2147483647 m.
     ///
-    /// Erratum ACP-099 (certain): ECEF position: one name, two widths.
+    /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_z: i32,
     /// ECEF Velocity Z (bits 224 to 239): -32768 to 32767 m/s.
     ///
-    /// Erratum ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
     pub ecef_velocity_z: i16,
     /// X-pos Standard Deviation (bits 240 to 247): raw, 0 to 255; physical `raw*0.1`, 0 to 25.5 m.
     pub x_pos_standard_deviation: u8,
@@ -68,15 +68,15 @@ pub struct RawGpsMeasurements {
     pub z_pos_standard_deviation: u8,
     /// X-vel Standard Deviation (bits 264 to 271): 0 to 255 m/s.
     ///
-    /// Erratum ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
     pub x_vel_standard_deviation: u8,
     /// Y-vel Standard Deviation (bits 272 to 279): 0 to 255 m/s.
     ///
-    /// Erratum ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
     pub y_vel_standard_deviation: u8,
     /// Z-vel Standard Deviation (bits 280 to 287): 0 to 255 m/s.
     ///
-    /// Erratum ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+    /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
     pub z_vel_standard_deviation: u8,
 }
 
@@ -235,6 +235,7 @@ const Z_POS_STANDARD_DEVIATION: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for RawGpsMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 210;
 
     #[inline]

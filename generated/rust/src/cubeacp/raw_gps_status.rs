@@ -12,7 +12,7 @@ use crate::support::{Coded, Error};
 pub struct RawGpsStatus {
     /// Gps Solution Status (bits 0 to 7).
     ///
-    /// Erratum ACP-042 (certain): GPS is spelt Gps in one field.
+    /// Note ACP-042 (certain): GPS is spelt Gps in one field.
     pub gps_solution_status: Coded<enums::GpsSolutionStatus>,
     /// Number of tracked GPS satellites (bits 8 to 15): 0 to 255.
     pub number_of_tracked_gps_satellites: u8,
@@ -28,7 +28,7 @@ pub struct RawGpsStatus {
     ///
     /// Explained on page 656 of the OEMV615 reference manual.
     ///
-    /// Erratum ACP-088 (open): GPS response: explained in another manual.
+    /// Note ACP-088 (open): GPS response: explained in another manual.
     pub response_message_for_gps_log_setup: u8,
 }
 
@@ -84,6 +84,7 @@ impl RawGpsStatus {
 }
 
 impl crate::wire::Telemetry for RawGpsStatus {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 176;
 
     #[inline]

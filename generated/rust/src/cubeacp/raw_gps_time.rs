@@ -11,7 +11,7 @@ use crate::support::{put, take, Error};
 pub struct RawGpsTime {
     /// GPS Reference Week (bits 0 to 15): 0 to 65535.
     ///
-    /// Erratum ACP-089 (open): GPS week: with or without roll-overs.
+    /// Note ACP-089 (open): GPS week: with or without roll-overs.
     pub gps_reference_week: u16,
     /// GPS Time Milliseconds (bits 16 to 47): 0 to 4294967295 ms.
     pub gps_time_milliseconds: u32,
@@ -60,6 +60,7 @@ impl RawGpsTime {
 }
 
 impl crate::wire::Telemetry for RawGpsTime {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 177;
 
     #[inline]

@@ -13,13 +13,13 @@ use crate::support::{put, take, Error};
 pub struct RawGpsY {
     /// ECEF Position Y (bits 0 to 31): -2147483648 to 2147483647 m.
     ///
-    /// Erratum ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
+    /// Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
     pub ecef_position_y: i32,
     /// ECEF Velocity Y (bits 32 to 47): -32768 to 32767 m/s.
     ///
-    /// Erratum ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
     ///
-    /// Erratum ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
+    /// Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
     pub ecef_velocity_y: i16,
 }
 
@@ -66,6 +66,7 @@ impl RawGpsY {
 }
 
 impl crate::wire::Telemetry for RawGpsY {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 179;
 
     #[inline]

@@ -13,13 +13,13 @@ use crate::support::{put, take, Error};
 pub struct RawGpsZ {
     /// ECEF Position Z (bits 0 to 31): -2147483648 to 2147483647 m.
     ///
-    /// Erratum ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
+    /// Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
     pub ecef_position_z: i32,
     /// ECEF Velocity Z (bits 32 to 47): -32768 to 32767 m/s.
     ///
-    /// Erratum ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+    /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
     ///
-    /// Erratum ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
+    /// Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
     pub ecef_velocity_z: i16,
 }
 
@@ -66,6 +66,7 @@ impl RawGpsZ {
 }
 
 impl crate::wire::Telemetry for RawGpsZ {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 180;
 
     #[inline]

@@ -13,19 +13,19 @@ pub struct RawMagnetometer {
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_x: i16,
     /// MagY (bits 16 to 31): -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_y: i16,
     /// MagZ (bits 32 to 47): -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_z: i16,
 }
 
@@ -74,6 +74,7 @@ impl RawMagnetometer {
 }
 
 impl crate::wire::Telemetry for RawMagnetometer {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 170;
 
     #[inline]

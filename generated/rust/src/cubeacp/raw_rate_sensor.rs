@@ -13,19 +13,19 @@ pub struct RawRateSensor {
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub rate_x: i16,
     /// RateY (bits 16 to 31): -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub rate_y: i16,
     /// RateZ (bits 32 to 47): -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub rate_z: i16,
 }
 
@@ -74,6 +74,7 @@ impl RawRateSensor {
 }
 
 impl crate::wire::Telemetry for RawRateSensor {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 216;
 
     #[inline]

@@ -7,9 +7,9 @@ use crate::support::{put, take, Coded, Error};
 
 /// Raw Sensor Measurements: telemetry 194, 34 bytes. Table 153.
 ///
-/// Erratum ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+/// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
 ///
-/// Erratum ACP-106 (certain): Messages have the names of groups.
+/// Note ACP-106 (certain): Messages have the names of groups.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,13 +18,13 @@ pub struct RawSensorMeasurements {
     ///
     /// Azimuth angle.
     ///
-    /// Erratum ACP-078 (open): Camera results: centroid or angle.
+    /// Note ACP-078 (open): Camera results: centroid or angle.
     pub cam2_centroid_x: i16,
     /// Cam2 centroid Y (bits 16 to 31): -32768 to 32767.
     ///
     /// Elevation angle.
     ///
-    /// Erratum ACP-078 (open): Camera results: centroid or angle.
+    /// Note ACP-078 (open): Camera results: centroid or angle.
     pub cam2_centroid_y: i16,
     /// Cam2 Capture status (bits 32 to 39).
     pub cam2_capture_status: Coded<enums::CaptureResult>,
@@ -34,13 +34,13 @@ pub struct RawSensorMeasurements {
     ///
     /// Azimuth angle.
     ///
-    /// Erratum ACP-078 (open): Camera results: centroid or angle.
+    /// Note ACP-078 (open): Camera results: centroid or angle.
     pub cam1_centroid_x: i16,
     /// Cam1 centroid Y (bits 64 to 79): -32768 to 32767.
     ///
     /// Elevation angle.
     ///
-    /// Erratum ACP-078 (open): Camera results: centroid or angle.
+    /// Note ACP-078 (open): Camera results: centroid or angle.
     pub cam1_centroid_y: i16,
     /// Cam1 Capture status (bits 80 to 87).
     pub cam1_capture_status: Coded<enums::CaptureResult>,
@@ -90,39 +90,39 @@ pub struct RawSensorMeasurements {
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
-    ///
     /// Erratum ACP-105 (certain): Raw Sensor Measurements repeats four of six bytes of one part.
+    ///
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_x: i16,
     /// MagY (bits 192 to 207): -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_y: i16,
     /// MagZ (bits 208 to 223): -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_z: i16,
     /// RateX (bits 224 to 239): -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub rate_x: i16,
     /// RateY (bits 240 to 255): -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub rate_y: i16,
     /// RateZ (bits 256 to 271): -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub rate_z: i16,
 }
 
@@ -213,6 +213,7 @@ impl RawSensorMeasurements {
 }
 
 impl crate::wire::Telemetry for RawSensorMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 194;
 
     #[inline]

@@ -12,26 +12,26 @@ use crate::support::{flags, put, take, Coded, Error, Scale};
 pub struct RawStarTracker {
     /// Number of stars detected (bits 0 to 7): 0 to 255 stars.
     ///
-    /// Erratum ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     pub number_of_stars_detected: u8,
     /// Star image noise (bits 8 to 15): 0 to 255 noise.
     ///
-    /// Erratum ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     ///
-    /// Erratum ACP-094 (open): Star image noise has no scale.
+    /// Note ACP-094 (open): Star image noise has no scale.
     pub star_image_noise: u8,
     /// Invalid Stars (bits 16 to 23): 0 to 255 Invalid stars.
     ///
     /// How many of the detected stars are invalid.
     ///
-    /// Erratum ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     pub invalid_stars: u8,
     /// Number of stars identified (bits 24 to 31): 0 to 255 stars.
     ///
-    /// Erratum ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     pub number_of_stars_identified: u8,
     /// Identification mode (bits 32 to 39).
@@ -40,10 +40,10 @@ pub struct RawStarTracker {
     ///
     /// Mean of the centre line of the image.
     ///
-    /// Erratum ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     ///
-    /// Erratum ACP-095 (open): Image dark value is the mean of a centre line.
+    /// Note ACP-095 (open): Image dark value is the mean of a centre line.
     pub image_dark_value: u8,
     /// Image Capture Success (bit 48).
     pub image_capture_success: bool,
@@ -53,7 +53,7 @@ pub struct RawStarTracker {
     pub identification_success: bool,
     /// AttitudeSuccess (bit 51).
     ///
-    /// Erratum ACP-115 (certain): AttitudeSuccess is written in one piece.
+    /// Note ACP-115 (certain): AttitudeSuccess is written in one piece.
     pub attitude_success: bool,
     /// Processing Time Error (bit 52).
     pub processing_time_error: bool,
@@ -65,7 +65,7 @@ pub struct RawStarTracker {
     pub comms_error: bool,
     /// Sample Period (bits 56 to 71): 0 to 65535.
     ///
-    /// Erratum ACP-113 (open): Sample period of the star tracker has no unit.
+    /// Note ACP-113 (open): Sample period of the star tracker has no unit.
     pub sample_period: u16,
     /// Star 1 confidence (bits 72 to 79): 0 to 255 %.
     ///
@@ -83,19 +83,19 @@ pub struct RawStarTracker {
     ///
     /// Instrument magnitude.
     ///
-    /// Erratum ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): Star magnitudes have no scale.
     pub magnitude_star_1: u16,
     /// Magnitude Star 2 (bits 112 to 127): 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
-    /// Erratum ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): Star magnitudes have no scale.
     pub magnitude_star_2: u16,
     /// Magnitude Star 3 (bits 128 to 143): 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
-    /// Erratum ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): Star magnitudes have no scale.
     pub magnitude_star_3: u16,
     /// Catalogue Star 1 (bits 144 to 159): 0 to 65535.
     ///
@@ -132,39 +132,39 @@ pub struct RawStarTracker {
     ///
     /// Estimated by CubeStar, about its own X axis.
     ///
-    /// Erratum ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): CubeStar rates have no unit.
     pub x_axis_rate: i16,
     /// y-Axis rate (bits 352 to 367): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
     /// Estimated by CubeStar, about its own Y axis.
     ///
-    /// Erratum ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): CubeStar rates have no unit.
     pub y_axis_rate: i16,
     /// z-Axis rate (bits 368 to 383): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
     /// Estimated by CubeStar, about its own Z axis.
     ///
-    /// Erratum ACP-111 (open): CubeStar rates have no unit.
+    /// Note ACP-111 (open): CubeStar rates have no unit.
     pub z_axis_rate: i16,
     /// Q0 (bits 384 to 399): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q1.
     ///
-    /// Erratum ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     pub q0: i16,
     /// Q1 (bits 400 to 415): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q2.
     ///
-    /// Erratum ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     pub q1: i16,
     /// Q2 (bits 416 to 431): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q3.
     ///
-    /// Erratum ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     pub q2: i16,
 }
 
@@ -436,6 +436,7 @@ const Q2: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for RawStarTracker {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 211;
 
     #[inline]

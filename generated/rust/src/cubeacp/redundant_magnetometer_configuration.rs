@@ -7,7 +7,7 @@ use crate::support::{put, take, Error, Scale};
 /// Redundant Magnetometer Configuration: configuration, set by 36 and got by 205, 30 bytes. Table
 /// 191\.
 ///
-/// Erratum ACP-051 (certain): Magnetometers have four names for two.
+/// Note ACP-051 (certain): Magnetometers have four names for two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -15,107 +15,77 @@ pub struct RedundantMagnetometerConfiguration {
     /// Redundant Magnetometer Mounting Transform Alpha Angle (bits 0 to 15): raw, -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub redundant_magnetometer_mounting_transform_alpha_angle: i16,
     /// Redundant Magnetometer Mounting Transform Beta Angle (bits 16 to 31): raw, -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub redundant_magnetometer_mounting_transform_beta_angle: i16,
     /// Redundant Magnetometer Mounting Transform Gamma Angle (bits 32 to 47): raw, -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub redundant_magnetometer_mounting_transform_gamma_angle: i16,
     /// Redundant Magnetometer Channel 1 Offset (bits 48 to 63): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-155 (open): Magnetometer offsets have no unit.
+    /// Note ACP-155 (open): Magnetometer offsets have no unit.
     pub redundant_magnetometer_channel_1_offset: i16,
     /// Redundant Magnetometer Channel 2 Offset (bits 64 to 79): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-155 (open): Magnetometer offsets have no unit.
+    /// Note ACP-155 (open): Magnetometer offsets have no unit.
     pub redundant_magnetometer_channel_2_offset: i16,
     /// Redundant Magnetometer Channel 3 Offset (bits 80 to 95): raw, -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-155 (open): Magnetometer offsets have no unit.
+    /// Note ACP-155 (open): Magnetometer offsets have no unit.
     pub redundant_magnetometer_channel_3_offset: i16,
     /// Redundant Magnetometer Sensitivity Matrix S11 (bits 96 to 111): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
+    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s11: i16,
     /// Redundant Magnetometer Sensitivity Matrix S22 (bits 112 to 127): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
+    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s22: i16,
     /// Redundant Magnetometer Sensitivity Matrix S33 (bits 128 to 143): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
+    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s33: i16,
     /// Redundant Magnetometer Sensitivity Matrix S12 (bits 144 to 159): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
+    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s12: i16,
     /// Redundant Magnetometer Sensitivity Matrix S13 (bits 160 to 175): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
+    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s13: i16,
     /// Redundant Magnetometer Sensitivity Matrix S21 (bits 176 to 191): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
+    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s21: i16,
     /// Redundant Magnetometer Sensitivity Matrix S23 (bits 192 to 207): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
+    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s23: i16,
     /// Redundant Magnetometer Sensitivity Matrix S31 (bits 208 to 223): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
+    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s31: i16,
     /// Redundant Magnetometer Sensitivity Matrix S32 (bits 224 to 239): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
+    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s32: i16,
 }
 
@@ -673,6 +643,7 @@ const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S32: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for RedundantMagnetometerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 36;
 
     #[inline]
@@ -682,6 +653,7 @@ impl crate::wire::Telecommand for RedundantMagnetometerConfiguration {
 }
 
 impl crate::wire::Telemetry for RedundantMagnetometerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 205;
 
     #[inline]

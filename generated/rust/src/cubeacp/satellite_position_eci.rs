@@ -137,6 +137,7 @@ const Z_POSITION: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for SatellitePositionEci {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 148;
 
     #[inline]

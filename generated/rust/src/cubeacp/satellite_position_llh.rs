@@ -15,11 +15,11 @@ pub struct SatellitePositionLlh {
     pub latitude: i16,
     /// Longitude (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Erratum ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
+    /// Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
     pub longitude: i16,
     /// Altitude (bits 32 to 47): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
     ///
-    /// Erratum ACP-067 (open): Position and altitude do not reach equally far.
+    /// Note ACP-067 (open): Position and altitude do not reach equally far.
     pub altitude: u16,
 }
 
@@ -143,6 +143,7 @@ const ALTITUDE: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for SatellitePositionLlh {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 150;
 
     #[inline]

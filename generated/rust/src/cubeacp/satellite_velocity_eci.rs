@@ -137,6 +137,7 @@ const Z_VELOCITY: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for SatelliteVelocityEci {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 149;
 
     #[inline]

@@ -8,7 +8,7 @@ use crate::support::Error;
 ///
 /// Keeps the current configuration in flash.
 ///
-/// Erratum ACP-054 (open): Two saves for three stored sets.
+/// Note ACP-054 (open): Two saves for three stored sets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -51,6 +51,7 @@ impl SaveConfiguration {
 }
 
 impl crate::wire::Telecommand for SaveConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 63;
 
     #[inline]

@@ -9,7 +9,7 @@ use crate::support::{Coded, Error};
 ///
 /// Takes a picture with a CubeSense or the CubeStar camera and saves it to the SD card.
 ///
-/// Erratum ACP-055 (certain): Save Image saves before it captures.
+/// Note ACP-055 (certain): Save Image saves before it captures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -63,6 +63,7 @@ impl SaveImage {
 }
 
 impl crate::wire::Telecommand for SaveImage {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 80;
 
     #[inline]

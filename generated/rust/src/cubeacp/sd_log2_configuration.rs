@@ -9,9 +9,9 @@ use crate::support::{array, put, put_array, take, Coded, Error};
 ///
 /// Which frames go into log 2, how often, and to which card.
 ///
-/// Erratum ACP-185 (certain): Log1, LOG1, Log 1.
+/// Note ACP-185 (certain): Log1, LOG1, Log 1.
 ///
-/// Erratum ACP-186 (open): A log that is reconfigured while it runs.
+/// Note ACP-186 (open): A log that is reconfigured while it runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -20,14 +20,14 @@ pub struct SdLog2Configuration {
     ///
     /// Mask of up to 80 telemetry frames.
     ///
-    /// Erratum ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
+    /// Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub log_selection: [u8; 10],
     /// Log Period (bits 80 to 95): 0 to 65535.
     ///
     /// 0: logging disabled.
     ///
-    /// Erratum ACP-183 (open): Log period has no unit.
+    /// Note ACP-183 (open): Log period has no unit.
     pub log_period: u16,
     /// Log Destination (bits 96 to 103).
     pub log_destination: Coded<enums::SdLogSelect>,
@@ -82,6 +82,7 @@ impl SdLog2Configuration {
 }
 
 impl crate::wire::Telecommand for SdLog2Configuration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 105;
 
     #[inline]
@@ -91,6 +92,7 @@ impl crate::wire::Telecommand for SdLog2Configuration {
 }
 
 impl crate::wire::Telemetry for SdLog2Configuration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 236;
 
     #[inline]

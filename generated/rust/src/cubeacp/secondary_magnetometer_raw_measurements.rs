@@ -6,9 +6,9 @@ use crate::support::{put, take, Error};
 
 /// Secondary Magnetometer Raw Measurements: telemetry 215, 6 bytes. Table 163.
 ///
-/// Erratum ACP-051 (certain): Magnetometers have four names for two.
+/// Note ACP-051 (certain): Magnetometers have four names for two.
 ///
-/// Erratum ACP-118 (likely): Secondary magnetometer: fixed or selected.
+/// Note ACP-118 (likely): Secondary magnetometer: fixed or selected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -17,19 +17,19 @@ pub struct SecondaryMagnetometerRawMeasurements {
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_x: i16,
     /// MagY (bits 16 to 31): -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_y: i16,
     /// MagZ (bits 32 to 47): -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
-    /// Erratum ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
+    /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_z: i16,
 }
 
@@ -78,6 +78,7 @@ impl SecondaryMagnetometerRawMeasurements {
 }
 
 impl crate::wire::Telemetry for SecondaryMagnetometerRawMeasurements {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 215;
 
     #[inline]

@@ -9,7 +9,7 @@ use crate::support::{Coded, Error};
 ///
 /// Switches the control loop and chooses how it runs.
 ///
-/// Erratum ACP-018 (certain): ADCS Run Mode is a message and an enumeration.
+/// Note ACP-018 (certain): ADCS Run Mode is a message and an enumeration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,7 +18,7 @@ pub struct SetAdcsRunMode {
     ///
     /// While off, the control program leaves the ADCS I2C bus alone.
     ///
-    /// Erratum ACP-017 (certain): A run mode called Enabled.
+    /// Note ACP-017 (certain): A run mode called Enabled.
     pub enabled: Coded<enums::AdcsRunMode>,
 }
 
@@ -63,6 +63,7 @@ impl SetAdcsRunMode {
 }
 
 impl crate::wire::Telecommand for SetAdcsRunMode {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 10;
 
     #[inline]

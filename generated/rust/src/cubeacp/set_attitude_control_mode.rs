@@ -16,9 +16,9 @@ pub struct SetAttitudeControlMode {
     ///
     /// The mode returns to None when it runs out. 65535: no timeout.
     ///
-    /// Erratum ACP-022 (open): Timeout of a control mode: 0.
+    /// Note ACP-022 (open): Timeout of a control mode: 0.
     ///
-    /// Erratum ACP-023 (certain): Control mode None does not exist.
+    /// Note ACP-023 (certain): Control mode None does not exist.
     pub timeout: u16,
 }
 
@@ -67,6 +67,7 @@ impl SetAttitudeControlMode {
 }
 
 impl crate::wire::Telecommand for SetAttitudeControlMode {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 13;
 
     #[inline]

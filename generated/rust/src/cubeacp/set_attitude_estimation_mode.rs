@@ -55,6 +55,7 @@ impl SetAttitudeEstimationMode {
 }
 
 impl crate::wire::Telecommand for SetAttitudeEstimationMode {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 14;
 
     #[inline]

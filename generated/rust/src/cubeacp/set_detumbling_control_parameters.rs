@@ -8,7 +8,7 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// Gains and references of the detumbling mode.
 ///
-/// Erratum ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -17,28 +17,26 @@ pub struct SetDetumblingControlParameters {
     ///
     /// Ks.
     ///
-    /// Erratum ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units.
     pub detumbling_spin_gain: f32,
     /// Detumbling Damping Gain (bits 32 to 63): 32-bit float.
     ///
     /// Kd.
     ///
-    /// Erratum ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units.
     pub detumbling_damping_gain: f32,
     /// Reference spin rate (bits 64 to 79): raw, -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     ///
     /// wy-ref. Must be below 0 deg/s.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-162 (certain): Limits of a sign in words only.
+    /// Note ACP-162 (certain): Limits of a sign in words only.
     pub reference_spin_rate: i16,
     /// Fast BDot Detumbling Gain (bits 80 to 111): 32-bit float.
     ///
     /// Kdf.
     ///
-    /// Erratum ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units.
     pub fast_bdot_detumbling_gain: f32,
 }
 
@@ -118,6 +116,7 @@ const REFERENCE_SPIN_RATE: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for SetDetumblingControlParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 38;
 
     #[inline]
@@ -127,6 +126,7 @@ impl crate::wire::Telecommand for SetDetumblingControlParameters {
 }
 
 impl crate::wire::Telemetry for SetDetumblingControlParameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 208;
 
     #[inline]

@@ -7,22 +7,22 @@ use crate::support::{Coded, Error};
 
 /// Set Magnetorquer Configuration: configuration, set by 21 and got by 136, 3 bytes. Table 179.
 ///
-/// Erratum ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetMagnetorquerConfiguration {
     /// Magnetorquer 1 Configuration (bits 0 to 7).
     ///
-    /// Erratum ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
     pub magnetorquer_1_configuration: Coded<enums::AxisSelect>,
     /// Magnetorquer 2 Configuration (bits 8 to 15).
     ///
-    /// Erratum ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
     pub magnetorquer_2_configuration: Coded<enums::AxisSelect>,
     /// Magnetorquer 3 Configuration (bits 16 to 23).
     ///
-    /// Erratum ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
     pub magnetorquer_3_configuration: Coded<enums::AxisSelect>,
 }
 
@@ -73,6 +73,7 @@ impl SetMagnetorquerConfiguration {
 }
 
 impl crate::wire::Telecommand for SetMagnetorquerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 21;
 
     #[inline]
@@ -82,6 +83,7 @@ impl crate::wire::Telecommand for SetMagnetorquerConfiguration {
 }
 
 impl crate::wire::Telemetry for SetMagnetorquerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 136;
 
     #[inline]

@@ -8,7 +8,7 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// Only valid while the control mode is None.
 ///
-/// Erratum ACP-023 (certain): Control mode None does not exist.
+/// Note ACP-023 (certain): Control mode None does not exist.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -16,23 +16,23 @@ pub struct SetMagnetorquerOutput {
     /// Commanded X Magnetorquer duty cycle (bits 0 to 15): raw, -32768 to 32767; physical `raw =
     /// value*1000.0`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-030 (certain): Formulas are written in two directions.
+    /// Note ACP-030 (certain): Formulas are written in two directions.
     ///
-    /// Erratum ACP-031 (likely): Duty cycle: unit and range are not given.
+    /// Note ACP-031 (likely): Duty cycle: unit and range are not given.
     pub commanded_x_magnetorquer_duty_cycle: i16,
     /// Commanded Y Magnetorquer duty cycle (bits 16 to 31): raw, -32768 to 32767; physical `raw =
     /// value*1000.0`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-030 (certain): Formulas are written in two directions.
+    /// Note ACP-030 (certain): Formulas are written in two directions.
     ///
-    /// Erratum ACP-031 (likely): Duty cycle: unit and range are not given.
+    /// Note ACP-031 (likely): Duty cycle: unit and range are not given.
     pub commanded_y_magnetorquer_duty_cycle: i16,
     /// Commanded Z Magnetorquer duty cycle (bits 32 to 47): raw, -32768 to 32767; physical `raw =
     /// value*1000.0`, -32.768 to 32.767.
     ///
-    /// Erratum ACP-030 (certain): Formulas are written in two directions.
+    /// Note ACP-030 (certain): Formulas are written in two directions.
     ///
-    /// Erratum ACP-031 (likely): Duty cycle: unit and range are not given.
+    /// Note ACP-031 (likely): Duty cycle: unit and range are not given.
     pub commanded_z_magnetorquer_duty_cycle: i16,
 }
 
@@ -171,6 +171,7 @@ const COMMANDED_Z_MAGNETORQUER_DUTY_CYCLE: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for SetMagnetorquerOutput {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 16;
 
     #[inline]

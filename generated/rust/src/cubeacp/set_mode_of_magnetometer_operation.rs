@@ -16,7 +16,7 @@ pub struct SetModeOfMagnetometerOperation {
     ///
     /// The magnetometer that estimation and control use.
     ///
-    /// Erratum ACP-049 (open): Magnetometer mode can be set in two places.
+    /// Note ACP-049 (open): Magnetometer mode can be set in two places.
     pub magnetometer_mode: Coded<enums::MagModeVal>,
 }
 
@@ -61,6 +61,7 @@ impl SetModeOfMagnetometerOperation {
 }
 
 impl crate::wire::Telecommand for SetModeOfMagnetometerOperation {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 56;
 
     #[inline]

@@ -7,9 +7,9 @@ use crate::support::{put, take, Coded, Error, Scale};
 
 /// Set Rate Gyro Configuration: configuration, set by 23 and got by 138, 10 bytes. Table 182.
 ///
-/// Erratum ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read.
 ///
-/// Erratum ACP-131 (certain): Gyro, rate sensor and MEMS.
+/// Note ACP-131 (certain): Gyro, rate sensor and MEMS.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -23,29 +23,23 @@ pub struct SetRateGyroConfiguration {
     /// X-Rate Sensor Offset (bits 24 to 39): raw, -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    /// Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
     pub x_rate_sensor_offset: i16,
     /// Y-Rate Sensor Offset (bits 40 to 55): raw, -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    /// Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
     pub y_rate_sensor_offset: i16,
     /// Z-Rate Sensor Offset (bits 56 to 71): raw, -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    /// Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
     pub z_rate_sensor_offset: i16,
     /// RateSensorMult (bits 72 to 79): 0 to 255.
     ///
     /// Factor on the rate sensor measurements.
     ///
-    /// Erratum ACP-130 (open): RateSensorMult has no scale and no blanks.
+    /// Note ACP-130 (open): RateSensorMult has no scale and no blanks.
     pub rate_sensor_mult: u8,
 }
 
@@ -179,6 +173,7 @@ const Z_RATE_SENSOR_OFFSET: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for SetRateGyroConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 23;
 
     #[inline]
@@ -188,6 +183,7 @@ impl crate::wire::Telecommand for SetRateGyroConfiguration {
 }
 
 impl crate::wire::Telemetry for SetRateGyroConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 138;
 
     #[inline]

@@ -10,7 +10,7 @@ use crate::support::{put, take, Coded, Error, Scale};
 ///
 /// Gains and reference of the reaction-wheel mode.
 ///
-/// Erratum ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,29 +19,29 @@ pub struct SetReactionWheelControlParameters {
     ///
     /// Kp2.
     ///
-    /// Erratum ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units.
     pub rwheel_proportional_gain: f32,
     /// RWheel Derivative Gain (bits 32 to 63): 32-bit float.
     ///
     /// Kd2.
     ///
-    /// Erratum ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units.
     pub rwheel_derivative_gain: f32,
     /// Y-Wheel Bias Momentum (bits 64 to 95): 32-bit float, in Nms.
     ///
     /// H-bias.
     ///
-    /// Erratum ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels.
+    /// Note ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels.
     pub y_wheel_bias_momentum: f32,
     /// Sun-pointing Facet (bits 96 to 102).
     ///
     /// Body axis that is turned towards the sun.
     ///
-    /// Erratum ACP-126 (open): AxisSelect is used where Not Used is no answer.
+    /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
     ///
-    /// Erratum ACP-166 (certain): Facets have 7 bits and 8 bits.
+    /// Note ACP-166 (certain): Facets have 7 bits and 8 bits.
     ///
-    /// Erratum ACP-177 (open): Sun-pointing facet and special control selection.
+    /// Note ACP-177 (open): Sun-pointing facet and special control selection.
     pub sun_pointing_facet: Coded<enums::AxisSelect>,
     /// Automatic Control Transition due to Wheel Errors (bit 103).
     ///
@@ -122,6 +122,7 @@ const SUN_POINTING_FACET: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for SetReactionWheelControlParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 40;
 
     #[inline]
@@ -131,6 +132,7 @@ impl crate::wire::Telecommand for SetReactionWheelControlParameters {
 }
 
 impl crate::wire::Telemetry for SetReactionWheelControlParameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 217;
 
     #[inline]

@@ -8,9 +8,9 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// Of CubeStar.
 ///
-/// Erratum ACP-020 (open): Reserved bits.
+/// Note ACP-020 (open): Reserved bits.
 ///
-/// Erratum ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,55 +18,49 @@ pub struct SetStarTrackerConfiguration {
     /// StarTracker Mounting Transform Alpha Angle (bits 0 to 15): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub star_tracker_mounting_transform_alpha_angle: i16,
     /// StarTracker Mounting Transform Beta Angle (bits 16 to 31): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub star_tracker_mounting_transform_beta_angle: i16,
     /// StarTracker Mounting Transform Gamma Angle (bits 32 to 47): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-157 (open): Mounting angles: order of rotation.
+    /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub star_tracker_mounting_transform_gamma_angle: i16,
     /// StarTracker exposure time (bits 48 to 63): 0 to 65535.
     ///
     /// Register value.
     ///
-    /// Erratum ACP-145 (open): Exposure and gain are register values.
+    /// Note ACP-145 (open): Exposure and gain are register values.
     ///
-    /// Erratum ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
     pub star_tracker_exposure_time: u16,
     /// StarTracker analog gain (bits 64 to 79): 0 to 65535.
     ///
     /// Register value.
     ///
-    /// Erratum ACP-145 (open): Exposure and gain are register values.
+    /// Note ACP-145 (open): Exposure and gain are register values.
     pub star_tracker_analog_gain: u16,
     /// StarTracker detection threshold (bits 80 to 87): 0 to 255.
     ///
-    /// Erratum ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     pub star_tracker_detection_threshold: u8,
     /// StarTracker star threshold (bits 88 to 95): 0 to 255.
     ///
-    /// Erratum ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     pub star_tracker_star_threshold: u8,
     /// Maximum Star Matched (bits 96 to 103): 0 to 255.
     ///
     /// Most stars that are matched.
     ///
-    /// Erratum ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     pub maximum_star_matched: u8,
     /// Detection Timeout duration (bits 104 to 119): 0 to 65535.
     ///
-    /// Erratum ACP-141 (open): Detection timeout has no unit.
+    /// Note ACP-141 (open): Detection timeout has no unit.
     pub detection_timeout_duration: u16,
     /// Maximum Star Pixel (bits 120 to 127): 0 to 255.
     ///
@@ -81,15 +75,13 @@ pub struct SetStarTrackerConfiguration {
     ///
     /// Of the star identification.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
+    /// Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
     pub star_tracker_error_margin: u8,
     /// Star Tracker Delay Time (bits 144 to 159): 0 to 65535 ms.
     ///
     /// Erratum ACP-140 (certain): milliseconds is ms.
     ///
-    /// Erratum ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
     pub star_tracker_delay_time: u16,
     /// Star Tracker Centroid X (bits 160 to 191): 32-bit float, in pixels.
     ///
@@ -103,51 +95,45 @@ pub struct SetStarTrackerConfiguration {
     pub star_tracker_focal_length: f32,
     /// K1 radial distortion coefficient (bits 256 to 287): 32-bit float, in gain.
     ///
-    /// Erratum ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): gain is no unit.
     pub k1_radial_distortion_coefficient: f32,
     /// K2 radial distortion coefficient (bits 288 to 319): 32-bit float, in gain.
     ///
-    /// Erratum ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): gain is no unit.
     pub k2_radial_distortion_coefficient: f32,
     /// P1 tangential distortion coefficient (bits 320 to 351): 32-bit float, in gain.
     ///
-    /// Erratum ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): gain is no unit.
     pub p1_tangential_distortion_coefficient: f32,
     /// P2 tangential distortion coefficient (bits 352 to 383): 32-bit float, in gain.
     ///
-    /// Erratum ACP-144 (certain): gain is no unit.
+    /// Note ACP-144 (certain): gain is no unit.
     pub p2_tangential_distortion_coefficient: f32,
     /// Star tracking window width (bits 384 to 391): 0 to 255.
     ///
-    /// Erratum ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     ///
-    /// Erratum ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
     pub star_tracking_window_width: u8,
     /// Star Tracking Margin (bits 392 to 399): raw, 0 to 255; physical `raw/100.0`, 0 to 2.55.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
+    /// Note ACP-143 (open): Margins and search width have no unit.
     ///
-    /// Erratum ACP-143 (open): Margins and search width have no unit.
-    ///
-    /// Erratum ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
     pub star_tracking_margin: u8,
     /// Star Validation Margin (bits 400 to 407): raw, 0 to 255; physical `raw/100.0`, 0 to 2.55.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-143 (open): Margins and search width have no unit.
+    /// Note ACP-143 (open): Margins and search width have no unit.
     pub star_validation_margin: u8,
     /// Star Tracking Module Enable (bit 408).
     pub star_tracking_module_enable: bool,
     /// Star Tracking Location Prediction Enable (bit 409).
     ///
-    /// Erratum ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
     pub star_tracking_location_prediction_enable: bool,
     /// Star Tracking Search Width (bits 416 to 423): raw, 0 to 255; physical `raw/5.0`, 0 to 51.
     ///
-    /// Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-    ///
-    /// Erratum ACP-143 (open): Margins and search width have no unit.
+    /// Note ACP-143 (open): Margins and search width have no unit.
     pub star_tracking_search_width: u8,
 }
 
@@ -442,6 +428,7 @@ const STAR_TRACKING_SEARCH_WIDTH: Scale = Scale {
 };
 
 impl crate::wire::Telecommand for SetStarTrackerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 37;
 
     #[inline]
@@ -451,6 +438,7 @@ impl crate::wire::Telecommand for SetStarTrackerConfiguration {
 }
 
 impl crate::wire::Telemetry for SetStarTrackerConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 202;
 
     #[inline]

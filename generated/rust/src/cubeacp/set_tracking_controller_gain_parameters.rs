@@ -10,7 +10,7 @@ use crate::support::{put, take, Coded, Error};
 ///
 /// Gains of the tracking mode.
 ///
-/// Erratum ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -19,25 +19,25 @@ pub struct SetTrackingControllerGainParameters {
     ///
     /// Kp3.
     ///
-    /// Erratum ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units.
     pub tracking_proportional_gain: f32,
     /// Tracking Derivative Gain (bits 32 to 63): 32-bit float.
     ///
     /// Kd3.
     ///
-    /// Erratum ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units.
     pub tracking_derivative_gain: f32,
     /// Tracking Integral Gain (bits 64 to 95): 32-bit float.
     ///
     /// Ki3.
     ///
-    /// Erratum ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units.
     pub tracking_integral_gain: f32,
     /// Target-tracking Facet (bits 96 to 103).
     ///
     /// Body axis that is pointed at the target.
     ///
-    /// Erratum ACP-126 (open): AxisSelect is used where Not Used is no answer.
+    /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
     pub target_tracking_facet: Coded<enums::AxisSelect>,
 }
 
@@ -90,6 +90,7 @@ impl SetTrackingControllerGainParameters {
 }
 
 impl crate::wire::Telecommand for SetTrackingControllerGainParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 54;
 
     #[inline]
@@ -99,6 +100,7 @@ impl crate::wire::Telecommand for SetTrackingControllerGainParameters {
 }
 
 impl crate::wire::Telemetry for SetTrackingControllerGainParameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 221;
 
     #[inline]

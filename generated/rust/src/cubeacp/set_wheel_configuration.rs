@@ -7,30 +7,30 @@ use crate::support::{Coded, Error};
 
 /// Set Wheel Configuration: configuration, set by 22 and got by 137, 4 bytes. Table 181.
 ///
-/// Erratum ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetWheelConfiguration {
     /// RW1 Configuration (bits 0 to 7).
     ///
-    /// Erratum ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
     pub rw1_configuration: Coded<enums::AxisSelect>,
     /// RW2 Configuration (bits 8 to 15).
     ///
-    /// Erratum ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
     pub rw2_configuration: Coded<enums::AxisSelect>,
     /// RW3 Configuration (bits 16 to 23).
     ///
-    /// Erratum ACP-129 (open): Reaction wheels are RW1 and RW-X.
+    /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
     pub rw3_configuration: Coded<enums::AxisSelect>,
     /// RW4 Configuration (bits 24 to 31).
     ///
     /// Wheel 4 or the momentum wheel.
     ///
-    /// Erratum ACP-127 (open): Four wheels can be configured, three are reported.
+    /// Note ACP-127 (open): Four wheels can be configured, three are reported.
     ///
-    /// Erratum ACP-128 (open): RW4 or Momentum wheel.
+    /// Note ACP-128 (open): RW4 or Momentum wheel.
     pub rw4_configuration: Coded<enums::AxisSelect>,
 }
 
@@ -83,6 +83,7 @@ impl SetWheelConfiguration {
 }
 
 impl crate::wire::Telecommand for SetWheelConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 22;
 
     #[inline]
@@ -92,6 +93,7 @@ impl crate::wire::Telecommand for SetWheelConfiguration {
 }
 
 impl crate::wire::Telemetry for SetWheelConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 137;
 
     #[inline]

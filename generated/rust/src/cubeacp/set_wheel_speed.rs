@@ -8,7 +8,7 @@ use crate::support::{put, take, Error};
 ///
 /// Only valid while the control mode is None.
 ///
-/// Erratum ACP-023 (certain): Control mode None does not exist.
+/// Note ACP-023 (certain): Control mode None does not exist.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -66,6 +66,7 @@ impl SetWheelSpeed {
 }
 
 impl crate::wire::Telecommand for SetWheelSpeed {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 17;
 
     #[inline]

@@ -8,7 +8,7 @@ use crate::support::{put, take, Error};
 ///
 /// Gains and reference of the Y-wheel mode.
 ///
-/// Erratum ACP-125 (certain): Eight messages are named Set and can be read.
+/// Note ACP-125 (certain): Eight messages are named Set and can be read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -17,35 +17,35 @@ pub struct SetYWheelControlParameters {
     ///
     /// Kh.
     ///
-    /// Erratum ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units.
     ///
-    /// Erratum ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel.
+    /// Note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel.
     pub y_momentum_control_gain: f32,
     /// Y-momentum Nutation Damping Gain (bits 32 to 63): 32-bit float.
     ///
     /// Kn.
     ///
-    /// Erratum ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units.
     ///
-    /// Erratum ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel.
+    /// Note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel.
     pub y_momentum_nutation_damping_gain: f32,
     /// Y-momentum Proportional Gain (bits 64 to 95): 32-bit float.
     ///
     /// Kp1.
     ///
-    /// Erratum ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units.
     pub y_momentum_proportional_gain: f32,
     /// Y-momentum Derivative Gain (bits 96 to 127): 32-bit float.
     ///
     /// Kd1.
     ///
-    /// Erratum ACP-163 (open): Gains have no units.
+    /// Note ACP-163 (open): Gains have no units.
     pub y_momentum_derivative_gain: f32,
     /// Reference Wheel Momentum (bits 128 to 159): 32-bit float, in Nms.
     ///
     /// H-ref. Must be below 0 Nms.
     ///
-    /// Erratum ACP-162 (certain): Limits of a sign in words only.
+    /// Note ACP-162 (certain): Limits of a sign in words only.
     pub reference_wheel_momentum: f32,
 }
 
@@ -102,6 +102,7 @@ impl SetYWheelControlParameters {
 }
 
 impl crate::wire::Telecommand for SetYWheelControlParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 39;
 
     #[inline]
@@ -111,6 +112,7 @@ impl crate::wire::Telecommand for SetYWheelControlParameters {
 }
 
 impl crate::wire::Telemetry for SetYWheelControlParameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 209;
 
     #[inline]

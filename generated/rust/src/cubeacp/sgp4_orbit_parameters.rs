@@ -19,7 +19,7 @@ pub struct Sgp4OrbitParameters {
     pub argument_of_perigee: f64,
     /// B-Star drag term (bits 256 to 319): 64-bit float.
     ///
-    /// Erratum ACP-161 (open): B-Star has no unit.
+    /// Note ACP-161 (open): B-Star has no unit.
     pub b_star_drag_term: f64,
     /// Mean Motion (bits 320 to 383): 64-bit float, in orbits/day.
     pub mean_motion: f64,
@@ -29,7 +29,7 @@ pub struct Sgp4OrbitParameters {
     ///
     /// Year and day in one number.
     ///
-    /// Erratum ACP-160 (open): Epoch: year.day.
+    /// Note ACP-160 (open): Epoch: year.day.
     pub epoch: f64,
 }
 
@@ -91,6 +91,7 @@ impl Sgp4OrbitParameters {
 }
 
 impl crate::wire::Telecommand for Sgp4OrbitParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 45;
 
     #[inline]
@@ -100,6 +101,7 @@ impl crate::wire::Telecommand for Sgp4OrbitParameters {
 }
 
 impl crate::wire::Telemetry for Sgp4OrbitParameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 207;
 
     #[inline]

@@ -13,19 +13,19 @@ pub struct Star1OrbitVector {
     ///
     /// Vector in the orbit frame.
     ///
-    /// Erratum ACP-091 (certain): Star vectors: X-vector is a component.
+    /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star1_orbit_x: i16,
     /// Star1OY (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     ///
-    /// Erratum ACP-091 (certain): Star vectors: X-vector is a component.
+    /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star1_orbit_y: i16,
     /// Star1OZ (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     ///
-    /// Erratum ACP-091 (certain): Star vectors: X-vector is a component.
+    /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star1_orbit_z: i16,
 }
 
@@ -149,6 +149,7 @@ const STAR1_ORBIT_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for Star1OrbitVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 184;
 
     #[inline]

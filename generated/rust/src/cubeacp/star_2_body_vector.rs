@@ -13,19 +13,19 @@ pub struct Star2BodyVector {
     ///
     /// Vector in the body frame.
     ///
-    /// Erratum ACP-091 (certain): Star vectors: X-vector is a component.
+    /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star2_body_x: i16,
     /// Star2BY (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     ///
-    /// Erratum ACP-091 (certain): Star vectors: X-vector is a component.
+    /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star2_body_y: i16,
     /// Star2BZ (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     ///
-    /// Erratum ACP-091 (certain): Star vectors: X-vector is a component.
+    /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star2_body_z: i16,
 }
 
@@ -149,6 +149,7 @@ const STAR2_BODY_Z: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for Star2BodyVector {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 182;
 
     #[inline]

@@ -15,15 +15,15 @@ pub struct Star3RawData {
     ///
     /// Number in the star catalogue.
     ///
-    /// Erratum ACP-117 (open): Catalogue number or catalogue index.
+    /// Note ACP-117 (open): Catalogue number or catalogue index.
     pub catalogue_star_3: u16,
     /// Centroid X Star 3 (bits 16 to 31): -32768 to 32767.
     ///
-    /// Erratum ACP-116 (open): Star centroids have no scale.
+    /// Note ACP-116 (open): Star centroids have no scale.
     pub centroid_x_star_3: i16,
     /// Centroid Y Star 3 (bits 32 to 47): -32768 to 32767.
     ///
-    /// Erratum ACP-116 (open): Star centroids have no scale.
+    /// Note ACP-116 (open): Star centroids have no scale.
     pub centroid_y_star_3: i16,
 }
 
@@ -72,6 +72,7 @@ impl Star3RawData {
 }
 
 impl crate::wire::Telemetry for Star3RawData {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 214;
 
     #[inline]

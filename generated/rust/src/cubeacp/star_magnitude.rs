@@ -15,19 +15,19 @@ pub struct StarMagnitude {
     ///
     /// Instrument magnitude.
     ///
-    /// Erratum ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): Star magnitudes have no scale.
     pub magnitude_star_1: u16,
     /// Magnitude Star 2 (bits 16 to 31): 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
-    /// Erratum ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): Star magnitudes have no scale.
     pub magnitude_star_2: u16,
     /// Magnitude Star 3 (bits 32 to 47): 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
-    /// Erratum ACP-092 (open): Star magnitudes have no scale.
+    /// Note ACP-092 (open): Star magnitudes have no scale.
     pub magnitude_star_3: u16,
 }
 
@@ -76,6 +76,7 @@ impl StarMagnitude {
 }
 
 impl crate::wire::Telemetry for StarMagnitude {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 187;
 
     #[inline]

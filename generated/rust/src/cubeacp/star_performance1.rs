@@ -9,33 +9,33 @@ use crate::support::{Coded, Error};
 ///
 /// Quality of the star measurement, frame 1.
 ///
-/// Erratum ACP-096 (certain): Star Performance2 has the description of Star Performance1.
+/// Note ACP-096 (certain): Star Performance2 has the description of Star Performance1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct StarPerformance1 {
     /// Number of stars detected (bits 0 to 7): 0 to 255 stars.
     ///
-    /// Erratum ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     pub number_of_stars_detected: u8,
     /// Star image noise (bits 8 to 15): 0 to 255 noise.
     ///
-    /// Erratum ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     ///
-    /// Erratum ACP-094 (open): Star image noise has no scale.
+    /// Note ACP-094 (open): Star image noise has no scale.
     pub star_image_noise: u8,
     /// Invalid Stars (bits 16 to 23): 0 to 255 Invalid stars.
     ///
     /// How many of the detected stars are invalid.
     ///
-    /// Erratum ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     pub invalid_stars: u8,
     /// Number of stars identified (bits 24 to 31): 0 to 255 stars.
     ///
-    /// Erratum ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     pub number_of_stars_identified: u8,
     /// Identification mode (bits 32 to 39).
@@ -44,10 +44,10 @@ pub struct StarPerformance1 {
     ///
     /// Mean of the centre line of the image.
     ///
-    /// Erratum ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     ///
-    /// Erratum ACP-095 (open): Image dark value is the mean of a centre line.
+    /// Note ACP-095 (open): Image dark value is the mean of a centre line.
     pub image_dark_value: u8,
 }
 
@@ -102,6 +102,7 @@ impl StarPerformance1 {
 }
 
 impl crate::wire::Telemetry for StarPerformance1 {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 188;
 
     #[inline]

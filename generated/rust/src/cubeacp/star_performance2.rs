@@ -8,7 +8,7 @@ use crate::support::{flags, put, take, Error};
 ///
 /// Quality of the star measurement, frame 2.
 ///
-/// Erratum ACP-096 (certain): Star Performance2 has the description of Star Performance1.
+/// Note ACP-096 (certain): Star Performance2 has the description of Star Performance1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -21,7 +21,7 @@ pub struct StarPerformance2 {
     pub identification_success: bool,
     /// AttitudeSuccess (bit 3).
     ///
-    /// Erratum ACP-115 (certain): AttitudeSuccess is written in one piece.
+    /// Note ACP-115 (certain): AttitudeSuccess is written in one piece.
     pub attitude_success: bool,
     /// Processing Time Error (bit 4).
     pub processing_time_error: bool,
@@ -33,7 +33,7 @@ pub struct StarPerformance2 {
     pub comms_error: bool,
     /// Sample Period (bits 8 to 23): 0 to 65535.
     ///
-    /// Erratum ACP-113 (open): Sample period of the star tracker has no unit.
+    /// Note ACP-113 (open): Sample period of the star tracker has no unit.
     pub sample_period: u16,
     /// Star 1 confidence (bits 24 to 31): 0 to 255 %.
     ///
@@ -113,6 +113,7 @@ impl StarPerformance2 {
 }
 
 impl crate::wire::Telemetry for StarPerformance2 {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 231;
 
     #[inline]

@@ -64,6 +64,7 @@ impl StarTiming {
 }
 
 impl crate::wire::Telemetry for StarTiming {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 189;
 
     #[inline]

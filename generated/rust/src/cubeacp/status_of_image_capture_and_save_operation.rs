@@ -7,7 +7,7 @@ use crate::support::{Coded, Error};
 
 /// Status of Image Capture and Save Operation: telemetry 233, 2 bytes. Table 176.
 ///
-/// Erratum ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
+/// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -16,7 +16,7 @@ pub struct StatusOfImageCaptureAndSaveOperation {
     pub percentage_complete: u8,
     /// Status (bits 8 to 15).
     ///
-    /// Erratum ACP-124 (open): Image status: no value for busy or done.
+    /// Note ACP-124 (open): Image status: no value for busy or done.
     pub status: Coded<enums::ImSaveStatus>,
 }
 
@@ -63,6 +63,7 @@ impl StatusOfImageCaptureAndSaveOperation {
 }
 
 impl crate::wire::Telemetry for StatusOfImageCaptureAndSaveOperation {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 233;
 
     #[inline]

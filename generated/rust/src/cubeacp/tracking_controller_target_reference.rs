@@ -14,17 +14,17 @@ use crate::support::{put, take, Error};
 pub struct TrackingControllerTargetReference {
     /// Geocentric longitude of target (bits 0 to 31): 32-bit float, in deg.
     ///
-    /// Erratum ACP-138 (open): Target is geocentric, position is geodetic.
+    /// Note ACP-138 (open): Target is geocentric, position is geodetic.
     pub geocentric_longitude_of_target: f32,
     /// Geocentric latitude of target (bits 32 to 63): 32-bit float, in deg.
     ///
-    /// Erratum ACP-138 (open): Target is geocentric, position is geodetic.
+    /// Note ACP-138 (open): Target is geocentric, position is geodetic.
     pub geocentric_latitude_of_target: f32,
     /// Geocentric altitude of target (bits 64 to 95): 32-bit float, in m.
     ///
-    /// Erratum ACP-138 (open): Target is geocentric, position is geodetic.
-    ///
     /// Erratum ACP-139 (certain): meter is m.
+    ///
+    /// Note ACP-138 (open): Target is geocentric, position is geodetic.
     pub geocentric_altitude_of_target: f32,
 }
 
@@ -75,6 +75,7 @@ impl TrackingControllerTargetReference {
 }
 
 impl crate::wire::Telecommand for TrackingControllerTargetReference {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 55;
 
     #[inline]
@@ -84,6 +85,7 @@ impl crate::wire::Telecommand for TrackingControllerTargetReference {
 }
 
 impl crate::wire::Telemetry for TrackingControllerTargetReference {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 200;
 
     #[inline]

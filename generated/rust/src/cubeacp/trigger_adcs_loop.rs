@@ -49,6 +49,7 @@ impl TriggerAdcsLoop {
 }
 
 impl crate::wire::Telecommand for TriggerAdcsLoop {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 18;
 
     #[inline]

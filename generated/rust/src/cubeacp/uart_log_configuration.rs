@@ -15,14 +15,14 @@ pub struct UartLogConfiguration {
     ///
     /// Mask of up to 80 telemetry frames.
     ///
-    /// Erratum ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
+    /// Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub log_selection: [u8; 10],
     /// Log Period (bits 80 to 95): 0 to 65535.
     ///
     /// 0: logging disabled.
     ///
-    /// Erratum ACP-183 (open): Log period has no unit.
+    /// Note ACP-183 (open): Log period has no unit.
     pub log_period: u16,
 }
 
@@ -73,6 +73,7 @@ impl UartLogConfiguration {
 }
 
 impl crate::wire::Telecommand for UartLogConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 106;
 
     #[inline]
@@ -82,6 +83,7 @@ impl crate::wire::Telecommand for UartLogConfiguration {
 }
 
 impl crate::wire::Telemetry for UartLogConfiguration {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 237;
 
     #[inline]

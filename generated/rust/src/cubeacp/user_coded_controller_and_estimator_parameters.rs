@@ -12,12 +12,12 @@ use crate::support::{array, put_array, Error};
 pub struct UserCodedControllerAndEstimatorParameters {
     /// User Coded Controller Settings (bits 0 to 383): 48 bytes.
     ///
-    /// Erratum ACP-178 (open): User coded settings: content of the arrays.
+    /// Note ACP-178 (open): User coded settings: content of the arrays.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub user_coded_controller_settings: [u8; 48],
     /// User Coded Estimator Settings (bits 384 to 767): 48 bytes.
     ///
-    /// Erratum ACP-178 (open): User coded settings: content of the arrays.
+    /// Note ACP-178 (open): User coded settings: content of the arrays.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub user_coded_estimator_settings: [u8; 48],
 }
@@ -76,6 +76,7 @@ impl Default for UserCodedControllerAndEstimatorParameters {
 }
 
 impl crate::wire::Telecommand for UserCodedControllerAndEstimatorParameters {
+    const NODE: &'static str = "cubeacp";
     const TELECOMMAND_ID: u8 = 29;
 
     #[inline]
@@ -85,6 +86,7 @@ impl crate::wire::Telecommand for UserCodedControllerAndEstimatorParameters {
 }
 
 impl crate::wire::Telemetry for UserCodedControllerAndEstimatorParameters {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 226;
 
     #[inline]

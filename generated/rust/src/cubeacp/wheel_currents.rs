@@ -13,21 +13,21 @@ use crate::support::{put, take, Error, Scale};
 pub struct WheelCurrents {
     /// Wheel1Current (bits 0 to 15): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Erratum ACP-083 (open): Wheel currents: by number, described by axis.
+    /// Note ACP-083 (open): Wheel currents: by number, described by axis.
     ///
-    /// Erratum ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub wheel1_current: u16,
     /// Wheel2Current (bits 16 to 31): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Erratum ACP-083 (open): Wheel currents: by number, described by axis.
+    /// Note ACP-083 (open): Wheel currents: by number, described by axis.
     ///
-    /// Erratum ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub wheel2_current: u16,
     /// Wheel3Current (bits 32 to 47): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
-    /// Erratum ACP-083 (open): Wheel currents: by number, described by axis.
+    /// Note ACP-083 (open): Wheel currents: by number, described by axis.
     ///
-    /// Erratum ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub wheel3_current: u16,
 }
 
@@ -151,6 +151,7 @@ const WHEEL3_CURRENT: Scale = Scale {
 };
 
 impl crate::wire::Telemetry for WheelCurrents {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 173;
 
     #[inline]

@@ -64,6 +64,7 @@ impl WheelSpeed {
 }
 
 impl crate::wire::Telemetry for WheelSpeed {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 156;
 
     #[inline]

@@ -11,15 +11,15 @@ use crate::support::{put, take, Error};
 pub struct WheelSpeedCommands {
     /// Commanded X Wheel Speed (bits 0 to 15): -32768 to 32767 rpm.
     ///
-    /// Erratum ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
     pub commanded_x_wheel_speed: i16,
     /// Commanded Y Wheel Speed (bits 16 to 31): -32768 to 32767 rpm.
     ///
-    /// Erratum ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
     pub commanded_y_wheel_speed: i16,
     /// Commanded Z Wheel Speed (bits 32 to 47): -32768 to 32767 rpm.
     ///
-    /// Erratum ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
+    /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
     pub commanded_z_wheel_speed: i16,
 }
 
@@ -68,6 +68,7 @@ impl WheelSpeedCommands {
 }
 
 impl crate::wire::Telemetry for WheelSpeedCommands {
+    const NODE: &'static str = "cubeacp";
     const TELEMETRY_ID: u8 = 158;
 
     #[inline]

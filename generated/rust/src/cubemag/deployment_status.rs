@@ -8,11 +8,11 @@ use crate::support::{flags, put, take, Error};
 ///
 /// Only for the CubeMag of type Deploy.
 ///
-/// Erratum MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
+/// Note MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
 ///
-/// Erratum MAG-011 (open): Deployment Status: how to tell the type, and what other types answer.
+/// Note MAG-011 (open): Deployment Status: how to tell the type, and what other types answer.
 ///
-/// Erratum MAG-015 (open): Deployment Status and measurements end in unexplained bits.
+/// Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -21,37 +21,37 @@ pub struct DeploymentStatus {
     ///
     /// Through the burn wire.
     ///
-    /// Erratum MAG-012 (open): Burn Current: 32 bits of whole milliamperes.
+    /// Note MAG-012 (open): Burn Current: 32 bits of whole milliamperes.
     pub burn_current: u32,
     /// Deployment Pin State (bit 32).
     ///
     /// Pin that detects the deployment.
     ///
-    /// Erratum MAG-013 (open): Polarity of the deployment pins is not given.
+    /// Note MAG-013 (open): Polarity of the deployment pins is not given.
     pub deployment_pin_state: bool,
     /// Burn Pin State (bit 33).
     ///
     /// Pin that enables the burn wire.
     ///
-    /// Erratum MAG-013 (open): Polarity of the deployment pins is not given.
+    /// Note MAG-013 (open): Polarity of the deployment pins is not given.
     pub burn_pin_state: bool,
     /// Burn UnderCurrent (bit 34).
     ///
     /// Too little current through the burn wire.
     ///
-    /// Erratum MAG-014 (open): Limits of the burn current and the configured time-out.
+    /// Note MAG-014 (open): Limits of the burn current and the configured time-out.
     pub burn_under_current: bool,
     /// Burn OverCurrent (bit 35).
     ///
     /// Too much current through the burn wire.
     ///
-    /// Erratum MAG-014 (open): Limits of the burn current and the configured time-out.
+    /// Note MAG-014 (open): Limits of the burn current and the configured time-out.
     pub burn_over_current: bool,
     /// Deployment Timeout (bit 36).
     ///
     /// No deployment was detected within the configured time.
     ///
-    /// Erratum MAG-014 (open): Limits of the burn current and the configured time-out.
+    /// Note MAG-014 (open): Limits of the burn current and the configured time-out.
     pub deployment_timeout: bool,
 }
 
@@ -107,6 +107,7 @@ impl DeploymentStatus {
 }
 
 impl crate::wire::Telemetry for DeploymentStatus {
+    const NODE: &'static str = "cubemag";
     const TELEMETRY_ID: u8 = 190;
 
     #[inline]

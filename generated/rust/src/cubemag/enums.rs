@@ -8,7 +8,7 @@ use crate::support::Enumeration;
 ///
 /// State of the CubeMag service.
 ///
-/// Erratum MAG-008 (open): MagState has no deployed state.
+/// Note MAG-008 (open): MagState has no deployed state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -91,7 +91,7 @@ impl From<MagState> for u8 {
 ///
 /// State of a magnetometer service.
 ///
-/// Erratum MAG-009 (open): MntState: Mnt is not explained.
+/// Note MAG-009 (open): MntState: Mnt is not explained.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -108,11 +108,11 @@ pub enum MntState {
     ///
     /// Sampling automatically.
     ///
-    /// Erratum MAG-010 (open): MntState: Auto and Sample.
+    /// Note MAG-010 (open): MntState: Auto and Sample.
     Auto,
     /// Sample (4).
     ///
-    /// Erratum MAG-010 (open): MntState: Auto and Sample.
+    /// Note MAG-010 (open): MntState: Auto and Sample.
     Sample,
     /// Error (5).
     Error,

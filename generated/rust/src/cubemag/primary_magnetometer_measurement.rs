@@ -6,40 +6,40 @@ use crate::support::{put, take, Error};
 
 /// Primary Magnetometer Measurement: telemetry 197, 13 bytes. Table 68.
 ///
-/// Erratum MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
+/// Note MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
 ///
-/// Erratum MAG-015 (open): Deployment Status and measurements end in unexplained bits.
+/// Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct PrimaryMagnetometerMeasurement {
     /// X_axis (bits 0 to 31): 32-bit float, in nT.
     ///
-    /// Erratum MAG-016 (likely): FLOAT is not defined.
+    /// Note MAG-016 (likely): FLOAT is not defined.
     ///
-    /// Erratum MAG-017 (open): Axes of the measurements are not defined.
+    /// Note MAG-017 (open): Axes of the measurements are not defined.
     ///
-    /// Erratum MAG-018 (certain): nT here, uT there.
+    /// Note MAG-018 (certain): nT here, uT there.
     pub x_axis: f32,
     /// Y_axis (bits 32 to 63): 32-bit float, in nT.
     ///
-    /// Erratum MAG-016 (likely): FLOAT is not defined.
+    /// Note MAG-016 (likely): FLOAT is not defined.
     ///
-    /// Erratum MAG-017 (open): Axes of the measurements are not defined.
+    /// Note MAG-017 (open): Axes of the measurements are not defined.
     ///
-    /// Erratum MAG-018 (certain): nT here, uT there.
+    /// Note MAG-018 (certain): nT here, uT there.
     pub y_axis: f32,
     /// Z_axis (bits 64 to 95): 32-bit float, in nT.
     ///
-    /// Erratum MAG-016 (likely): FLOAT is not defined.
+    /// Note MAG-016 (likely): FLOAT is not defined.
     ///
-    /// Erratum MAG-017 (open): Axes of the measurements are not defined.
+    /// Note MAG-017 (open): Axes of the measurements are not defined.
     ///
-    /// Erratum MAG-018 (certain): nT here, uT there.
+    /// Note MAG-018 (certain): nT here, uT there.
     pub z_axis: f32,
     /// Data Valid (bit 96).
     ///
-    /// Erratum MAG-019 (open): Measurements carry no time.
+    /// Note MAG-019 (open): Measurements carry no time.
     pub data_valid: bool,
 }
 
@@ -90,6 +90,7 @@ impl PrimaryMagnetometerMeasurement {
 }
 
 impl crate::wire::Telemetry for PrimaryMagnetometerMeasurement {
+    const NODE: &'static str = "cubemag";
     const TELEMETRY_ID: u8 = 197;
 
     #[inline]

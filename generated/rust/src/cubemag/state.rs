@@ -9,11 +9,11 @@ use crate::support::{Coded, Error};
 ///
 /// States of all services.
 ///
-/// Erratum MAG-004 (certain): Number 57 is used twice in the addendum.
+/// Note MAG-004 (certain): Number 57 is used twice in the addendum.
 ///
-/// Erratum MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
+/// Note MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
 ///
-/// Erratum MAG-006 (open): State is described as all service states.
+/// Note MAG-006 (open): State is described as all service states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -22,19 +22,19 @@ pub struct State {
     ///
     /// Of the CubeMag service.
     ///
-    /// Erratum MAG-007 (certain): State: names are cut short in three ways.
+    /// Note MAG-007 (certain): State: names are cut short in three ways.
     pub mag_svc_state: Coded<enums::MagState>,
     /// Primary Mag State (bits 8 to 15).
     ///
     /// Of the primary magnetometer.
     ///
-    /// Erratum MAG-007 (certain): State: names are cut short in three ways.
+    /// Note MAG-007 (certain): State: names are cut short in three ways.
     pub primary_mag_state: Coded<enums::MntState>,
     /// Red Mag State (bits 16 to 23).
     ///
     /// Of the redundant magnetometer.
     ///
-    /// Erratum MAG-007 (certain): State: names are cut short in three ways.
+    /// Note MAG-007 (certain): State: names are cut short in three ways.
     pub red_mag_state: Coded<enums::MntState>,
 }
 
@@ -83,6 +83,7 @@ impl State {
 }
 
 impl crate::wire::Telemetry for State {
+    const NODE: &'static str = "cubemag";
     const TELEMETRY_ID: u8 = 188;
 
     #[inline]

@@ -23,7 +23,7 @@ pub enum WheelErrorState {
     ///
     /// The speed asked for was not reached in time.
     ///
-    /// Erratum WHL-011 (open): Speed Not Reached Timeout: the time allowed is not given.
+    /// Note WHL-011 (open): Speed Not Reached Timeout: the time allowed is not given.
     SpeedNotReachedTimeout,
     /// A value without a name; `from` never puts one with a name here.
     Unknown(u8),

@@ -8,20 +8,20 @@ use crate::support::Error;
 ///
 /// Whether the motor is switched on.
 ///
-/// Erratum WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
+/// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
 ///
-/// Erratum WHL-006 (certain): Ids 188, 196 and 197 are other frames elsewhere.
+/// Note WHL-006 (certain): Ids 188, 196 and 197 are other frames elsewhere.
 ///
-/// Erratum WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
+/// Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
 ///
-/// Erratum WHL-016 (open): Motor Power: seven bits are not described.
+/// Note WHL-016 (open): Motor Power: seven bits are not described.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct MotorPower {
     /// Motor Power Switch (bit 0).
     ///
-    /// Erratum WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
+    /// Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
     pub motor_power_switch: bool,
 }
 
@@ -66,6 +66,7 @@ impl MotorPower {
 }
 
 impl crate::wire::Telemetry for MotorPower {
+    const NODE: &'static str = "cubewheel";
     const TELEMETRY_ID: u8 = 197;
 
     #[inline]

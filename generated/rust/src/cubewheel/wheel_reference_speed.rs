@@ -8,13 +8,13 @@ use crate::support::{put, take, Error};
 ///
 /// Speed that the momentum wheel is set to.
 ///
-/// Erratum WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
+/// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
 ///
-/// Erratum WHL-006 (certain): Ids 188, 196 and 197 are other frames elsewhere.
+/// Note WHL-006 (certain): Ids 188, 196 and 197 are other frames elsewhere.
 ///
-/// Erratum WHL-012 (likely): Wheel Reference Speed is described as a telecommand.
+/// Note WHL-012 (likely): Wheel Reference Speed is described as a telecommand.
 ///
-/// Erratum WHL-013 (open): Momentum wheel in one place, wheel in the others.
+/// Note WHL-013 (open): Momentum wheel in one place, wheel in the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -23,9 +23,9 @@ pub struct WheelReferenceSpeed {
     ///
     /// Erratum WHL-007 (certain): RPM is rpm.
     ///
-    /// Erratum WHL-009 (likely): FLOAT is not defined.
+    /// Note WHL-009 (likely): FLOAT is not defined.
     ///
-    /// Erratum WHL-014 (open): Reference speed and reference torque: which one is in force.
+    /// Note WHL-014 (open): Reference speed and reference torque: which one is in force.
     pub reference_speed: f32,
 }
 
@@ -70,6 +70,7 @@ impl WheelReferenceSpeed {
 }
 
 impl crate::wire::Telemetry for WheelReferenceSpeed {
+    const NODE: &'static str = "cubewheel";
     const TELEMETRY_ID: u8 = 196;
 
     #[inline]

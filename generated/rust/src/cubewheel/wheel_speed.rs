@@ -7,9 +7,9 @@ use crate::support::{put, take, Coded, Error};
 
 /// Wheel Speed: telemetry 188, 5 bytes. Table 47.
 ///
-/// Erratum WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
+/// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
 ///
-/// Erratum WHL-006 (certain): Ids 188, 196 and 197 are other frames elsewhere.
+/// Note WHL-006 (certain): Ids 188, 196 and 197 are other frames elsewhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,13 +18,13 @@ pub struct WheelSpeed {
     ///
     /// Erratum WHL-007 (certain): RPM is rpm.
     ///
-    /// Erratum WHL-008 (open): Wheel speed: float here, integer in the control program.
+    /// Note WHL-008 (open): Wheel speed: float here, integer in the control program.
     ///
-    /// Erratum WHL-009 (likely): FLOAT is not defined.
+    /// Note WHL-009 (likely): FLOAT is not defined.
     pub wheel_speed: f32,
     /// Wheel Error State (bits 32 to 39).
     ///
-    /// Erratum WHL-010 (open): Wheel Error State: data that are valid are an error state.
+    /// Note WHL-010 (open): Wheel Error State: data that are valid are an error state.
     pub wheel_error_state: Coded<enums::WheelErrorState>,
 }
 
@@ -71,6 +71,7 @@ impl WheelSpeed {
 }
 
 impl crate::wire::Telemetry for WheelSpeed {
+    const NODE: &'static str = "cubewheel";
     const TELEMETRY_ID: u8 = 188;
 
     #[inline]

@@ -9,7 +9,7 @@ from ... import _enumeration
 class BootSetProgramsList(_enumeration.OpenEnum):
     """BootSetProgramsList, table 63.
 
-    Erratum BOOT-009: Three enumerations of program places.
+    Note BOOT-009: Three enumerations of program places.
     """
 
     INTERNAL_FLASH_PROGRAM = 1, "Internal Flash Program"

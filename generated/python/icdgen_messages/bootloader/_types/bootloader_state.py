@@ -32,10 +32,9 @@ class BootloaderState(_base.Message):
     Up-time, SRAM state and error flags. The error flags stay set until Clear Error
     Flags.
 
-    Erratum BOOT-004: Ids 7, 132, 232 and 233 mean something else in the control
-    program.
-
     Erratum BOOT-013: Bootloader State: 6 bytes announced, 28 bits described.
+
+    Note BOOT-004: Ids 7, 132, 232 and 233 mean something else in the control program.
     """
 
     __slots__ = (
@@ -106,7 +105,7 @@ class BootloaderState(_base.Message):
     uptime: int
     """Up-time (s): bits 0 to 15, 0 to 65535, in s.
 
-    Erratum BOOT-015: Bootloader State: Up-time is Uptime in seconds.
+    Note BOOT-015: Bootloader State: Up-time is Uptime in seconds.
     """
     sram1_is_enabled: bool
     """SRAM1 is enabled: bit 16."""
@@ -115,12 +114,12 @@ class BootloaderState(_base.Message):
     sram_latchup_error: bool
     """SRAM Latch-up Error occurred and could not be recovered: bit 18.
 
-    Erratum BOOT-017: Latch-up has three spellings.
+    Note BOOT-017: Latch-up has three spellings.
     """
     sram_latchup_recovered: bool
     """SRAM Latch-up Occurred but recovered after power cycle: bit 19.
 
-    Erratum BOOT-017: Latch-up has three spellings.
+    Note BOOT-017: Latch-up has three spellings.
     """
     sd_card_initialisation_error: bool
     """SD card initialisation error: bit 20."""
@@ -151,7 +150,7 @@ class BootloaderState(_base.Message):
     communications_error_with_radio: bool
     """Communications Error with Radio: bit 27.
 
-    Erratum BOOT-016: Bootloader State: a radio that the manual does not know.
+    Note BOOT-016: Bootloader State: a radio that the manual does not know.
     """
 
     def __init__(

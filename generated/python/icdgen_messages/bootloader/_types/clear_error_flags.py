@@ -18,12 +18,11 @@ class ClearErrorFlags(_base.Message):
 
     Clears the latched error flags of Bootloader State.
 
-    Erratum BOOT-004: Ids 7, 132, 232 and 233 mean something else in the control
-    program.
+    Note BOOT-004: Ids 7, 132, 232 and 233 mean something else in the control program.
 
-    Erratum BOOT-005: Clear Error Flags and Clear Errors.
+    Note BOOT-005: Clear Error Flags and Clear Errors.
 
-    Erratum BOOT-006: What the bootloader does with telecommands of the control program.
+    Note BOOT-006: What the bootloader does with telecommands of the control program.
     """
 
     __slots__ = ()

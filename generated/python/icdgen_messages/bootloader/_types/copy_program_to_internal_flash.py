@@ -52,7 +52,7 @@ class CopyProgramToInternalFlash(_base.Message):
     source_program_index: ProgramsList
     """Source Program Index: bits 0 to 7, 0 to 255.
 
-    Erratum BOOT-011: Copy Program to Internal Flash: sources that make no sense.
+    Note BOOT-011: Copy Program to Internal Flash: sources that make no sense.
     """
     bootloader_overwrite_flag: int
     """Bootloader overwrite flag: bits 8 to 15, 0 to 255.
@@ -61,7 +61,7 @@ class CopyProgramToInternalFlash(_base.Message):
 
     90: overwrite the boot segment.
 
-    Erratum BOOT-012: Bootloader overwrite flag is a magic number.
+    Note BOOT-012: Bootloader overwrite flag is a magic number.
     """
 
     def __init__(

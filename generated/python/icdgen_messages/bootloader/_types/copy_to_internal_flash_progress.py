@@ -18,10 +18,9 @@ _BYTES_0 = _codec.Inverse(_BITS_0)
 class CopyToInternalFlashProgress(_base.Message):
     """Copy To Internal Flash Progress: telemetry 233, 1 byte, table 71.
 
-    Erratum BOOT-004: Ids 7, 132, 232 and 233 mean something else in the control
-    program.
+    Note BOOT-004: Ids 7, 132, 232 and 233 mean something else in the control program.
 
-    Erratum BOOT-020: Progress frame without progress.
+    Note BOOT-020: Progress frame without progress.
     """
 
     __slots__ = ("busy", "error")

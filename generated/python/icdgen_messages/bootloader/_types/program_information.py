@@ -22,8 +22,7 @@ class ProgramInformation(_base.Message):
 
     Answer to Read Program Information, to be polled until it is not busy.
 
-    Erratum BOOT-004: Ids 7, 132, 232 and 233 mean something else in the control
-    program.
+    Note BOOT-004: Ids 7, 132, 232 and 233 mean something else in the control program.
     """
 
     __slots__ = ("program_index", "busy", "file_size", "checksum")
@@ -47,8 +46,7 @@ class ProgramInformation(_base.Message):
     program_index: ProgramsList
     """Program Index: bits 0 to 7, 0 to 255.
 
-    Erratum BOOT-018: Read Program Information: whether the answer belongs to the
-    request.
+    Note BOOT-018: Read Program Information: whether the answer belongs to the request.
     """
     busy: bool
     """Busy: bit 8.
@@ -58,16 +56,16 @@ class ProgramInformation(_base.Message):
     file_size: int
     """File Size: bits 16 to 47, 0 to 4294967295, in byte.
 
-    Erratum BOOT-019: Program Information: what the checksum covers.
-
     Erratum BOOT-021: Size of a program has its unit in words only.
+
+    Note BOOT-019: Program Information: what the checksum covers.
     """
     checksum: int
     """Checksum: bits 48 to 63, 0 to 65535.
 
     CRC-16.
 
-    Erratum BOOT-019: Program Information: what the checksum covers.
+    Note BOOT-019: Program Information: what the checksum covers.
     """
 
     def __init__(

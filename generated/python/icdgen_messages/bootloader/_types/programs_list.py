@@ -10,12 +10,12 @@ class ProgramsList(_enumeration.OpenEnum):
     """ProgramsList, table 66."""
 
     BOOTLOADER = 0, "Bootloader"
-    """Erratum BOOT-009: Three enumerations of program places."""
+    """Note BOOT-009: Three enumerations of program places."""
     INTERNAL_FLASH_PROGRAM = 1, "Internal Flash Program"
     EEPROM = 2, "EEPROM"
-    """Erratum BOOT-009: Three enumerations of program places.
+    """Note BOOT-009: Three enumerations of program places.
 
-    Erratum BOOT-010: ProgramsList: places that are no flash programs.
+    Note BOOT-010: ProgramsList: places that are no flash programs.
     """
     EXTERNAL_FLASH_PROGRAM_1 = 3, "External Flash Program 1"
     EXTERNAL_FLASH_PROGRAM_2 = 4, "External Flash Program 2"
@@ -25,18 +25,18 @@ class ProgramsList(_enumeration.OpenEnum):
     EXTERNAL_FLASH_PROGRAM_6 = 8, "External Flash Program 6"
     EXTERNAL_FLASH_PROGRAM_7 = 9, "External Flash Program 7"
     SD_USER_FILE_1 = 10, "SD User file 1"
-    """Erratum BOOT-010: ProgramsList: places that are no flash programs."""
+    """Note BOOT-010: ProgramsList: places that are no flash programs."""
     SD_USER_FILE_2 = 11, "SD User file 2"
-    """Erratum BOOT-010: ProgramsList: places that are no flash programs."""
+    """Note BOOT-010: ProgramsList: places that are no flash programs."""
     SD_USER_FILE_3 = 12, "SD User file 3"
-    """Erratum BOOT-010: ProgramsList: places that are no flash programs."""
+    """Note BOOT-010: ProgramsList: places that are no flash programs."""
     SD_USER_FILE_4 = 13, "SD User file 4"
-    """Erratum BOOT-010: ProgramsList: places that are no flash programs."""
+    """Note BOOT-010: ProgramsList: places that are no flash programs."""
     SD_USER_FILE_5 = 14, "SD User file 5"
-    """Erratum BOOT-010: ProgramsList: places that are no flash programs."""
+    """Note BOOT-010: ProgramsList: places that are no flash programs."""
     SD_USER_FILE_6 = 15, "SD User file 6"
-    """Erratum BOOT-010: ProgramsList: places that are no flash programs."""
+    """Note BOOT-010: ProgramsList: places that are no flash programs."""
     SD_USER_FILE_7 = 16, "SD User file 7"
-    """Erratum BOOT-010: ProgramsList: places that are no flash programs."""
+    """Note BOOT-010: ProgramsList: places that are no flash programs."""
     SD_USER_FILE_8 = 17, "SD User file 8"
-    """Erratum BOOT-010: ProgramsList: places that are no flash programs."""
+    """Note BOOT-010: ProgramsList: places that are no flash programs."""

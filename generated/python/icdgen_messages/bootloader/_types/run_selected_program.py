@@ -20,7 +20,7 @@ class RunSelectedProgram(_base.Message):
 
     The node restarts instead of acknowledging it.
 
-    Erratum BOOT-008: Run Selected Program does not run what was selected elsewhere.
+    Note BOOT-008: Run Selected Program does not run what was selected elsewhere.
     """
 
     __slots__ = ()

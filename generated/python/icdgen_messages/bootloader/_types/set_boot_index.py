@@ -40,7 +40,7 @@ class SetBootIndex(_base.Message):
     program_index: BootSetProgramsList
     """Program Index: bits 0 to 7, 0 to 255.
 
-    Erratum BOOT-007: Set Boot Index selects among one.
+    Note BOOT-007: Set Boot Index selects among one.
     """
 
     def __init__(self, *, program_index: BootSetProgramsList = _DEFAULT_0) -> None:

@@ -18,7 +18,7 @@ class AdvanceFileListReadPointer(_base.Message):
 
     Makes File Information describe the next file.
 
-    Erratum COM-040: A flow diagram is referred to without its number.
+    Note COM-040: A flow diagram is referred to without its number.
     """
 
     __slots__ = ()

@@ -18,9 +18,9 @@ class AdvanceLogPointer(_base.Message):
 
     Moves the pointer of Last Logged Event forward.
 
-    Erratum COM-030: Log pointer telecommands speak of a frame that is named otherwise.
+    Note COM-030: Log pointer telecommands speak of a frame that is named otherwise.
 
-    Erratum COM-031: Log pointer: where it starts and which way it advances.
+    Note COM-031: Log pointer: where it starts and which way it advances.
     """
 
     __slots__ = ()

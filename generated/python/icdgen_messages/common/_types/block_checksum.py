@@ -18,8 +18,7 @@ class BlockChecksum(_base.Message):
 
     CRC-16 of the received upload block, to be compared before the block is finalized.
 
-    Erratum COM-041: File upload is listed as common but described for the bootloader
-    only.
+    Note COM-041: File upload is listed as common but described for the bootloader only.
     """
 
     __slots__ = ("checksum",)
@@ -36,8 +35,7 @@ class BlockChecksum(_base.Message):
     checksum: int
     """Checksum: bits 0 to 15, 0 to 65535.
 
-    Erratum COM-106: Checksum of an uploaded block is asked for before its length is
-    known.
+    Note COM-106: Checksum of an uploaded block is asked for before its length is known.
     """
 
     def __init__(self, *, checksum: int = 0) -> None:

@@ -25,9 +25,9 @@ class BootAndRunningProgramStatus(_base.Message):
 
     Causes of the last reset and reboot, and the running program.
 
-    Erratum COM-060: The running program answers more than the text says, or less.
+    Note COM-060: The running program answers more than the text says, or less.
 
-    Erratum COM-062: Capitals of the boot status frame differ in the text.
+    Note COM-062: Capitals of the boot status frame differ in the text.
     """
 
     __slots__ = (
@@ -73,21 +73,21 @@ class BootAndRunningProgramStatus(_base.Message):
 
     From a hardware register of the MCU.
 
-    Erratum COM-059: Cause of MCU Reset and Boot Cause overlap.
+    Note COM-059: Cause of MCU Reset and Boot Cause overlap.
     """
     boot_cause: BootCause
     """Boot Cause: bits 4 to 7, 0 to 15.
 
     Why the CubeComputer last rebooted.
 
-    Erratum COM-059: Cause of MCU Reset and Boot Cause overlap.
+    Note COM-059: Cause of MCU Reset and Boot Cause overlap.
     """
     boot_counter: int
     """Boot Counter: bits 8 to 23, 0 to 65535.
 
     How often the CubeComputer has booted.
 
-    Erratum COM-058: Reset Counter and Boot Counter are the same field.
+    Note COM-058: Reset Counter and Boot Counter are the same field.
     """
     boot_program_index: BootProgramsList
     """Boot Program Index: bits 24 to 31, 0 to 255.
@@ -97,12 +97,12 @@ class BootAndRunningProgramStatus(_base.Message):
     firmware_version_major: int
     """Firmware version (Major): bits 32 to 39, 0 to 255.
 
-    Erratum COM-061: Firmware version stands in two frames.
+    Note COM-061: Firmware version stands in two frames.
     """
     firmware_version_minor: int
     """Firmware version (Minor): bits 40 to 47, 0 to 255.
 
-    Erratum COM-061: Firmware version stands in two frames.
+    Note COM-061: Firmware version stands in two frames.
     """
 
     def __init__(

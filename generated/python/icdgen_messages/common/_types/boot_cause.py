@@ -15,7 +15,7 @@ class BootCause(_enumeration.OpenEnum):
     COMMUNICATIONS_TIMEOUT = 2, "Communications Timeout"
     """Nothing was received for too long.
 
-    Erratum COM-067: BootCause: a communications time-out that is described nowhere.
+    Note COM-067: BootCause: a communications time-out that is described nowhere.
     """
     COMMANDED = 3, "Commanded"
     NOT_USED_4 = 4, "Not Used"

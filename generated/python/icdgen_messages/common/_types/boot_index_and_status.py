@@ -23,7 +23,7 @@ class BootIndexAndStatus(_base.Message):
 
     Program selected for booting, and how the last attempt went.
 
-    Erratum COM-060: The running program answers more than the text says, or less.
+    Note COM-060: The running program answers more than the text says, or less.
     """
 
     __slots__ = ("program_index", "boot_status")
@@ -45,7 +45,7 @@ class BootIndexAndStatus(_base.Message):
     program_index: BootProgramsList
     """Program Index: bits 0 to 7, 0 to 255.
 
-    Erratum COM-069: Program Index of the boot status can be the bootloader.
+    Note COM-069: Program Index of the boot status can be the bootloader.
     """
     boot_status: BootStatus
     """Boot Status: bits 8 to 15, 0 to 255."""

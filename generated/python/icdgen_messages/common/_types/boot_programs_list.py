@@ -11,4 +11,4 @@ class BootProgramsList(_enumeration.OpenEnum):
 
     INTERNAL_FLASH_PROGRAM = 1, "Internal Flash Program"
     BOOTLOADER = 2, "Bootloader"
-    """Erratum COM-068: BootProgramsList numbers the bootloader 2, ProgramsList 0."""
+    """Note COM-068: BootProgramsList numbers the bootloader 2, ProgramsList 0."""

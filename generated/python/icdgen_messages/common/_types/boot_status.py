@@ -12,16 +12,16 @@ class BootStatus(_enumeration.OpenEnum):
     Kept in flash. The bootloader counts up before each attempt, the program sets Boot
     Success once it runs.
 
-    Erratum COM-070: Boot Status: whether the third attempt still takes place.
+    Note COM-070: Boot Status: whether the third attempt still takes place.
     """
 
     NEW_SELECTION = 0, "New Selection"
     BOOT_SUCCESS = 1, "Boot Success"
     FAILED_BOOT_ATTEMPT_1 = 2, "1 Failed boot attempt"
-    """Erratum COM-071: Boot Status values are named differently in the text.
+    """Note COM-071: Boot Status values are named differently in the text.
 
-    Erratum COM-072: Boot Status 2 is also written before the very first start.
+    Note COM-072: Boot Status 2 is also written before the very first start.
     """
     FAILED_BOOT_ATTEMPTS_2 = 3, "2 Failed boot attempts"
     FAILED_BOOT_ATTEMPTS_3 = 4, "3 Failed boot attempts"
-    """Erratum COM-071: Boot Status values are named differently in the text."""
+    """Note COM-071: Boot Status values are named differently in the text."""

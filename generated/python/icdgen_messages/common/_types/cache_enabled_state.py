@@ -19,7 +19,7 @@ class CacheEnabledState(_base.Message):
     """Cache enabled state: set by telecommand 3, got by telemetry 131, 1 byte, table
     48.
 
-    Erratum COM-107: Get ids do not follow from set ids.
+    Note COM-107: Get ids do not follow from set ids.
     """
 
     __slots__ = ("enabled_state",)
@@ -37,7 +37,7 @@ class CacheEnabledState(_base.Message):
     enabled_state: bool
     """Enabled state: bit 0.
 
-    Erratum COM-108: Cache enabled state: which cache, and the default.
+    Note COM-108: Cache enabled state: which cache, and the default.
     """
 
     def __init__(self, *, enabled_state: bool = False) -> None:

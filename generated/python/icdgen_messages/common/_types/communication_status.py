@@ -77,69 +77,69 @@ class CommunicationStatus(_base.Message):
 
     Telecommands received.
 
-    Erratum COM-082: Counters: served or received.
+    Note COM-082: Counters: served or received.
     """
     telemetry_request_counter: int
     """Telemetry request counter: bits 16 to 31, 0 to 65535.
 
     Requests received.
 
-    Erratum COM-082: Counters: served or received.
+    Note COM-082: Counters: served or received.
     """
     telecommand_buffer_overrun: bool
     """Telecommand buffer overrun: bit 32.
 
     The buffer overflowed while a telecommand came in.
 
-    Erratum COM-081: Which telecommand clears the communication error flags.
+    Note COM-081: Which telecommand clears the communication error flags.
     """
     uart_protocol_error: bool
     """UART protocol error: bit 33.
 
-    Erratum COM-078: UART: what a receiver does on an invalid escape or an unfinished
+    Note COM-078: UART: what a receiver does on an invalid escape or an unfinished
     message.
 
-    Erratum COM-081: Which telecommand clears the communication error flags.
+    Note COM-081: Which telecommand clears the communication error flags.
     """
     uart_incomplete_message: bool
     """UART incomplete message: bit 34.
 
     A message began before the one before it had ended.
 
-    Erratum COM-078: UART: what a receiver does on an invalid escape or an unfinished
+    Note COM-078: UART: what a receiver does on an invalid escape or an unfinished
     message.
 
-    Erratum COM-081: Which telecommand clears the communication error flags.
+    Note COM-081: Which telecommand clears the communication error flags.
     """
     i2c_telemetry_error: bool
     """I2C telemetry error: bit 35.
 
     More bytes were read than the frame has. Stays set until Clear Errors.
 
-    Erratum COM-079: I2C telemetry error: too many bytes, or any wrong number.
+    Note COM-079: I2C telemetry error: too many bytes, or any wrong number.
 
-    Erratum COM-080: I2C: reading one byte more is both an error and the way to get the
+    Note COM-080: I2C: reading one byte more is both an error and the way to get the
     checksum.
 
-    Erratum COM-081: Which telecommand clears the communication error flags.
+    Note COM-081: Which telecommand clears the communication error flags.
     """
     i2c_telecommand_buffer_error: bool
     """I2C telecommand buffer error: bit 36.
 
     A telecommand was longer than the buffer.
 
-    Erratum COM-081: Which telecommand clears the communication error flags.
+    Note COM-081: Which telecommand clears the communication error flags.
 
-    Erratum COM-083: Two buffer errors have the same description.
+    Note COM-083: Two buffer errors have the same description.
     """
     can_telecommand_buffer_error: bool
     """CAN telecommand buffer error: bit 37.
 
     A telecommand was longer than the buffer.
 
-    Erratum COM-081: Which telecommand clears the communication error flags.
+    Note COM-081: Which telecommand clears the communication error flags.
 
-    Erratum COM-083: Two buffer errors have the same description.
+    Note COM-083: Two buffer errors have the same description.
     """
 
     def __init__(

@@ -16,7 +16,7 @@ _pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
 class CurrentUnixTime(_base.Message):
     """Current Unix Time: set by telecommand 2, got by telemetry 140, 6 bytes, table 50.
 
-    Erratum COM-107: Get ids do not follow from set ids.
+    Note COM-107: Get ids do not follow from set ids.
     """
 
     __slots__ = ("current_unix_time", "milliseconds")
@@ -41,12 +41,12 @@ class CurrentUnixTime(_base.Message):
 
     Since 1970-01-01 00:00.
 
-    Erratum COM-111: Unix time: time zone and leap seconds are not given.
+    Note COM-111: Unix time: time zone and leap seconds are not given.
     """
     milliseconds: int
     """Milliseconds: bits 32 to 47, 0 to 65535, in ms.
 
-    Erratum COM-110: Milliseconds: range is not given.
+    Note COM-110: Milliseconds: range is not given.
     """
 
     def __init__(self, *, current_unix_time: int = 0, milliseconds: int = 0) -> None:

@@ -20,7 +20,7 @@ class DownloadBlockReady(_base.Message):
 
     Whether the block asked for by Load File Download Block is in the buffer.
 
-    Erratum COM-093: Polling has no interval and no time-out.
+    Note COM-093: Polling has no interval and no time-out.
     """
 
     __slots__ = ("ready", "parameter_error", "block_crc16_checksum", "block_length")
@@ -46,7 +46,7 @@ class DownloadBlockReady(_base.Message):
 
     Message length and hole map together led to invalid array lengths.
 
-    Erratum COM-097: ParameterError refers to arrays that no message has.
+    Note COM-097: ParameterError refers to arrays that no message has.
     """
     block_crc16_checksum: int
     """Block CRC16 Checksum: bits 8 to 23, 0 to 65535."""

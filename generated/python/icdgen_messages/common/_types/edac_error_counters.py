@@ -44,14 +44,14 @@ class EdacErrorCounters(_base.Message):
 
     Counted per byte.
 
-    Erratum COM-077: EDAC: errors counted as corrected cannot all have been.
+    Note COM-077: EDAC: errors counted as corrected cannot all have been.
     """
     multiple_sram_upsets: int
     """Multiple SRAM upsets: bits 32 to 47, 0 to 65535.
 
     Counted per byte.
 
-    Erratum COM-077: EDAC: errors counted as corrected cannot all have been.
+    Note COM-077: EDAC: errors counted as corrected cannot all have been.
     """
 
     def __init__(

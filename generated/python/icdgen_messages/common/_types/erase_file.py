@@ -24,7 +24,7 @@ class EraseFile(_base.Message):
     Deletes one file of the SD card or all of them. Erasing all takes some time: see SD
     card format/erase progress.
 
-    Erratum COM-034: Erase File: what the other fields mean with Erase All.
+    Note COM-034: Erase File: what the other fields mean with Erase All.
     """
 
     __slots__ = ("file_type", "file_counter", "erase_all")
@@ -47,7 +47,7 @@ class EraseFile(_base.Message):
     file_counter: int
     """File Counter: bits 8 to 15, 0 to 255.
 
-    Erratum COM-035: File counter of 8 bits.
+    Note COM-035: File counter of 8 bits.
     """
     erase_all: bool
     """Erase All: bit 16.

@@ -20,9 +20,9 @@ class FileDownloadBufferWithFileContents(_base.Message):
     One packet of a download burst. On the UART the packets come unasked, with the id of
     Initiate Download Burst.
 
-    Erratum COM-051: Messages of the download have other names in the text.
+    Note COM-051: Messages of the download have other names in the text.
 
-    Erratum COM-052: Download packets: id of the telecommand or of the frame.
+    Note COM-052: Download packets: id of the telecommand or of the frame.
     """
 
     __slots__ = ("packet_counter", "file_bytes")
@@ -44,14 +44,14 @@ class FileDownloadBufferWithFileContents(_base.Message):
 
     Position of the packet in the burst.
 
-    Erratum COM-047: Packet numbers: from 0 or from 1.
+    Note COM-047: Packet numbers: from 0 or from 1.
     """
     file_bytes: bytes
     """File bytes: bits 16 to 175.
 
-    Erratum COM-029: One field, several spellings.
+    Note COM-029: One field, several spellings.
 
-    Erratum COM-048: Last packet of a block: fill is not defined.
+    Note COM-048: Last packet of a block: fill is not defined.
     """
 
     def __init__(

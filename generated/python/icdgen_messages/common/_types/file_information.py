@@ -23,9 +23,9 @@ class FileInformation(_base.Message):
     The file at the list pointer. All zeros with Busy Updating clear: the end of the
     list.
 
-    Erratum COM-093: Polling has no interval and no time-out.
+    Note COM-093: Polling has no interval and no time-out.
 
-    Erratum COM-102: File information and index entry order the same items differently.
+    Note COM-102: File information and index entry order the same items differently.
     """
 
     __slots__ = (
@@ -63,23 +63,23 @@ class FileInformation(_base.Message):
     file_type: FileType
     """File Type: bits 0 to 3, 0 to 15.
 
-    Erratum COM-098: File Type is 8 bits in telecommands and 4 bits in the frame.
+    Note COM-098: File Type is 8 bits in telecommands and 4 bits in the frame.
     """
     busy_updating: bool
     """Busy Updating: bit 4.
 
     The other fields are valid once this is clear.
 
-    Erratum COM-101: Busy Updating has no description.
+    Note COM-101: Busy Updating has no description.
     """
     file_ctr: int
     """File Ctr: bits 8 to 15, 0 to 255.
 
     With the type it identifies the file.
 
-    Erratum COM-029: One field, several spellings.
+    Note COM-029: One field, several spellings.
 
-    Erratum COM-035: File counter of 8 bits.
+    Note COM-035: File counter of 8 bits.
     """
     file_size: int
     """File Size: bits 16 to 47, 0 to 4294967295, in byte.
@@ -93,7 +93,7 @@ class FileInformation(_base.Message):
 
     Erratum COM-099: File Date and Time: a packed date in seconds.
 
-    Erratum COM-100: Time zone of file times is not given.
+    Note COM-100: Time zone of file times is not given.
     """
     file_crc16_checksum: int
     """File CRC16 Checksum: bits 80 to 95, 0 to 65535."""

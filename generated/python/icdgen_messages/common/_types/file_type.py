@@ -9,11 +9,11 @@ from ... import _enumeration
 class FileType(_enumeration.OpenEnum):
     """FileType, table 16.
 
-    Erratum COM-037: FileType begins at 2 and jumps to 15.
+    Note COM-037: FileType begins at 2 and jumps to 15.
     """
 
     TELEMETRY_LOG = 2, "Telemetry Log"
     JPG_IMAGE = 3, "JPG Image"
     BMP_IMAGE = 4, "BMP Image"
     INDEX = 15, "Index"
-    """Erratum COM-038: Index file: neither length nor counter is given."""
+    """Note COM-038: Index file: neither length nor counter is given."""

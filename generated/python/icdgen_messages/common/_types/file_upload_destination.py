@@ -11,11 +11,11 @@ class FileUploadDestination(_enumeration.OpenEnum):
 
     The SD card destinations are not supported.
 
-    Erratum COM-045: Names of the flash areas differ between two lists.
+    Note COM-045: Names of the flash areas differ between two lists.
     """
 
     EEPROM = 2, "EEPROM"
-    """Erratum COM-044: FileUploadDestination: EEPROM is listed, the text knows flash
+    """Note COM-044: FileUploadDestination: EEPROM is listed, the text knows flash
     only.
     """
     FLASH_PROGRAM_1 = 3, "Flash program 1"
@@ -26,18 +26,18 @@ class FileUploadDestination(_enumeration.OpenEnum):
     FLASH_PROGRAM_6 = 8, "Flash program 6"
     FLASH_PROGRAM_7 = 9, "Flash program 7"
     SD_USER_FILE_1 = 10, "SD User file 1"
-    """Erratum COM-043: FileUploadDestination: eight members are not supported."""
+    """Note COM-043: FileUploadDestination: eight members are not supported."""
     SD_USER_FILE_2 = 11, "SD User file 2"
-    """Erratum COM-043: FileUploadDestination: eight members are not supported."""
+    """Note COM-043: FileUploadDestination: eight members are not supported."""
     SD_USER_FILE_3 = 12, "SD User file 3"
-    """Erratum COM-043: FileUploadDestination: eight members are not supported."""
+    """Note COM-043: FileUploadDestination: eight members are not supported."""
     SD_USER_FILE_4 = 13, "SD User file 4"
-    """Erratum COM-043: FileUploadDestination: eight members are not supported."""
+    """Note COM-043: FileUploadDestination: eight members are not supported."""
     SD_USER_FILE_5 = 14, "SD User file 5"
-    """Erratum COM-043: FileUploadDestination: eight members are not supported."""
+    """Note COM-043: FileUploadDestination: eight members are not supported."""
     SD_USER_FILE_6 = 15, "SD User file 6"
-    """Erratum COM-043: FileUploadDestination: eight members are not supported."""
+    """Note COM-043: FileUploadDestination: eight members are not supported."""
     SD_USER_FILE_7 = 16, "SD User file 7"
-    """Erratum COM-043: FileUploadDestination: eight members are not supported."""
+    """Note COM-043: FileUploadDestination: eight members are not supported."""
     SD_USER_FILE_8 = 17, "SD User file 8"
-    """Erratum COM-043: FileUploadDestination: eight members are not supported."""
+    """Note COM-043: FileUploadDestination: eight members are not supported."""

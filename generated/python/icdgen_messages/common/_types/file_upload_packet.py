@@ -21,12 +21,11 @@ class FileUploadPacket(_base.Message):
 
     The node does not acknowledge it.
 
-    Erratum COM-041: File upload is listed as common but described for the bootloader
-    only.
+    Note COM-041: File upload is listed as common but described for the bootloader only.
 
-    Erratum COM-046: File Upload Packet is not acknowledged, against the rule.
+    Note COM-046: File Upload Packet is not acknowledged, against the rule.
 
-    Erratum COM-125: File Upload Packet: messages of 20 bytes, parameters of 22.
+    Note COM-125: File Upload Packet: messages of 20 bytes, parameters of 22.
     """
 
     __slots__ = ("packet_number", "file_bytes")
@@ -47,12 +46,12 @@ class FileUploadPacket(_base.Message):
     packet_number: int
     """Packet Number: bits 0 to 15, 0 to 65535.
 
-    Erratum COM-047: Packet numbers: from 0 or from 1.
+    Note COM-047: Packet numbers: from 0 or from 1.
     """
     file_bytes: bytes
     """File Bytes: bits 16 to 175.
 
-    Erratum COM-048: Last packet of a block: fill is not defined.
+    Note COM-048: Last packet of a block: fill is not defined.
     """
 
     def __init__(

@@ -21,10 +21,9 @@ class FinalizeUploadBlock(_base.Message):
 
     Commits the received block to its destination.
 
-    Erratum COM-041: File upload is listed as common but described for the bootloader
-    only.
+    Note COM-041: File upload is listed as common but described for the bootloader only.
 
-    Erratum COM-049: Finalize Upload Block is missing from the procedure.
+    Note COM-049: Finalize Upload Block is missing from the procedure.
     """
 
     __slots__ = ("destination", "offset", "block_length")

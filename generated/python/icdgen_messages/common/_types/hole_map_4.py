@@ -19,15 +19,15 @@ class HoleMap4(_base.Message):
 
     Packets 384 to 511 of a file block.
 
-    Erratum COM-115: Hole maps are named for the upload and serve the download too.
+    Note COM-115: Hole maps are named for the upload and serve the download too.
 
-    Erratum COM-116: Hole map: who clears it before a download.
+    Note COM-116: Hole map: who clears it before a download.
 
-    Erratum COM-117: Hole map: bits beyond the last packet.
+    Note COM-117: Hole map: bits beyond the last packet.
 
-    Erratum COM-118: Hole map: order of the eight parts.
+    Note COM-118: Hole map: order of the eight parts.
 
-    Erratum COM-124: The hole map is read with eight frames, one table is referred to.
+    Note COM-124: The hole map is read with eight frames, one table is referred to.
     """
 
     __slots__ = ("hole_map",)

@@ -19,7 +19,7 @@ class Identification(_base.Message):
     Tells which program is running. Requesting it from the bootloader keeps it from
     booting on.
 
-    Erratum COM-054: Waiting times before the identification request differ, and the
+    Note COM-054: Waiting times before the identification request differ, and the
     request itself stops the boot.
     """
 
@@ -75,9 +75,9 @@ class Identification(_base.Message):
 
     Since the processor started.
 
-    Erratum COM-056: Runtime wraps after 18 hours.
-
     Erratum COM-057: Runtime has its unit in words only.
+
+    Note COM-056: Runtime wraps after 18 hours.
     """
     runtime_milliseconds: int
     """Runtime (milliseconds): bits 48 to 63, 0 to 65535, in ms.

@@ -20,13 +20,11 @@ class InitializeUploadComplete(_base.Message):
 
     Polled after Initiate File Upload.
 
-    Erratum COM-041: File upload is listed as common but described for the bootloader
-    only.
+    Note COM-041: File upload is listed as common but described for the bootloader only.
 
-    Erratum COM-104: Upload is initiated, initialized and finalized under changing
-    names.
+    Note COM-104: Upload is initiated, initialized and finalized under changing names.
 
-    Erratum COM-105: Initialisation of an upload can fail silently.
+    Note COM-105: Initialisation of an upload can fail silently.
     """
 
     __slots__ = ("busy",)
@@ -45,7 +43,7 @@ class InitializeUploadComplete(_base.Message):
 
     Still preparing, for instance erasing flash.
 
-    Erratum COM-103: Frames named complete report busy.
+    Note COM-103: Frames named complete report busy.
     """
 
     def __init__(self, *, busy: bool = False) -> None:

@@ -21,11 +21,11 @@ class InitiateDownloadBurst(_base.Message):
     Starts the transfer of the loaded block. On the UART the packets come in rapid
     succession, on I2C the master reads them one by one.
 
-    Erratum COM-051: Messages of the download have other names in the text.
+    Note COM-051: Messages of the download have other names in the text.
 
-    Erratum COM-052: Download packets: id of the telecommand or of the frame.
+    Note COM-052: Download packets: id of the telecommand or of the frame.
 
-    Erratum COM-053: Download over CAN is not described.
+    Note COM-053: Download over CAN is not described.
     """
 
     __slots__ = ("message_length", "ignore_hole_map")
@@ -45,7 +45,7 @@ class InitiateDownloadBurst(_base.Message):
     message_length: int
     """Message Length: bits 0 to 7, 0 to 255.
 
-    Erratum COM-050: Initiate Download Burst: Message Length is not explained.
+    Note COM-050: Initiate Download Burst: Message Length is not explained.
     """
     ignore_hole_map: bool
     """Ignore Hole Map: bit 8.

@@ -21,8 +21,7 @@ class InitiateFileUpload(_base.Message):
 
     Erases the destination. Initialize Upload Complete tells when that is done.
 
-    Erratum COM-041: File upload is listed as common but described for the bootloader
-    only.
+    Note COM-041: File upload is listed as common but described for the bootloader only.
     """
 
     __slots__ = ("destination", "block_size")
@@ -51,7 +50,7 @@ class InitiateFileUpload(_base.Message):
 
     Ignored, may be 0.
 
-    Erratum COM-042: BlockSize is a byte and ignored.
+    Note COM-042: BlockSize is a byte and ignored.
     """
 
     def __init__(

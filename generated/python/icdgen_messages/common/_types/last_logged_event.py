@@ -18,7 +18,7 @@ class LastLoggedEvent(_base.Message):
 
     The event at the log pointer, which Reset Log Pointer and Advance Log Pointer move.
 
-    Erratum COM-073: Last Logged Event: wrong telecommands, and a bracket left open.
+    Note COM-073: Last Logged Event: wrong telecommands, and a bracket left open.
     """
 
     __slots__ = ("time_of_event", "event_id", "event_parameter")
@@ -39,17 +39,17 @@ class LastLoggedEvent(_base.Message):
     time_of_event: int
     """Time of Event: bits 0 to 31, 0 to 4294967295.
 
-    Erratum COM-074: Time of Event has no description.
+    Note COM-074: Time of Event has no description.
     """
     event_id: int
     """Event ID: bits 32 to 39, 0 to 255.
 
-    Erratum COM-075: Events are not listed.
+    Note COM-075: Events are not listed.
     """
     event_parameter: int
     """Event Parameter: bits 40 to 47, 0 to 255.
 
-    Erratum COM-075: Events are not listed.
+    Note COM-075: Events are not listed.
     """
 
     def __init__(

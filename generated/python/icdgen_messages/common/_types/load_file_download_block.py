@@ -48,9 +48,9 @@ class LoadFileDownloadBlock(_base.Message):
 
     Of the file: with the type it identifies the file.
 
-    Erratum COM-029: One field, several spellings.
+    Note COM-029: One field, several spellings.
 
-    Erratum COM-035: File counter of 8 bits.
+    Note COM-035: File counter of 8 bits.
     """
     offset: int
     """Offset: bits 16 to 47, 0 to 4294967295, in byte.
@@ -66,9 +66,9 @@ class LoadFileDownloadBlock(_base.Message):
 
     Must be at most 20480.
 
-    Erratum COM-029: One field, several spellings.
-
     Erratum COM-039: Offsets and lengths of files have no unit.
+
+    Note COM-029: One field, several spellings.
     """
 
     def __init__(

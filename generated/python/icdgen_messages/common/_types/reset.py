@@ -20,7 +20,7 @@ class Reset(_base.Message):
 
     The node restarts instead of acknowledging it.
 
-    Erratum COM-028: The Reset telecommand: acknowledged or not.
+    Note COM-028: The Reset telecommand: acknowledged or not.
     """
 
     __slots__ = ("magic_number",)
@@ -40,7 +40,7 @@ class Reset(_base.Message):
 
     Guards against an accidental reset.
 
-    Erratum COM-029: One field, several spellings.
+    Note COM-029: One field, several spellings.
     """
 
     def __init__(self, *, magic_number: int = 90) -> None:

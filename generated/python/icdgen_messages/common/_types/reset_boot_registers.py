@@ -18,8 +18,8 @@ class ResetBootRegisters(_base.Message):
 
     Resets the boot counter, boot state and boot cause.
 
-    Erratum COM-032: Reset Boot Registers: a Boot State that no frame has, and no values
-    to reset to.
+    Note COM-032: Reset Boot Registers: a Boot State that no frame has, and no values to
+    reset to.
     """
 
     __slots__ = ()

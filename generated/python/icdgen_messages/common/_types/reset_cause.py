@@ -24,7 +24,7 @@ class ResetCause(_enumeration.OpenEnum):
     BACKUP_BROWN_OUT = 9, "Backup Brown-Out"
     """Of the backup domain."""
     BACKUP_MODE_RESET = 10, "Backup Mode Reset"
-    """Erratum COM-064: ResetCause: two spellings of one source."""
+    """Note COM-064: ResetCause: two spellings of one source."""
     BACKUP_MODE_AND_BACKUP_BROWN_OUT = (
         11,
         "Backup Mode RST and Backup Brown-Out Vdd Regulated",
@@ -32,7 +32,7 @@ class ResetCause(_enumeration.OpenEnum):
     """Backup mode reset together with a brown-out of the backup domain on regulated
     VDD.
 
-    Erratum COM-064: ResetCause: two spellings of one source.
+    Note COM-064: ResetCause: two spellings of one source.
     """
     BACKUP_MODE_AND_BOTH_BROWN_OUTS = (
         12,
@@ -40,10 +40,10 @@ class ResetCause(_enumeration.OpenEnum):
     )
     """As 11, and a brown-out on regulated power.
 
-    Erratum COM-064: ResetCause: two spellings of one source.
+    Note COM-064: ResetCause: two spellings of one source.
     """
     BACKUP_MODE_AND_WATCHDOG_RESET = 13, "Backup Mode RST and Watchdog Reset"
-    """Erratum COM-064: ResetCause: two spellings of one source."""
+    """Note COM-064: ResetCause: two spellings of one source."""
     BACKUP_BROWN_OUT_AND_SYSTEM_REQUEST_RESET = (
         14,
         "Backup Brown-Out BuvIn and System Request Reset",

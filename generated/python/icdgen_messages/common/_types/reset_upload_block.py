@@ -18,11 +18,9 @@ class ResetUploadBlock(_base.Message):
 
     Announces a new block by clearing the hole map.
 
-    Erratum COM-041: File upload is listed as common but described for the bootloader
-    only.
+    Note COM-041: File upload is listed as common but described for the bootloader only.
 
-    Erratum COM-126: Reset Upload Block tells the node of a block, and does not say
-    which.
+    Note COM-126: Reset Upload Block tells the node of a block, and does not say which.
     """
 
     __slots__ = ()

@@ -20,7 +20,7 @@ class SdCardFormatEraseProgress(_base.Message):
 
     Whether the SD card is still being formatted or erased.
 
-    Erratum COM-085: Erase File: progress and failure.
+    Note COM-085: Erase File: progress and failure.
     """
 
     __slots__ = ("format_busy", "erase_all_busy")
@@ -44,7 +44,7 @@ class SdCardFormatEraseProgress(_base.Message):
 
     All files are being erased.
 
-    Erratum COM-086: Erase All Busy: two verbs for one.
+    Note COM-086: Erase All Busy: two verbs for one.
     """
 
     def __init__(

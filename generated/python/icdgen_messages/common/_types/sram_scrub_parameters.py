@@ -17,7 +17,7 @@ class SramScrubParameters(_base.Message):
     """SRAM Scrub Parameters: set by telecommand 8, got by telemetry 134, 2 bytes, table
     49.
 
-    Erratum COM-107: Get ids do not follow from set ids.
+    Note COM-107: Get ids do not follow from set ids.
     """
 
     __slots__ = ("scrub_size",)
@@ -35,7 +35,7 @@ class SramScrubParameters(_base.Message):
     scrub_size: int
     """Scrub Size: bits 0 to 15, 0 to 65535.
 
-    Erratum COM-109: SRAM Scrub Parameters: plural for one, and no unit.
+    Note COM-109: SRAM Scrub Parameters: plural for one, and no unit.
     """
 
     def __init__(self, *, scrub_size: int = 0) -> None:

@@ -12,10 +12,10 @@ class TcErrorReason(_enumeration.OpenEnum):
     NO_ERROR = 0, "No Error"
     INVALID_TC = 1, "Invalid TC"
     INCORRECT_LENGTH = 2, "Incorrect Length"
-    """Erratum COM-094: What happens to a telecommand of the wrong length."""
+    """Note COM-094: What happens to a telecommand of the wrong length."""
     INCORRECT_PARAMETER = 3, "Incorrect Parameter"
     CRC_CHECK_FAILED = 4, "CRC check failed"
-    """Erratum COM-095: Reasons for a TC error: three in the text, four in the table.
+    """Note COM-095: Reasons for a TC error: three in the text, four in the table.
 
-    Erratum COM-096: CRC check failed is common, the checksum is not.
+    Note COM-096: CRC check failed is common, the checksum is not.
     """

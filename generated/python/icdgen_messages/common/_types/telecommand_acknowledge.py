@@ -23,9 +23,9 @@ class TelecommandAcknowledge(_base.Message):
     What became of the last telecommand. Meant for I2C, where the node cannot answer of
     its own accord.
 
-    Erratum COM-092: The procedure polls a thing called Telemetry Format.
+    Note COM-092: The procedure polls a thing called Telemetry Format.
 
-    Erratum COM-093: Polling has no interval and no time-out.
+    Note COM-093: Polling has no interval and no time-out.
     """
 
     __slots__ = (
@@ -56,32 +56,30 @@ class TelecommandAcknowledge(_base.Message):
     last_tc_id: int
     """Last TC ID: bits 0 to 7, 0 to 255.
 
-    Erratum COM-090: Last TC ID is of the last received, the error of the last
-    processed.
+    Note COM-090: Last TC ID is of the last received, the error of the last processed.
     """
     processed_flag: bool
     """Processed flag: bit 8.
 
     The next telecommand may be sent. Says nothing about the outcome of the last one.
 
-    Erratum COM-088: Processed flag has three names.
+    Note COM-088: Processed flag has three names.
 
-    Erratum COM-089: Processed flag: processed or merely taken over.
+    Note COM-089: Processed flag: processed or merely taken over.
     """
     tc_error_status: TcErrorReason
     """TC error status: bits 16 to 23, 0 to 255.
 
-    Erratum COM-087: TC Error is called a flag and is a code.
+    Note COM-087: TC Error is called a flag and is a code.
 
-    Erratum COM-090: Last TC ID is of the last received, the error of the last
-    processed.
+    Note COM-090: Last TC ID is of the last received, the error of the last processed.
     """
     tc_parameter_error_index: int
     """TC parameter error index: bits 24 to 31, 0 to 255.
 
     Which parameter was wrong.
 
-    Erratum COM-091: TC parameter error index: index of what.
+    Note COM-091: TC parameter error index: index of what.
     """
 
     def __init__(

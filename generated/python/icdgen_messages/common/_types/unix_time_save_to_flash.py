@@ -21,9 +21,9 @@ class UnixTimeSaveToFlash(_base.Message):
 
     When the Unix time is kept in flash, so that it survives a power cycle.
 
-    Erratum COM-107: Get ids do not follow from set ids.
+    Note COM-107: Get ids do not follow from set ids.
 
-    Erratum COM-112: Unix Time Save to Flash is described in two spellings.
+    Note COM-112: Unix Time Save to Flash is described in two spellings.
     """
 
     __slots__ = ("save_now", "save_on_update", "save_periodic", "period")
@@ -48,7 +48,7 @@ class UnixTimeSaveToFlash(_base.Message):
 
     Saves once.
 
-    Erratum COM-113: Save Now is an action among settings.
+    Note COM-113: Save Now is an action among settings.
     """
     save_on_update: bool
     """Save On Update: bit 1.
@@ -63,7 +63,7 @@ class UnixTimeSaveToFlash(_base.Message):
     period: int
     """Period: bits 8 to 15, 0 to 255, in s.
 
-    Erratum COM-114: Saving period: meaning of 0.
+    Note COM-114: Saving period: meaning of 0.
     """
 
     def __init__(

@@ -20,15 +20,13 @@ class UploadBlockComplete(_base.Message):
 
     Polled after Finalize Upload Block.
 
-    Erratum COM-041: File upload is listed as common but described for the bootloader
-    only.
+    Note COM-041: File upload is listed as common but described for the bootloader only.
 
-    Erratum COM-049: Finalize Upload Block is missing from the procedure.
+    Note COM-049: Finalize Upload Block is missing from the procedure.
 
-    Erratum COM-093: Polling has no interval and no time-out.
+    Note COM-093: Polling has no interval and no time-out.
 
-    Erratum COM-104: Upload is initiated, initialized and finalized under changing
-    names.
+    Note COM-104: Upload is initiated, initialized and finalized under changing names.
     """
 
     __slots__ = ("busy", "error")
@@ -50,7 +48,7 @@ class UploadBlockComplete(_base.Message):
 
     Still finalizing the block.
 
-    Erratum COM-103: Frames named complete report busy.
+    Note COM-103: Frames named complete report busy.
     """
     error: bool
     """Error: bit 1.

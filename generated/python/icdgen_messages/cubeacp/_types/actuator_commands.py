@@ -20,7 +20,7 @@ class ActuatorCommands(_base.Message):
 
     Repeats `Wheel Speed Commands` from bit 48.
 
-    Erratum ACP-106: Messages have the names of groups.
+    Note ACP-106: Messages have the names of groups.
     """
 
     __slots__ = (
@@ -95,45 +95,45 @@ class ActuatorCommands(_base.Message):
 
     On-time.
 
-    Erratum ACP-070: Magnetorquers are commanded as a duty cycle and reported as an
+    Note ACP-070: Magnetorquers are commanded as a duty cycle and reported as an
     on-time.
 
-    Erratum ACP-071: 10ms units is a factor, not a unit.
+    Note ACP-071: 10ms units is a factor, not a unit.
     """
     y_magnetorquer_command: int
     """Y Magnetorquer Command: bits 16 to 31, -32768 to 32767, in 10ms units.
 
     On-time.
 
-    Erratum ACP-070: Magnetorquers are commanded as a duty cycle and reported as an
+    Note ACP-070: Magnetorquers are commanded as a duty cycle and reported as an
     on-time.
 
-    Erratum ACP-071: 10ms units is a factor, not a unit.
+    Note ACP-071: 10ms units is a factor, not a unit.
     """
     z_magnetorquer_command: int
     """Z Magnetorquer Command: bits 32 to 47, -32768 to 32767, in 10ms units.
 
     On-time.
 
-    Erratum ACP-070: Magnetorquers are commanded as a duty cycle and reported as an
+    Note ACP-070: Magnetorquers are commanded as a duty cycle and reported as an
     on-time.
 
-    Erratum ACP-071: 10ms units is a factor, not a unit.
+    Note ACP-071: 10ms units is a factor, not a unit.
     """
     commanded_x_wheel_speed: int
     """Commanded X Wheel Speed: bits 48 to 63, -32768 to 32767, in rpm.
 
-    Erratum ACP-072: Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072: Commanded wheel speeds are described as wheel speeds.
     """
     commanded_y_wheel_speed: int
     """Commanded Y Wheel Speed: bits 64 to 79, -32768 to 32767, in rpm.
 
-    Erratum ACP-072: Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072: Commanded wheel speeds are described as wheel speeds.
     """
     commanded_z_wheel_speed: int
     """Commanded Z Wheel Speed: bits 80 to 95, -32768 to 32767, in rpm.
 
-    Erratum ACP-072: Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072: Commanded wheel speeds are described as wheel speeds.
     """
 
     def __init__(

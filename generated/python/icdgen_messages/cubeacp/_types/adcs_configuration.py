@@ -79,11 +79,11 @@ class AdcsConfiguration(_base.Message):
 
     Repeats `User-coded Controller and Estimator Parameters` from bit 3264.
 
-    Erratum ACP-020: Reserved bits.
+    Note ACP-020: Reserved bits.
 
-    Erratum ACP-158: ADCS configuration in list order, not in id order.
+    Note ACP-158: ADCS configuration in list order, not in id order.
 
-    Erratum ACP-159: The current configuration is not all of it.
+    Note ACP-159: The current configuration is not all of it.
     """
 
     __slots__ = (
@@ -1609,27 +1609,21 @@ class AdcsConfiguration(_base.Message):
     x_rate_sensor_offset: int
     """X-Rate Sensor Offset: bits 80 to 95, -32768 to 32767; see
     `x_rate_sensor_offset_deg_per_s`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     y_rate_sensor_offset: int
     """Y-Rate Sensor Offset: bits 96 to 111, -32768 to 32767; see
     `y_rate_sensor_offset_deg_per_s`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     z_rate_sensor_offset: int
     """Z-Rate Sensor Offset: bits 112 to 127, -32768 to 32767; see
     `z_rate_sensor_offset_deg_per_s`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     rate_sensor_mult: int
     """RateSensorMult: bits 128 to 135, 0 to 255.
 
     Factor on the rate sensor measurements.
 
-    Erratum ACP-130: RateSensorMult has no scale and no blanks.
+    Note ACP-130: RateSensorMult has no scale and no blanks.
     """
     css1_configuration: AxisSelect
     """CSS1 Configuration: bits 136 to 143, 0 to 255."""
@@ -1654,85 +1648,59 @@ class AdcsConfiguration(_base.Message):
     css1_relative_scale: int
     """CSS1 Relative Scale: bits 216 to 223, 0 to 255; see
     `css1_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css2_relative_scale: int
     """CSS2 Relative Scale: bits 224 to 231, 0 to 255; see
     `css2_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css3_relative_scale: int
     """CSS3 Relative Scale: bits 232 to 239, 0 to 255; see
     `css3_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css4_relative_scale: int
     """CSS4 Relative Scale: bits 240 to 247, 0 to 255; see
     `css4_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css5_relative_scale: int
     """CSS5 Relative Scale: bits 248 to 255, 0 to 255; see
     `css5_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css6_relative_scale: int
     """CSS6 Relative Scale: bits 256 to 263, 0 to 255; see
     `css6_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css7_relative_scale: int
     """CSS7 Relative Scale: bits 264 to 271, 0 to 255; see
     `css7_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css8_relative_scale: int
     """CSS8 Relative Scale: bits 272 to 279, 0 to 255; see
     `css8_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css9_relative_scale: int
     """CSS9 Relative Scale: bits 280 to 287, 0 to 255; see
     `css9_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css10_relative_scale: int
     """CSS10 Relative Scale: bits 288 to 295, 0 to 255; see
     `css10_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css_threshold: int
     """CSS Threshold: bits 296 to 303, 0 to 255.
 
-    Erratum ACP-133: CSS threshold has no description.
+    Note ACP-133: CSS threshold has no description.
     """
     cam1_sensor_mounting_transform_alpha_angle: int
     """Cam1 Sensor Mounting Transform Alpha Angle: bits 304 to 319, -32768 to 32767; see
     `cam1_sensor_mounting_transform_alpha_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     cam1_sensor_mounting_transform_beta_angle: int
     """Cam1 Sensor Mounting Transform Beta Angle: bits 320 to 335, -32768 to 32767; see
     `cam1_sensor_mounting_transform_beta_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     cam1_sensor_mounting_transform_gamma_angle: int
     """Cam1 Sensor Mounting Transform Gamma Angle: bits 336 to 351, -32768 to 32767; see
     `cam1_sensor_mounting_transform_gamma_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     cam1_detection_threshold: int
     """Cam1 detection threshold: bits 352 to 359, 0 to 255."""
@@ -1748,36 +1716,26 @@ class AdcsConfiguration(_base.Message):
 
     Where the boresight meets the image.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-149: Boresight ends at 655 pixels.
+    Note ACP-149: Boresight ends at 655 pixels.
     """
     cam1_boresight_y: int
     """Cam1 Boresight Y: bits 400 to 415, 0 to 65535; see `cam1_boresight_y_pixels`.
 
     Where the boresight meets the image.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-149: Boresight ends at 655 pixels.
+    Note ACP-149: Boresight ends at 655 pixels.
     """
     cam2_sensor_mounting_transform_alpha_angle: int
     """Cam2 Sensor Mounting Transform Alpha Angle: bits 416 to 431, -32768 to 32767; see
     `cam2_sensor_mounting_transform_alpha_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     cam2_sensor_mounting_transform_beta_angle: int
     """Cam2 Sensor Mounting Transform Beta Angle: bits 432 to 447, -32768 to 32767; see
     `cam2_sensor_mounting_transform_beta_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     cam2_sensor_mounting_transform_gamma_angle: int
     """Cam2 Sensor Mounting Transform Gamma Angle: bits 448 to 463, -32768 to 32767; see
     `cam2_sensor_mounting_transform_gamma_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     cam2_detection_threshold: int
     """Cam2 detection threshold: bits 464 to 471, 0 to 255."""
@@ -1793,18 +1751,14 @@ class AdcsConfiguration(_base.Message):
 
     Where the boresight meets the image.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-149: Boresight ends at 655 pixels.
+    Note ACP-149: Boresight ends at 655 pixels.
     """
     cam2_boresight_y: int
     """Cam2 Boresight Y: bits 512 to 527, 0 to 65535; see `cam2_boresight_y_pixels`.
 
     Where the boresight meets the image.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-149: Boresight ends at 655 pixels.
+    Note ACP-149: Boresight ends at 655 pixels.
     """
     nadir_max_deviation_percentage: int
     """Nadir Max Deviation Percentage: bits 528 to 535, 0 to 255, in %.
@@ -1818,7 +1772,7 @@ class AdcsConfiguration(_base.Message):
 
     Most edges that may deviate further. Above 50 the test is off.
 
-    Erratum ACP-152: More than 50 bad edges disable the check.
+    Note ACP-152: More than 50 bad edges disable the check.
     """
     nadir_max_radius: int
     """Nadir Max Radius: bits 544 to 551, 0 to 255, in deg.
@@ -1913,236 +1867,170 @@ class AdcsConfiguration(_base.Message):
     magnetometer_mounting_transform_alpha_angle: int
     """Magnetometer Mounting Transform Alpha Angle: bits 1200 to 1215, -32768 to 32767;
     see `magnetometer_mounting_transform_alpha_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     magnetometer_mounting_transform_beta_angle: int
     """Magnetometer Mounting Transform Beta Angle: bits 1216 to 1231, -32768 to 32767;
     see `magnetometer_mounting_transform_beta_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     magnetometer_mounting_transform_gamma_angle: int
     """Magnetometer Mounting Transform Gamma Angle: bits 1232 to 1247, -32768 to 32767;
     see `magnetometer_mounting_transform_gamma_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     magnetometer_channel_1_offset: int
     """Magnetometer Channel 1 Offset: bits 1248 to 1263, -32768 to 32767; see
     `magnetometer_channel_1_offset_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     magnetometer_channel_2_offset: int
     """Magnetometer Channel 2 Offset: bits 1264 to 1279, -32768 to 32767; see
     `magnetometer_channel_2_offset_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     magnetometer_channel_3_offset: int
     """Magnetometer Channel 3 Offset: bits 1280 to 1295, -32768 to 32767; see
     `magnetometer_channel_3_offset_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     magnetometer_sensitivity_matrix_s11: int
     """Magnetometer Sensitivity Matrix S11: bits 1296 to 1311, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s11_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     magnetometer_sensitivity_matrix_s22: int
     """Magnetometer Sensitivity Matrix S22: bits 1312 to 1327, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s22_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     magnetometer_sensitivity_matrix_s33: int
     """Magnetometer Sensitivity Matrix S33: bits 1328 to 1343, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s33_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     magnetometer_sensitivity_matrix_s12: int
     """Magnetometer Sensitivity Matrix S12: bits 1344 to 1359, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s12_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     magnetometer_sensitivity_matrix_s13: int
     """Magnetometer Sensitivity Matrix S13: bits 1360 to 1375, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s13_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     magnetometer_sensitivity_matrix_s21: int
     """Magnetometer Sensitivity Matrix S21: bits 1376 to 1391, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s21_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     magnetometer_sensitivity_matrix_s23: int
     """Magnetometer Sensitivity Matrix S23: bits 1392 to 1407, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s23_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     magnetometer_sensitivity_matrix_s31: int
     """Magnetometer Sensitivity Matrix S31: bits 1408 to 1423, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s31_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     magnetometer_sensitivity_matrix_s32: int
     """Magnetometer Sensitivity Matrix S32: bits 1424 to 1439, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s32_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_mounting_transform_alpha_angle: int
     """Redundant Magnetometer Mounting Transform Alpha Angle: bits 1440 to 1455, -32768
     to 32767; see `redundant_magnetometer_mounting_transform_alpha_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_mounting_transform_beta_angle: int
     """Redundant Magnetometer Mounting Transform Beta Angle: bits 1456 to 1471, -32768
     to 32767; see `redundant_magnetometer_mounting_transform_beta_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_mounting_transform_gamma_angle: int
     """Redundant Magnetometer Mounting Transform Gamma Angle: bits 1472 to 1487, -32768
     to 32767; see `redundant_magnetometer_mounting_transform_gamma_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_channel_1_offset: int
     """Redundant Magnetometer Channel 1 Offset: bits 1488 to 1503, -32768 to 32767; see
     `redundant_magnetometer_channel_1_offset_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_channel_2_offset: int
     """Redundant Magnetometer Channel 2 Offset: bits 1504 to 1519, -32768 to 32767; see
     `redundant_magnetometer_channel_2_offset_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_channel_3_offset: int
     """Redundant Magnetometer Channel 3 Offset: bits 1520 to 1535, -32768 to 32767; see
     `redundant_magnetometer_channel_3_offset_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_sensitivity_matrix_s11: int
     """Redundant Magnetometer Sensitivity Matrix S11: bits 1536 to 1551, -32768 to
     32767; see `redundant_magnetometer_sensitivity_matrix_s11_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_sensitivity_matrix_s22: int
     """Redundant Magnetometer Sensitivity Matrix S22: bits 1552 to 1567, -32768 to
     32767; see `redundant_magnetometer_sensitivity_matrix_s22_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_sensitivity_matrix_s33: int
     """Redundant Magnetometer Sensitivity Matrix S33: bits 1568 to 1583, -32768 to
     32767; see `redundant_magnetometer_sensitivity_matrix_s33_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_sensitivity_matrix_s12: int
     """Redundant Magnetometer Sensitivity Matrix S12: bits 1584 to 1599, -32768 to
     32767; see `redundant_magnetometer_sensitivity_matrix_s12_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_sensitivity_matrix_s13: int
     """Redundant Magnetometer Sensitivity Matrix S13: bits 1600 to 1615, -32768 to
     32767; see `redundant_magnetometer_sensitivity_matrix_s13_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_sensitivity_matrix_s21: int
     """Redundant Magnetometer Sensitivity Matrix S21: bits 1616 to 1631, -32768 to
     32767; see `redundant_magnetometer_sensitivity_matrix_s21_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_sensitivity_matrix_s23: int
     """Redundant Magnetometer Sensitivity Matrix S23: bits 1632 to 1647, -32768 to
     32767; see `redundant_magnetometer_sensitivity_matrix_s23_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_sensitivity_matrix_s31: int
     """Redundant Magnetometer Sensitivity Matrix S31: bits 1648 to 1663, -32768 to
     32767; see `redundant_magnetometer_sensitivity_matrix_s31_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     redundant_magnetometer_sensitivity_matrix_s32: int
     """Redundant Magnetometer Sensitivity Matrix S32: bits 1664 to 1679, -32768 to
     32767; see `redundant_magnetometer_sensitivity_matrix_s32_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     star_tracker_mounting_transform_alpha_angle: int
     """StarTracker Mounting Transform Alpha Angle: bits 1680 to 1695, -32768 to 32767;
     see `star_tracker_mounting_transform_alpha_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     star_tracker_mounting_transform_beta_angle: int
     """StarTracker Mounting Transform Beta Angle: bits 1696 to 1711, -32768 to 32767;
     see `star_tracker_mounting_transform_beta_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     star_tracker_mounting_transform_gamma_angle: int
     """StarTracker Mounting Transform Gamma Angle: bits 1712 to 1727, -32768 to 32767;
     see `star_tracker_mounting_transform_gamma_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     star_tracker_exposure_time: int
     """StarTracker exposure time: bits 1728 to 1743, 0 to 65535.
 
     Register value.
 
-    Erratum ACP-145: Exposure and gain are register values.
+    Note ACP-145: Exposure and gain are register values.
     """
     star_tracker_analog_gain: int
     """StarTracker analog gain: bits 1744 to 1759, 0 to 65535.
 
     Register value.
 
-    Erratum ACP-145: Exposure and gain are register values.
+    Note ACP-145: Exposure and gain are register values.
     """
     star_tracker_detection_threshold: int
     """StarTracker detection threshold: bits 1760 to 1767, 0 to 255.
 
-    Erratum ACP-146: Thresholds and counts of the star tracker have no description.
+    Note ACP-146: Thresholds and counts of the star tracker have no description.
     """
     star_tracker_star_threshold: int
     """StarTracker star threshold: bits 1768 to 1775, 0 to 255.
 
-    Erratum ACP-146: Thresholds and counts of the star tracker have no description.
+    Note ACP-146: Thresholds and counts of the star tracker have no description.
     """
     maximum_star_matched: int
     """Maximum Star Matched: bits 1776 to 1783, 0 to 255.
 
     Most stars that are matched.
 
-    Erratum ACP-146: Thresholds and counts of the star tracker have no description.
+    Note ACP-146: Thresholds and counts of the star tracker have no description.
     """
     detection_timeout_duration: int
     """Detection Timeout duration: bits 1784 to 1799, 0 to 65535.
 
-    Erratum ACP-141: Detection timeout has no unit.
+    Note ACP-141: Detection timeout has no unit.
     """
     maximum_star_pixel: int
     """Maximum Star Pixel: bits 1800 to 1807, 0 to 255.
@@ -2160,9 +2048,7 @@ class AdcsConfiguration(_base.Message):
 
     Of the star identification.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-142: Error margin: hundredths of a percent, 2.55 % at most.
+    Note ACP-142: Error margin: hundredths of a percent, 2.55 % at most.
     """
     star_tracker_delay_time: int
     """Star Tracker Delay Time: bits 1824 to 1839, 0 to 65535, in ms.
@@ -2184,43 +2070,39 @@ class AdcsConfiguration(_base.Message):
     k1_radial_distortion_coefficient: float
     """K1 radial distortion coefficient: bits 1936 to 1967, 32-bit float, in gain.
 
-    Erratum ACP-144: gain is no unit.
+    Note ACP-144: gain is no unit.
     """
     k2_radial_distortion_coefficient: float
     """K2 radial distortion coefficient: bits 1968 to 1999, 32-bit float, in gain.
 
-    Erratum ACP-144: gain is no unit.
+    Note ACP-144: gain is no unit.
     """
     p1_tangential_distortion_coefficient: float
     """P1 tangential distortion coefficient: bits 2000 to 2031, 32-bit float, in gain.
 
-    Erratum ACP-144: gain is no unit.
+    Note ACP-144: gain is no unit.
     """
     p2_tangential_distortion_coefficient: float
     """P2 tangential distortion coefficient: bits 2032 to 2063, 32-bit float, in gain.
 
-    Erratum ACP-144: gain is no unit.
+    Note ACP-144: gain is no unit.
     """
     star_tracking_window_width: int
     """Star tracking window width: bits 2064 to 2071, 0 to 255.
 
-    Erratum ACP-146: Thresholds and counts of the star tracker have no description.
+    Note ACP-146: Thresholds and counts of the star tracker have no description.
     """
     star_tracking_margin: int
     """Star Tracking Margin: bits 2072 to 2079, 0 to 255; see
     `star_tracking_margin_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-143: Margins and search width have no unit.
+    Note ACP-143: Margins and search width have no unit.
     """
     star_validation_margin: int
     """Star Validation Margin: bits 2080 to 2087, 0 to 255; see
     `star_validation_margin_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-143: Margins and search width have no unit.
+    Note ACP-143: Margins and search width have no unit.
     """
     star_tracking_module_enable: bool
     """Star Tracking Module Enable: bit 2088."""
@@ -2230,9 +2112,7 @@ class AdcsConfiguration(_base.Message):
     """Star Tracking Search Width: bits 2096 to 2103, 0 to 255; see
     `star_tracking_search_width_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-143: Margins and search width have no unit.
+    Note ACP-143: Margins and search width have no unit.
     """
     detumbling_spin_gain: float
     """Detumbling Spin Gain: bits 2104 to 2135, 32-bit float.
@@ -2250,9 +2130,7 @@ class AdcsConfiguration(_base.Message):
 
     wy-ref.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-162: Limits of a sign in words only.
+    Note ACP-162: Limits of a sign in words only.
     """
     fast_bdot_detumbling_gain: float
     """Fast BDot Detumbling Gain: bits 2184 to 2215, 32-bit float.
@@ -2286,7 +2164,7 @@ class AdcsConfiguration(_base.Message):
 
     Must be below 0.
 
-    Erratum ACP-162: Limits of a sign in words only.
+    Note ACP-162: Limits of a sign in words only.
     """
     rwheel_proportional_gain: float
     """RWheel Proportional Gain: bits 2376 to 2407, 32-bit float.
@@ -2308,7 +2186,7 @@ class AdcsConfiguration(_base.Message):
 
     Body axis that is turned towards the sun.
 
-    Erratum ACP-166: Facets have 7 bits and 8 bits.
+    Note ACP-166: Facets have 7 bits and 8 bits.
     """
     control_transition_on_wheel_error: bool
     """Automatic Control Transition due to Wheel Errors: bit 2479.
@@ -2355,21 +2233,21 @@ class AdcsConfiguration(_base.Message):
 
     Erratum ACP-006: Moments of inertia: kg.m² and kg.m^2.
 
-    Erratum ACP-201: Products of inertia: the sign is not given.
+    Note ACP-201: Products of inertia: the sign is not given.
     """
     product_of_inertia_ixz: float
     """Product Of Inertia - Ixz: bits 2712 to 2743, 32-bit float, in kg.m^2.
 
     Erratum ACP-006: Moments of inertia: kg.m² and kg.m^2.
 
-    Erratum ACP-201: Products of inertia: the sign is not given.
+    Note ACP-201: Products of inertia: the sign is not given.
     """
     product_of_inertia_iyz: float
     """Product Of Inertia - Iyz: bits 2744 to 2775, 32-bit float, in kg.m^2.
 
     Erratum ACP-006: Moments of inertia: kg.m² and kg.m^2.
 
-    Erratum ACP-201: Products of inertia: the sign is not given.
+    Note ACP-201: Products of inertia: the sign is not given.
     """
     magnetometer_rate_filter_system_noise: float
     """Magnetometer Rate Filter System Noise: bits 2776 to 2807, 32-bit float."""
@@ -2420,7 +2298,7 @@ class AdcsConfiguration(_base.Message):
 
     The magnetometer that estimation and control use.
 
-    Erratum ACP-049: Magnetometer mode can be set in two places.
+    Note ACP-049: Magnetometer mode can be set in two places.
     """
     raw_magnetometer_selection: MagModeVal
     """Magnetometer Selection for RAW MTM TLM: bits 3008 to 3009, 0 to 3.
@@ -2453,51 +2331,37 @@ class AdcsConfiguration(_base.Message):
     `incl_coefficient_physical`.
 
     Of the filter of the inclination.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     raan_coefficient: int
     """Raan coefficient: bits 3040 to 3055, 0 to 65535; see `raan_coefficient_physical`.
 
     Of the filter of the RAAN.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     ecc_coefficient: int
     """Ecc coefficient: bits 3056 to 3071, 0 to 65535; see `ecc_coefficient_physical`.
 
     Of the filter of the eccentricity.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     aop_coefficient: int
     """Aop coefficient: bits 3072 to 3087, 0 to 65535; see `aop_coefficient_physical`.
 
     Of the filter of the argument of perigee.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     time_coefficient: int
     """Time coefficient: bits 3088 to 3103, 0 to 65535; see `time_coefficient_physical`.
 
     Of the filter of the time.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     pos_coefficient: int
     """Pos coefficient: bits 3104 to 3119, 0 to 65535; see `pos_coefficient_physical`.
 
     Of the filter of the position.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     maximum_position_error: int
     """Maximum position error: bits 3120 to 3127, 0 to 255; see
     `maximum_position_error_physical`.
 
     ASGP4 stops working beyond it.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     asgp4_filter: AsgpFilter
     """ASGP4 filter: bits 3128 to 3135, 0 to 255."""
@@ -2506,16 +2370,12 @@ class AdcsConfiguration(_base.Message):
     `xp_coefficient_physical`.
 
     Polar coefficient.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     yp_coefficient: int
     """yp coefficient: bits 3168 to 3199, -2147483648 to 2147483647; see
     `yp_coefficient_physical`.
 
     Polar coefficient.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     gps_roll_over: int
     """GPS roll over: bits 3200 to 3207, 0 to 255."""
@@ -2523,15 +2383,11 @@ class AdcsConfiguration(_base.Message):
     """Position sd: bits 3208 to 3215, 0 to 255; see `position_sd_physical`.
 
     Largest standard deviation with which ASGP4 works.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     velocity_sd: int
     """Velocity sd: bits 3216 to 3223, 0 to 255; see `velocity_sd_physical`.
 
     Largest standard deviation with which ASGP4 works.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     min_satellites: int
     """Min. satellites: bits 3224 to 3231, 0 to 255.
@@ -2542,15 +2398,11 @@ class AdcsConfiguration(_base.Message):
     """Time gain: bits 3232 to 3239, 0 to 255; see `time_gain_physical`.
 
     Of the compensation of the time offset.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     max_lag: int
     """Max. lag: bits 3240 to 3247, 0 to 255; see `max_lag_physical`.
 
     Largest lag of the time stamps that are still used.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     min_samples: int
     """Min. samples: bits 3248 to 3263, 0 to 65535.
@@ -2560,12 +2412,12 @@ class AdcsConfiguration(_base.Message):
     user_coded_controller_settings: bytes
     """User Coded Controller Settings: bits 3264 to 3647.
 
-    Erratum ACP-178: User coded settings: content of the arrays.
+    Note ACP-178: User coded settings: content of the arrays.
     """
     user_coded_estimator_settings: bytes
     """User Coded Estimator Settings: bits 3648 to 4031.
 
-    Erratum ACP-178: User coded settings: content of the arrays.
+    Note ACP-178: User coded settings: content of the arrays.
     """
 
     def __init__(

@@ -18,7 +18,7 @@ class AdcsExecutionTimes(_base.Message):
 
     How long the parts of the control program take.
 
-    Erratum ACP-107: ADCS is Adcs in one message, a model a computation.
+    Note ACP-107: ADCS is Adcs in one message, a model a computation.
     """
 
     __slots__ = (

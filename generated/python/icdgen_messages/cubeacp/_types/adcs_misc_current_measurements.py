@@ -64,7 +64,7 @@ class AdcsMiscCurrentMeasurements(_base.Message):
     cubestar_current: int
     """CubeStarCurrent: bits 0 to 15, 0 to 65535; see `cubestar_current_ma`.
 
-    Erratum ACP-084: Wheel and star tracker currents end at 655 mA.
+    Note ACP-084: Wheel and star tracker currents end at 655 mA.
     """
     magnetorquer_current: int
     """Magnetorquer Current: bits 16 to 31, 0 to 65535; see
@@ -74,9 +74,9 @@ class AdcsMiscCurrentMeasurements(_base.Message):
     """CubeStar MCU temperature: bits 32 to 47, -32768 to 32767; see
     `cubestar_mcu_temperature_c`.
 
-    Erratum ACP-005: Symbol C is the coulomb.
+    Note ACP-005: Symbol C is the coulomb.
 
-    Erratum ACP-108: ADCS Misc Current Measurements holds a temperature.
+    Note ACP-108: ADCS Misc Current Measurements holds a temperature.
     """
 
     def __init__(

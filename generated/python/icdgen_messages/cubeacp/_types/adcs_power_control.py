@@ -26,7 +26,7 @@ class AdcsPowerControl(_base.Message):
 
     Switches components on and off.
 
-    Erratum ACP-020: Reserved bits.
+    Note ACP-020: Reserved bits.
     """
 
     __slots__ = (
@@ -124,14 +124,14 @@ class AdcsPowerControl(_base.Message):
 
     Electronics of the signal PIC.
 
-    Erratum ACP-136: Power control calls the controllers PIC.
+    Note ACP-136: Power control calls the controllers PIC.
     """
     cubecontrol_motor_power_selection: PowerSelect
     """CubeControl Motor Power Selection: bits 2 to 3, 0 to 3.
 
     Electronics of the motor PIC.
 
-    Erratum ACP-136: Power control calls the controllers PIC.
+    Note ACP-136: Power control calls the controllers PIC.
     """
     cubesense1_power_selection: PowerSelect
     """CubeSense1 Power Selection: bits 4 to 5, 0 to 3."""
@@ -140,40 +140,40 @@ class AdcsPowerControl(_base.Message):
     cubestar_power_selection: PowerSelect
     """CubeStarPower Power Selection: bits 8 to 9, 0 to 3.
 
-    Erratum ACP-134: Power is doubled in four names.
+    Note ACP-134: Power is doubled in four names.
     """
     cubewheel1_power_selection: PowerSelect
     """CubeWheel1Power Power Selection: bits 10 to 11, 0 to 3.
 
-    Erratum ACP-134: Power is doubled in four names.
+    Note ACP-134: Power is doubled in four names.
     """
     cubewheel2_power_selection: PowerSelect
     """CubeWheel2Power Power Selection: bits 12 to 13, 0 to 3.
 
-    Erratum ACP-134: Power is doubled in four names.
+    Note ACP-134: Power is doubled in four names.
     """
     cubewheel3_power_selection: PowerSelect
     """CubeWheel3Power Power Selection: bits 14 to 15, 0 to 3.
 
-    Erratum ACP-134: Power is doubled in four names.
+    Note ACP-134: Power is doubled in four names.
     """
     motor_power: PowerSelect
     """Motor Power: bits 16 to 17, 0 to 3.
 
     Motor electronics.
 
-    Erratum ACP-062: Power switches and enabled flags do not match.
+    Note ACP-062: Power switches and enabled flags do not match.
 
-    Erratum ACP-135: Motor Power and GPS Power are not called selections.
+    Note ACP-135: Motor Power and GPS Power are not called selections.
     """
     gps_power: PowerSelect
     """GPS Power: bits 18 to 19, 0 to 3.
 
     LNA of the GPS.
 
-    Erratum ACP-062: Power switches and enabled flags do not match.
+    Note ACP-062: Power switches and enabled flags do not match.
 
-    Erratum ACP-135: Motor Power and GPS Power are not called selections.
+    Note ACP-135: Motor Power and GPS Power are not called selections.
     """
 
     def __init__(

@@ -9,19 +9,19 @@ from ... import _enumeration
 class AdcsRunMode(_enumeration.OpenEnum):
     """AdcsRunMode, table 75.
 
-    Erratum ACP-018: ADCS Run Mode is a message and an enumeration.
+    Note ACP-018: ADCS Run Mode is a message and an enumeration.
     """
 
     OFF = 0, "Off"
     """The loop does not run.
 
-    Erratum ACP-019: Disabled is Off.
+    Note ACP-019: Disabled is Off.
     """
     ENABLED = 1, "Enabled"
     """The loop runs at 1 Hz."""
     TRIGGERED = 2, "Triggered"
     """The loop runs once for each trigger."""
     SIMULATION = 3, "Simulation"
-    """Erratum ACP-032: Simulated data are accepted while triggered, not while
+    """Note ACP-032: Simulated data are accepted while triggered, not while
     simulating.
     """

@@ -75,9 +75,9 @@ class AdcsState(_base.Message):
 
     Repeats `ECEF Position` from bit 384.
 
-    Erratum ACP-059: Current ADCS State and ADCS State.
+    Note ACP-059: Current ADCS State and ADCS State.
 
-    Erratum ACP-101: ADCS State: 30 bits between the flags and the angles.
+    Note ACP-101: ADCS State: 30 bits between the flags and the angles.
     """
 
     __slots__ = (
@@ -565,24 +565,24 @@ class AdcsState(_base.Message):
     attitude_estimation_mode: EstimModeSelect
     """Attitude Estimation Mode: bits 0 to 3, 0 to 15.
 
-    Erratum ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
+    Note ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
     """
     control_mode: ConModeSelect
     """Control Mode: bits 4 to 7, 0 to 15.
 
-    Erratum ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
+    Note ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
     """
     adcs_run_mode: AdcsRunMode
     """ADCS Run Mode: bits 8 to 9, 0 to 3.
 
-    Erratum ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
+    Note ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
     """
     asgp4_mode: Asgp4ModeSelect
     """ASGP4 Mode: bits 10 to 11, 0 to 3.
 
-    Erratum ACP-047: ASGP4 Mode is called an enabled state.
+    Note ACP-047: ASGP4 Mode is called an enabled state.
 
-    Erratum ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
+    Note ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
     """
     cubecontrol_signal_enabled: bool
     """CubeControl Signal Enabled: bit 12."""
@@ -635,7 +635,7 @@ class AdcsState(_base.Message):
 
     About a measured field of 65 uT. Whether above or below is not printed.
 
-    Erratum ACP-060: Magnetometer range: 65 uT without a comparison.
+    Note ACP-060: Magnetometer range: 65 uT without a comparison.
     """
     cam1_sram_overcurrent_detected: bool
     """Cam1 SRAM Overcurrent Detected: bit 33."""
@@ -656,7 +656,7 @@ class AdcsState(_base.Message):
 
     A detected sun angle was beyond +/-90 deg.
 
-    Erratum ACP-061: Sun and nadir sensor errors do not say which camera.
+    Note ACP-061: Sun and nadir sensor errors do not say which camera.
     """
     cam2_sram_overcurrent_detected: bool
     """Cam2 SRAM Overcurrent Detected: bit 38."""
@@ -677,7 +677,7 @@ class AdcsState(_base.Message):
 
     A detected nadir angle was beyond +/-60 deg.
 
-    Erratum ACP-061: Sun and nadir sensor errors do not say which camera.
+    Note ACP-061: Sun and nadir sensor errors do not say which camera.
     """
     rate_sensor_range_error: bool
     """Rate Sensor Range Error: bit 43.
@@ -706,7 +706,7 @@ class AdcsState(_base.Message):
 
     A parameter is out of bounds, or the SGP4 propagator could not start from them.
 
-    Erratum ACP-104: Orbit parameter flag has two reasons.
+    Note ACP-104: Orbit parameter flag has two reasons.
     """
     configuration_is_invalid: bool
     """Configuration is Invalid: bit 49.
@@ -714,9 +714,9 @@ class AdcsState(_base.Message):
     Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at
     least one CSS.
 
-    Erratum ACP-102: Configuration flag: is invalid, in invalid.
+    Note ACP-102: Configuration flag: is invalid, in invalid.
 
-    Erratum ACP-103: Configuration flag: outputs per axis, or axes per output.
+    Note ACP-103: Configuration flag: outputs per axis, or axes per output.
     """
     control_mode_change_is_not_allowed: bool
     """Control Mode Change is not allowed: bit 50.
@@ -779,17 +779,17 @@ class AdcsState(_base.Message):
     estimated_q1: int
     """Estimated q1: bits 144 to 159, -32768 to 32767.
 
-    Erratum ACP-100: Estimated quaternion has no formula.
+    Note ACP-100: Estimated quaternion has no formula.
     """
     estimated_q2: int
     """Estimated q2: bits 160 to 175, -32768 to 32767.
 
-    Erratum ACP-100: Estimated quaternion has no formula.
+    Note ACP-100: Estimated quaternion has no formula.
     """
     estimated_q3: int
     """Estimated q3: bits 176 to 191, -32768 to 32767.
 
-    Erratum ACP-100: Estimated quaternion has no formula.
+    Note ACP-100: Estimated quaternion has no formula.
     """
     estimated_x_angular_rate: int
     """Estimated X Angular Rate: bits 192 to 207, -32768 to 32767; see
@@ -820,33 +820,33 @@ class AdcsState(_base.Message):
     longitude: int
     """Longitude: bits 352 to 367, -32768 to 32767; see `longitude_deg`.
 
-    Erratum ACP-068: Latitude and altitude are of WGS-84, longitude is not.
+    Note ACP-068: Latitude and altitude are of WGS-84, longitude is not.
     """
     altitude: int
     """Altitude: bits 368 to 383, 0 to 65535; see `altitude_km`.
 
-    Erratum ACP-067: Position and altitude do not reach equally far.
+    Note ACP-067: Position and altitude do not reach equally far.
     """
     ecef_position_x: int
     """ECEF Position X: bits 384 to 399, -32768 to 32767.
 
     Erratum ACP-098: ECEF position: 16 bits in metres.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
     ecef_position_y: int
     """ECEF Position Y: bits 400 to 415, -32768 to 32767.
 
     Erratum ACP-098: ECEF position: 16 bits in metres.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
     ecef_position_z: int
     """ECEF Position Z: bits 416 to 431, -32768 to 32767.
 
     Erratum ACP-098: ECEF position: 16 bits in metres.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
 
     def __init__(

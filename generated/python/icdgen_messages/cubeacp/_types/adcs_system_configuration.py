@@ -33,9 +33,9 @@ class AdcsSystemConfiguration(_base.Message):
 
     What is hard-coded: versions, ratings, calibration and pins.
 
-    Erratum ACP-020: Reserved bits.
+    Note ACP-020: Reserved bits.
 
-    Erratum ACP-170: System configuration is hard-coded and can be set.
+    Note ACP-170: System configuration is hard-coded and can be set.
     """
 
     __slots__ = (
@@ -466,22 +466,22 @@ class AdcsSystemConfiguration(_base.Message):
     cubecontrol_signal_version: int
     """CubeControl Signal Version: bits 8 to 15, 0 to 255.
 
-    Erratum ACP-171: Versions of the units: format of the number.
+    Note ACP-171: Versions of the units: format of the number.
     """
     cubecontrol_motor_version: int
     """CubeControl Motor Version: bits 16 to 23, 0 to 255.
 
-    Erratum ACP-171: Versions of the units: format of the number.
+    Note ACP-171: Versions of the units: format of the number.
     """
     cubesense1_version: int
     """CubeSense1 Version: bits 24 to 31, 0 to 255.
 
-    Erratum ACP-171: Versions of the units: format of the number.
+    Note ACP-171: Versions of the units: format of the number.
     """
     cubesense2_version: int
     """CubeSense2 Version: bits 32 to 39, 0 to 255.
 
-    Erratum ACP-171: Versions of the units: format of the number.
+    Note ACP-171: Versions of the units: format of the number.
     """
     cubesense1_camera_type: CsCamType
     """CubeSense1 Camera Type: bits 40 to 43, 0 to 15."""
@@ -490,7 +490,7 @@ class AdcsSystemConfiguration(_base.Message):
     cubestar_version: int
     """CubeStar Version: bits 48 to 55, 0 to 255.
 
-    Erratum ACP-171: Versions of the units: format of the number.
+    Note ACP-171: Versions of the units: format of the number.
     """
     gps_type: GpsSelect
     """GPS Type: bits 56 to 59, 0 to 15."""
@@ -518,185 +518,185 @@ class AdcsSystemConfiguration(_base.Message):
     rw_x_maximum_torque: float
     """RW-X Maximum Torque: bits 224 to 255, 32-bit float, in N.m.
 
-    Erratum ACP-173: N.m and Nms.
+    Note ACP-173: N.m and Nms.
     """
     rw_y_maximum_torque: float
     """RW-Y Maximum Torque: bits 256 to 287, 32-bit float, in N.m.
 
-    Erratum ACP-173: N.m and Nms.
+    Note ACP-173: N.m and Nms.
     """
     rw_z_maximum_torque: float
     """RW-Z Maximum Torque: bits 288 to 319, 32-bit float, in N.m.
 
-    Erratum ACP-173: N.m and Nms.
+    Note ACP-173: N.m and Nms.
     """
     rw_x_maximum_momentum: float
     """RW-X Maximum Momentum: bits 320 to 351, 32-bit float, in Nms.
 
-    Erratum ACP-173: N.m and Nms.
+    Note ACP-173: N.m and Nms.
     """
     rw_y_maximum_momentum: float
     """RW-Y Maximum Momentum: bits 352 to 383, 32-bit float, in Nms.
 
-    Erratum ACP-173: N.m and Nms.
+    Note ACP-173: N.m and Nms.
     """
     rw_z_maximum_momentum: float
     """RW-Z Maximum Momentum: bits 384 to 415, 32-bit float, in Nms.
 
-    Erratum ACP-173: N.m and Nms.
+    Note ACP-173: N.m and Nms.
     """
     rw_x_inertia: float
     """RW-X Inertia: bits 416 to 447, 32-bit float, in kg.m^2.
 
     Erratum ACP-006: Moments of inertia: kg.m² and kg.m^2.
 
-    Erratum ACP-129: Reaction wheels are RW1 and RW-X.
+    Note ACP-129: Reaction wheels are RW1 and RW-X.
     """
     rw_y_inertia: float
     """RW-Y Inertia: bits 448 to 479, 32-bit float, in kg.m^2.
 
     Erratum ACP-006: Moments of inertia: kg.m² and kg.m^2.
 
-    Erratum ACP-129: Reaction wheels are RW1 and RW-X.
+    Note ACP-129: Reaction wheels are RW1 and RW-X.
     """
     rw_z_inertia: float
     """RW-Z Inertia: bits 480 to 511, 32-bit float, in kg.m^2.
 
     Erratum ACP-006: Moments of inertia: kg.m² and kg.m^2.
 
-    Erratum ACP-129: Reaction wheels are RW1 and RW-X.
+    Note ACP-129: Reaction wheels are RW1 and RW-X.
     """
     rw_torque_increment: float
     """RW Torque Increment: bits 512 to 543, 32-bit float, in N.m."""
     primary_mtm_x_bias_d1: float
     """Primary MTM X-Bias d1: bits 544 to 575, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     primary_mtm_y_bias_d1: float
     """Primary MTM Y-Bias d1: bits 576 to 607, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     primary_mtm_z_bias_d1: float
     """Primary MTM Z-Bias d1: bits 608 to 639, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     primary_mtm_x_bias_d2: float
     """Primary MTM X-Bias d2: bits 640 to 671, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     primary_mtm_y_bias_d2: float
     """Primary MTM Y-Bias d2: bits 672 to 703, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     primary_mtm_z_bias_d2: float
     """Primary MTM Z-Bias d2: bits 704 to 735, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     primary_mtm_x_sens_s1: float
     """Primary MTM X-Sens s1: bits 736 to 767, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     primary_mtm_y_sens_s1: float
     """Primary MTM Y-Sens s1: bits 768 to 799, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     primary_mtm_z_sens_s1: float
     """Primary MTM Z-Sens s1: bits 800 to 831, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     primary_mtm_x_sens_s2: float
     """Primary MTM X-Sens s2: bits 832 to 863, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     primary_mtm_y_sens_s2: float
     """Primary MTM Y-Sens s2: bits 864 to 895, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     primary_mtm_z_sens_s2: float
     """Primary MTM Z-Sens s2: bits 896 to 927, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     redundant_mtm_x_bias_d1: float
     """Redundant MTM X-Bias d1: bits 928 to 959, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     redundant_mtm_y_bias_d1: float
     """Redundant MTM Y-Bias d1: bits 960 to 991, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     redundant_mtm_z_bias_d1: float
     """Redundant MTM Z-Bias d1: bits 992 to 1023, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     redundant_mtm_x_bias_d2: float
     """Redundant MTM X-Bias d2: bits 1024 to 1055, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     redundant_mtm_y_bias_d2: float
     """Redundant MTM Y-Bias d2: bits 1056 to 1087, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     redundant_mtm_z_bias_d2: float
     """Redundant MTM Z-Bias d2: bits 1088 to 1119, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     redundant_mtm_x_sens_s1: float
     """Redundant MTM X-Sens s1: bits 1120 to 1151, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     redundant_mtm_y_sens_s1: float
     """Redundant MTM Y-Sens s1: bits 1152 to 1183, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     redundant_mtm_z_sens_s1: float
     """Redundant MTM Z-Sens s1: bits 1184 to 1215, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     redundant_mtm_x_sens_s2: float
     """Redundant MTM X-Sens s2: bits 1216 to 1247, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     redundant_mtm_y_sens_s2: float
     """Redundant MTM Y-Sens s2: bits 1248 to 1279, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     redundant_mtm_z_sens_s2: float
     """Redundant MTM Z-Sens s2: bits 1280 to 1311, 32-bit float.
 
-    Erratum ACP-174: Magnetometer calibration d1, d2, s1 and s2.
+    Note ACP-174: Magnetometer calibration d1, d2, s1 and s2.
     """
     cc_signal_enable_port: GpioPort
     """CC Signal Enable Port: bits 1312 to 1315, 0 to 15.
 
-    Erratum ACP-175: CC is not explained.
+    Note ACP-175: CC is not explained.
     """
     cc_signal_enable_pin: GpioPortPin
     """CC Signal Enable Pin: bits 1316 to 1319, 0 to 15.
 
-    Erratum ACP-175: CC is not explained.
+    Note ACP-175: CC is not explained.
     """
     cc_motor_enable_port: GpioPort
     """CC Motor Enable Port: bits 1320 to 1323, 0 to 15."""
@@ -705,12 +705,12 @@ class AdcsSystemConfiguration(_base.Message):
     cc_common_enable_port: GpioPort
     """CC Common Enable Port: bits 1328 to 1331, 0 to 15.
 
-    Erratum ACP-175: CC is not explained.
+    Note ACP-175: CC is not explained.
     """
     cc_common_enable_pin: GpioPortPin
     """CC Common Enable Pin: bits 1332 to 1335, 0 to 15.
 
-    Erratum ACP-175: CC is not explained.
+    Note ACP-175: CC is not explained.
     """
     cubesense1_enable_port: GpioPort
     """CubeSense1 Enable Port: bits 1336 to 1339, 0 to 15."""

@@ -59,23 +59,23 @@ class AdcsTemperatures(_base.Message):
     mcu_temperature: int
     """MCU Temperature: bits 0 to 15, -32768 to 32767, in C.
 
-    Erratum ACP-005: Symbol C is the coulomb.
+    Note ACP-005: Symbol C is the coulomb.
 
-    Erratum ACP-085: Temperatures have three scales.
+    Note ACP-085: Temperatures have three scales.
     """
     magnetometer_temperature: int
     """Magnetometer Temperature: bits 16 to 31, -32768 to 32767; see
     `magnetometer_temperature_c`.
 
-    Erratum ACP-005: Symbol C is the coulomb.
+    Note ACP-005: Symbol C is the coulomb.
     """
     redundant_magnetometer_temperature: int
     """Redundant Magnetometer Temperature: bits 32 to 47, -32768 to 32767; see
     `redundant_magnetometer_temperature_c`.
 
-    Erratum ACP-005: Symbol C is the coulomb.
+    Note ACP-005: Symbol C is the coulomb.
 
-    Erratum ACP-086: ADCS Temperatures: the redundant magnetometer is left out of the
+    Note ACP-086: ADCS Temperatures: the redundant magnetometer is left out of the
     description.
     """
 

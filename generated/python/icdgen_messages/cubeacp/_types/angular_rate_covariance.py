@@ -63,19 +63,19 @@ class AngularRateCovariance(_base.Message):
     """X Angular Rate Covariance: bits 0 to 15, -32768 to 32767; see
     `x_angular_rate_covariance_physical`.
 
-    Erratum ACP-077: Angular rate covariance: unit and sign.
+    Note ACP-077: Angular rate covariance: unit and sign.
     """
     y_angular_rate_covariance: int
     """Y Angular Rate Covariance: bits 16 to 31, -32768 to 32767; see
     `y_angular_rate_covariance_physical`.
 
-    Erratum ACP-077: Angular rate covariance: unit and sign.
+    Note ACP-077: Angular rate covariance: unit and sign.
     """
     z_angular_rate_covariance: int
     """Z Angular Rate Covariance: bits 32 to 47, -32768 to 32767; see
     `z_angular_rate_covariance_physical`.
 
-    Erratum ACP-077: Angular rate covariance: unit and sign.
+    Note ACP-077: Angular rate covariance: unit and sign.
     """
 
     def __init__(

@@ -9,7 +9,7 @@ from ... import _enumeration
 class Asgp4ModeSelect(_enumeration.OpenEnum):
     """Asgp4ModeSelect, table 87.
 
-    Erratum ACP-048: ASGP4 is Asgp4, Asgp and asgp4.
+    Note ACP-048: ASGP4 is Asgp4, Asgp and asgp4.
     """
 
     OFF = 0, "Off"

@@ -18,7 +18,7 @@ _BITS_0 = _codec.bit_table((0, 8, Asgp4ModeSelect))
 class Asgp4RunMode(_base.Message):
     """ASGP4 Run Mode: telecommand 31, 1 byte, table 86.
 
-    Erratum ACP-046: Telecommand 31 has the id of the escape byte.
+    Note ACP-046: Telecommand 31 has the id of the escape byte.
     """
 
     __slots__ = ("asgp4_mode",)
@@ -37,7 +37,7 @@ class Asgp4RunMode(_base.Message):
     asgp4_mode: Asgp4ModeSelect
     """ASGP4 Mode: bits 0 to 7, 0 to 255.
 
-    Erratum ACP-047: ASGP4 Mode is called an enabled state.
+    Note ACP-047: ASGP4 Mode is called an enabled state.
     """
 
     def __init__(self, *, asgp4_mode: Asgp4ModeSelect = Asgp4ModeSelect.OFF) -> None:

@@ -65,70 +65,70 @@ class Asgp4Tles(_base.Message):
     asgp4_epoch: float
     """ASGP4 Epoch: bits 8 to 39, 32-bit float.
 
-    Erratum ACP-121: ASGP4 elements have no units.
+    Note ACP-121: ASGP4 elements have no units.
 
-    Erratum ACP-122: ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122: ASGP4 elements: 32 bits against 64, and another order.
     """
     asgp4_inclination: float
     """ASGP4 inclination: bits 40 to 71, 32-bit float.
 
-    Erratum ACP-121: ASGP4 elements have no units.
+    Note ACP-121: ASGP4 elements have no units.
 
-    Erratum ACP-122: ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122: ASGP4 elements: 32 bits against 64, and another order.
     """
     asgp4_raan: float
     """ASGP4 RAAN: bits 72 to 103, 32-bit float.
 
     Right ascension of the ascending node.
 
-    Erratum ACP-121: ASGP4 elements have no units.
+    Note ACP-121: ASGP4 elements have no units.
 
-    Erratum ACP-122: ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122: ASGP4 elements: 32 bits against 64, and another order.
     """
     asgp4_ecc: float
     """ASGP4 ECC: bits 104 to 135, 32-bit float.
 
     Eccentricity.
 
-    Erratum ACP-121: ASGP4 elements have no units.
+    Note ACP-121: ASGP4 elements have no units.
 
-    Erratum ACP-122: ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122: ASGP4 elements: 32 bits against 64, and another order.
     """
     asgp4_aop: float
     """ASGP4 AOP: bits 136 to 167, 32-bit float.
 
     Argument of perigee.
 
-    Erratum ACP-121: ASGP4 elements have no units.
+    Note ACP-121: ASGP4 elements have no units.
 
-    Erratum ACP-122: ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122: ASGP4 elements: 32 bits against 64, and another order.
     """
     asgp4_ma: float
     """ASGP4 MA: bits 168 to 199, 32-bit float.
 
     Mean anomaly.
 
-    Erratum ACP-121: ASGP4 elements have no units.
+    Note ACP-121: ASGP4 elements have no units.
 
-    Erratum ACP-122: ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122: ASGP4 elements: 32 bits against 64, and another order.
     """
     asgp4_mm: float
     """ASGP4 MM: bits 200 to 231, 32-bit float.
 
     Mean motion.
 
-    Erratum ACP-121: ASGP4 elements have no units.
+    Note ACP-121: ASGP4 elements have no units.
 
-    Erratum ACP-122: ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122: ASGP4 elements: 32 bits against 64, and another order.
     """
     asgp4_bstar: float
     """ASGP4 Bstar: bits 232 to 263, 32-bit float.
 
     Drag term.
 
-    Erratum ACP-121: ASGP4 elements have no units.
+    Note ACP-121: ASGP4 elements have no units.
 
-    Erratum ACP-122: ASGP4 elements: 32 bits against 64, and another order.
+    Note ACP-122: ASGP4 elements: 32 bits against 64, and another order.
     """
 
     def __init__(

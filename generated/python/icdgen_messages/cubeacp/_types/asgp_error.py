@@ -9,13 +9,13 @@ from ... import _enumeration
 class AsgpError(_enumeration.OpenEnum):
     """AsgpError, table 171.
 
-    Erratum ACP-048: ASGP4 is Asgp4, Asgp and asgp4.
+    Note ACP-048: ASGP4 is Asgp4, Asgp and asgp4.
     """
 
     OFF = 0, "Off"
     """No error.
 
-    Erratum ACP-123: AsgpError: no error is called Off.
+    Note ACP-123: AsgpError: no error is called Off.
     """
     UNIX_TIME = 1, "Unix Time"
     """Error due to the time."""

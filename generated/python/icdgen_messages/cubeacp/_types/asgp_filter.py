@@ -9,7 +9,7 @@ from ... import _enumeration
 class AsgpFilter(_enumeration.OpenEnum):
     """AsgpFilter, table 193.
 
-    Erratum ACP-048: ASGP4 is Asgp4, Asgp and asgp4.
+    Note ACP-048: ASGP4 is Asgp4, Asgp and asgp4.
     """
 
     LPF = 0, "LPF"

@@ -181,62 +181,50 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the filter of the inclination.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
+    Note ACP-181: Augmented SGP4: names are cut short.
 
-    Erratum ACP-181: Augmented SGP4: names are cut short.
-
-    Erratum ACP-182: Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182: Augmented SGP4: time gain and filter coefficients.
     """
     raan_coefficient: int
     """Raan coefficient: bits 16 to 31, 0 to 65535; see `raan_coefficient_physical`.
 
     Of the filter of the RAAN.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-182: Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182: Augmented SGP4: time gain and filter coefficients.
     """
     ecc_coefficient: int
     """Ecc coefficient: bits 32 to 47, 0 to 65535; see `ecc_coefficient_physical`.
 
     Of the filter of the eccentricity.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
+    Note ACP-181: Augmented SGP4: names are cut short.
 
-    Erratum ACP-181: Augmented SGP4: names are cut short.
-
-    Erratum ACP-182: Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182: Augmented SGP4: time gain and filter coefficients.
     """
     aop_coefficient: int
     """Aop coefficient: bits 48 to 63, 0 to 65535; see `aop_coefficient_physical`.
 
     Of the filter of the argument of perigee.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
+    Note ACP-181: Augmented SGP4: names are cut short.
 
-    Erratum ACP-181: Augmented SGP4: names are cut short.
-
-    Erratum ACP-182: Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182: Augmented SGP4: time gain and filter coefficients.
     """
     time_coefficient: int
     """Time coefficient: bits 64 to 79, 0 to 65535; see `time_coefficient_physical`.
 
     Of the filter of the time.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-182: Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182: Augmented SGP4: time gain and filter coefficients.
     """
     pos_coefficient: int
     """Pos coefficient: bits 80 to 95, 0 to 65535; see `pos_coefficient_physical`.
 
     Of the filter of the position.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
+    Note ACP-181: Augmented SGP4: names are cut short.
 
-    Erratum ACP-181: Augmented SGP4: names are cut short.
-
-    Erratum ACP-182: Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182: Augmented SGP4: time gain and filter coefficients.
     """
     maximum_position_error: int
     """Maximum position error: bits 96 to 103, 0 to 255; see
@@ -244,9 +232,7 @@ class AugmentedSgp4Parameters(_base.Message):
 
     ASGP4 stops working beyond it.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-179: Augmented SGP4: limits have no units.
+    Note ACP-179: Augmented SGP4: limits have no units.
     """
     asgp4_filter: AsgpFilter
     """ASGP4 filter: bits 104 to 111, 0 to 255."""
@@ -256,9 +242,7 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Polar coefficient.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-180: Augmented SGP4: polar coefficients have no unit.
+    Note ACP-180: Augmented SGP4: polar coefficients have no unit.
     """
     yp_coefficient: int
     """yp coefficient: bits 144 to 175, -2147483648 to 2147483647; see
@@ -266,9 +250,7 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Polar coefficient.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-180: Augmented SGP4: polar coefficients have no unit.
+    Note ACP-180: Augmented SGP4: polar coefficients have no unit.
     """
     gps_roll_over: int
     """GPS roll over: bits 176 to 183, 0 to 255."""
@@ -277,47 +259,39 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Largest standard deviation with which ASGP4 works.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
+    Note ACP-179: Augmented SGP4: limits have no units.
 
-    Erratum ACP-179: Augmented SGP4: limits have no units.
-
-    Erratum ACP-181: Augmented SGP4: names are cut short.
+    Note ACP-181: Augmented SGP4: names are cut short.
     """
     velocity_sd: int
     """Velocity sd: bits 192 to 199, 0 to 255; see `velocity_sd_physical`.
 
     Largest standard deviation with which ASGP4 works.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-179: Augmented SGP4: limits have no units.
+    Note ACP-179: Augmented SGP4: limits have no units.
     """
     min_satellites: int
     """Min. satellites: bits 200 to 207, 0 to 255.
 
     Fewest satellites with which ASGP4 works.
 
-    Erratum ACP-181: Augmented SGP4: names are cut short.
+    Note ACP-181: Augmented SGP4: names are cut short.
     """
     time_gain: int
     """Time gain: bits 208 to 215, 0 to 255; see `time_gain_physical`.
 
     Of the compensation of the time offset.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-182: Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182: Augmented SGP4: time gain and filter coefficients.
     """
     max_lag: int
     """Max. lag: bits 216 to 223, 0 to 255; see `max_lag_physical`.
 
     Largest lag of the time stamps that are still used.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
+    Note ACP-179: Augmented SGP4: limits have no units.
 
-    Erratum ACP-179: Augmented SGP4: limits have no units.
-
-    Erratum ACP-181: Augmented SGP4: names are cut short.
+    Note ACP-181: Augmented SGP4: names are cut short.
     """
     min_samples: int
     """Min. samples: bits 224 to 239, 0 to 65535.

@@ -16,4 +16,4 @@ class AxisSelect(_enumeration.OpenEnum):
     POSITIVE_Z = 4, "Positive Z"
     NEGATIVE_Z = 5, "Negative Z"
     NOT_USED = 6, "Not Used"
-    """Erratum ACP-126: AxisSelect is used where Not Used is no answer."""
+    """Note ACP-126: AxisSelect is used where Not Used is no answer."""

@@ -9,7 +9,7 @@ from ... import _enumeration
 class CamSelect(_enumeration.OpenEnum):
     """CamSelect, table 95.
 
-    Erratum ACP-056: Cameras: Cam, CubeSense, and star.
+    Note ACP-056: Cameras: Cam, CubeSense, and star.
     """
 
     CAM1 = 0, "Cam1"

@@ -20,7 +20,7 @@ class ClearErrors(_base.Message):
 
     Clears the latched error flags that are selected.
 
-    Erratum ACP-020: Reserved bits.
+    Note ACP-020: Reserved bits.
     """
 
     __slots__ = ("adcs_error_flags", "hk_error_flags")
@@ -40,14 +40,14 @@ class ClearErrors(_base.Message):
     adcs_error_flags: bool
     """ADCS Error Flags: bit 0.
 
-    Erratum ACP-021: Clear Errors: which flags.
+    Note ACP-021: Clear Errors: which flags.
     """
     hk_error_flags: bool
     """HK Error Flags: bit 1.
 
     Housekeeping errors.
 
-    Erratum ACP-021: Clear Errors: which flags.
+    Note ACP-021: Clear Errors: which flags.
     """
 
     def __init__(

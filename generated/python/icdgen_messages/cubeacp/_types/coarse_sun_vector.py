@@ -18,7 +18,7 @@ class CoarseSunVector(_base.Message):
 
     As measured.
 
-    Erratum ACP-069: Reference frames of measured vectors are not named.
+    Note ACP-069: Reference frames of measured vectors are not named.
     """
 
     __slots__ = ("coarse_sun_x", "coarse_sun_y", "coarse_sun_z")

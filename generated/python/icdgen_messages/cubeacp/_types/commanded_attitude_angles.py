@@ -17,7 +17,7 @@ class CommandedAttitudeAngles(_base.Message):
     """Commanded Attitude Angles: set by telecommand 15, got by telemetry 199, 6 bytes,
     table 186.
 
-    Erratum ACP-066: Attitude angles: order of rotation and frame.
+    Note ACP-066: Attitude angles: order of rotation and frame.
     """
 
     __slots__ = ("commanded_roll_angle", "commanded_pitch_angle", "commanded_yaw_angle")
@@ -66,20 +66,14 @@ class CommandedAttitudeAngles(_base.Message):
     commanded_roll_angle: int
     """Commanded Roll Angle: bits 0 to 15, -32768 to 32767; see
     `commanded_roll_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     commanded_pitch_angle: int
     """Commanded Pitch Angle: bits 16 to 31, -32768 to 32767; see
     `commanded_pitch_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     commanded_yaw_angle: int
     """Commanded Yaw Angle: bits 32 to 47, -32768 to 32767; see
     `commanded_yaw_angle_deg`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
 
     def __init__(

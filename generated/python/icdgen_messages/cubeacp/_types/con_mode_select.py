@@ -9,55 +9,55 @@ from ... import _enumeration
 class ConModeSelect(_enumeration.OpenEnum):
     """ConModeSelect, table 78.
 
-    Erratum ACP-024: Control modes that are named and not listed.
+    Note ACP-024: Control modes that are named and not listed.
     """
 
     NO_CONTROL = 0, "No control"
-    """Erratum ACP-023: Control mode None does not exist."""
+    """Note ACP-023: Control mode None does not exist."""
     DETUMBLING_CONTROL = 1, "Detumbling control"
     Y_THOMSON_SPIN = 2, "Y-Thomson spin"
-    """Erratum ACP-028: Y-Thomson is a spin or a mode."""
+    """Note ACP-028: Y-Thomson is a spin or a mode."""
     Y_WHEEL_INITIAL_PITCH_ACQUISITION = (
         3,
         "Y-Wheel momentum stabilized - Initial Pitch Acquisition",
     )
-    """Erratum ACP-027: Wheel control modes are written in five ways."""
+    """Note ACP-027: Wheel control modes are written in five ways."""
     Y_WHEEL_STEADY_STATE = 4, "Y-Wheel momentum stabilized - Steady State"
-    """Erratum ACP-027: Wheel control modes are written in five ways."""
+    """Note ACP-027: Wheel control modes are written in five ways."""
     XYZ_WHEEL_CONTROL = 5, "XYZ-Wheel control"
-    """Erratum ACP-027: Wheel control modes are written in five ways."""
+    """Note ACP-027: Wheel control modes are written in five ways."""
     RWHEEL_SUN_TRACKING_CONTROL = 6, "Rwheel sun tracking control"
-    """Erratum ACP-027: Wheel control modes are written in five ways."""
+    """Note ACP-027: Wheel control modes are written in five ways."""
     RWHEEL_TARGET_TRACKING_CONTROL = 7, "Rwheel target tracking control"
-    """Erratum ACP-027: Wheel control modes are written in five ways."""
+    """Note ACP-027: Wheel control modes are written in five ways."""
     VERY_FAST_SPIN_DETUMBLING_CONTROL = 8, "Very Fast-spin Detumbling control"
     """At 10 Hz, within CubeControl.
 
-    Erratum ACP-026: Control modes 8 and 9 have other names in their descriptions.
+    Note ACP-026: Control modes 8 and 9 have other names in their descriptions.
     """
     FAST_SPIN_DETUMBLING_CONTROL = 9, "Fast-spin Detumbling control"
-    """Erratum ACP-026: Control modes 8 and 9 have other names in their descriptions."""
+    """Note ACP-026: Control modes 8 and 9 have other names in their descriptions."""
     USER_SPECIFIC_CONTROL_MODE_1 = 10, "User Specific Control Mode 1"
     """User-defined or custom.
 
-    Erratum ACP-025: Control modes: specific, defined, custom and coded.
+    Note ACP-025: Control modes: specific, defined, custom and coded.
     """
     USER_SPECIFIC_CONTROL_MODE_2 = 11, "User Specific Control Mode 2"
     """User-defined or custom.
 
-    Erratum ACP-025: Control modes: specific, defined, custom and coded.
+    Note ACP-025: Control modes: specific, defined, custom and coded.
     """
     STOP_R_WHEELS = 12, "Stop R-wheels"
-    """Erratum ACP-027: Wheel control modes are written in five ways."""
+    """Note ACP-027: Wheel control modes are written in five ways."""
     USER_CODED_CONTROL_MODE = 13, "User Coded Control Mode"
-    """Erratum ACP-025: Control modes: specific, defined, custom and coded."""
+    """Note ACP-025: Control modes: specific, defined, custom and coded."""
     SUN_TRACKING_YAW_OR_ROLL_ONLY = (
         14,
         "Sun-tracking yaw- or roll-only wheel control mode",
     )
-    """Erratum ACP-027: Wheel control modes are written in five ways."""
+    """Note ACP-027: Wheel control modes are written in five ways."""
     TARGET_TRACKING_YAW_ONLY = 15, "Target-tracking yaw-only wheel control Mode"
     """Turns the selected facet towards a ground target.
 
-    Erratum ACP-027: Wheel control modes are written in five ways.
+    Note ACP-027: Wheel control modes are written in five ways.
     """

@@ -37,17 +37,17 @@ class ConvertToJpgFile(_base.Message):
     source_file_counter: int
     """Source File Counter: bits 0 to 7, 0 to 255.
 
-    Erratum ACP-052: Convert to JPG: which file.
+    Note ACP-052: Convert to JPG: which file.
     """
     quality_factor: int
     """Quality Factor: bits 8 to 15, 0 to 255.
 
-    Erratum ACP-053: Convert to JPG: quality and white balance have no scale.
+    Note ACP-053: Convert to JPG: quality and white balance have no scale.
     """
     white_balance: int
     """White Balance: bits 16 to 23, 0 to 255.
 
-    Erratum ACP-053: Convert to JPG: quality and white balance have no scale.
+    Note ACP-053: Convert to JPG: quality and white balance have no scale.
     """
 
     def __init__(

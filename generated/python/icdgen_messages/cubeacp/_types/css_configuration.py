@@ -199,67 +199,49 @@ class CssConfiguration(_base.Message):
     css10_configuration: AxisSelect
     """CSS10 Configuration: bits 72 to 79, 0 to 255."""
     css1_relative_scale: int
-    """CSS1 Relative Scale: bits 80 to 87, 0 to 255; see `css1_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
+    """CSS1 Relative Scale: bits 80 to 87, 0 to 255; see
+    `css1_relative_scale_physical`.
     """
     css2_relative_scale: int
-    """CSS2 Relative Scale: bits 88 to 95, 0 to 255; see `css2_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
+    """CSS2 Relative Scale: bits 88 to 95, 0 to 255; see
+    `css2_relative_scale_physical`.
     """
     css3_relative_scale: int
     """CSS3 Relative Scale: bits 96 to 103, 0 to 255; see
     `css3_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css4_relative_scale: int
     """CSS4 Relative Scale: bits 104 to 111, 0 to 255; see
     `css4_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css5_relative_scale: int
     """CSS5 Relative Scale: bits 112 to 119, 0 to 255; see
     `css5_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css6_relative_scale: int
     """CSS6 Relative Scale: bits 120 to 127, 0 to 255; see
     `css6_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css7_relative_scale: int
     """CSS7 Relative Scale: bits 128 to 135, 0 to 255; see
     `css7_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css8_relative_scale: int
     """CSS8 Relative Scale: bits 136 to 143, 0 to 255; see
     `css8_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css9_relative_scale: int
     """CSS9 Relative Scale: bits 144 to 151, 0 to 255; see
     `css9_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css10_relative_scale: int
     """CSS10 Relative Scale: bits 152 to 159, 0 to 255; see
     `css10_relative_scale_physical`.
-
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
     """
     css_threshold: int
     """CSS Threshold: bits 160 to 167, 0 to 255.
 
-    Erratum ACP-133: CSS threshold has no description.
+    Note ACP-133: CSS threshold has no description.
     """
 
     def __init__(

@@ -22,7 +22,7 @@ class CubeacpState(_base.Message):
 
     Errors in loading settings from flash and in using the SD card.
 
-    Erratum ACP-020: Reserved bits.
+    Note ACP-020: Reserved bits.
     """
 
     __slots__ = (
@@ -67,21 +67,21 @@ class CubeacpState(_base.Message):
 
     Reading it from flash failed.
 
-    Erratum ACP-054: Two saves for three stored sets.
+    Note ACP-054: Two saves for three stored sets.
     """
     orbit_parameter_load_error: bool
     """Orbit Parameter Load Error: bit 1.
 
     Reading them from flash failed.
 
-    Erratum ACP-054: Two saves for three stored sets.
+    Note ACP-054: Two saves for three stored sets.
     """
     system_configuration_load_error: bool
     """System Configuration Load Error: bit 2.
 
     Reading it from flash failed.
 
-    Erratum ACP-054: Two saves for three stored sets.
+    Note ACP-054: Two saves for three stored sets.
     """
     sd_card_initialisation_error: bool
     """SD card initialisation error: bit 3."""

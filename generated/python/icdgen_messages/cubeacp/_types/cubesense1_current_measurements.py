@@ -16,7 +16,7 @@ _pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
 class Cubesense1CurrentMeasurements(_base.Message):
     """CubeSense1 Current Measurements: telemetry 171, 4 bytes, table 129.
 
-    Erratum ACP-194: Size of a log file follows from 6 bytes a frame.
+    Note ACP-194: Size of a log file follows from 6 bytes a frame.
     """
 
     __slots__ = ("cubesense1_3v3_current", "cubesense1_cam_sram_current")

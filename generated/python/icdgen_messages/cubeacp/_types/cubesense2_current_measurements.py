@@ -16,9 +16,9 @@ _pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
 class Cubesense2CurrentMeasurements(_base.Message):
     """CubeSense2 Current Measurements: telemetry 232, 4 bytes, table 175.
 
-    Erratum ACP-015: Ids 7, 132, 232 and 233 mean something else in the bootloader.
+    Note ACP-015: Ids 7, 132, 232 and 233 mean something else in the bootloader.
 
-    Erratum ACP-194: Size of a log file follows from 6 bytes a frame.
+    Note ACP-194: Size of a log file follows from 6 bytes a frame.
     """
 
     __slots__ = ("cubesense2_3v3_current", "cubesense2_cam_sram_current")

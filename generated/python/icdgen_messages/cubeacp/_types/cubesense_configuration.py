@@ -19,7 +19,7 @@ class CubesenseConfiguration(_base.Message):
     """CubeSense Configuration: set by telecommand 25, got by telemetry 203, 112 bytes,
     table 189.
 
-    Erratum ACP-020: Reserved bits.
+    Note ACP-020: Reserved bits.
     """
 
     __slots__ = (
@@ -361,30 +361,24 @@ class CubesenseConfiguration(_base.Message):
     """Cam1 Sensor Mounting Transform Alpha Angle: bits 0 to 15, -32768 to 32767; see
     `cam1_sensor_mounting_transform_alpha_angle_deg`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-157: Mounting angles: order of rotation.
+    Note ACP-157: Mounting angles: order of rotation.
     """
     cam1_sensor_mounting_transform_beta_angle: int
     """Cam1 Sensor Mounting Transform Beta Angle: bits 16 to 31, -32768 to 32767; see
     `cam1_sensor_mounting_transform_beta_angle_deg`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-157: Mounting angles: order of rotation.
+    Note ACP-157: Mounting angles: order of rotation.
     """
     cam1_sensor_mounting_transform_gamma_angle: int
     """Cam1 Sensor Mounting Transform Gamma Angle: bits 32 to 47, -32768 to 32767; see
     `cam1_sensor_mounting_transform_gamma_angle_deg`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-157: Mounting angles: order of rotation.
+    Note ACP-157: Mounting angles: order of rotation.
     """
     cam1_detection_threshold: int
     """Cam1 detection threshold: bits 48 to 55, 0 to 255.
 
-    Erratum ACP-150: Cam1 detection threshold has no description in one table.
+    Note ACP-150: Cam1 detection threshold has no description in one table.
     """
     cam1_sensor_auto_adjust_mode: bool
     """Cam1 sensor auto adjust mode: bit 56."""
@@ -393,51 +387,41 @@ class CubesenseConfiguration(_base.Message):
 
     Register value.
 
-    Erratum ACP-145: Exposure and gain are register values.
+    Note ACP-145: Exposure and gain are register values.
     """
     cam1_boresight_x: int
     """Cam1 Boresight X: bits 80 to 95, 0 to 65535; see `cam1_boresight_x_pixels`.
 
     Where the boresight meets the image.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
+    Note ACP-149: Boresight ends at 655 pixels.
 
-    Erratum ACP-149: Boresight ends at 655 pixels.
-
-    Erratum ACP-154: Cam1 and Cam 1.
+    Note ACP-154: Cam1 and Cam 1.
     """
     cam1_boresight_y: int
     """Cam1 Boresight Y: bits 96 to 111, 0 to 65535; see `cam1_boresight_y_pixels`.
 
     Where the boresight meets the image.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-149: Boresight ends at 655 pixels.
+    Note ACP-149: Boresight ends at 655 pixels.
     """
     cam2_sensor_mounting_transform_alpha_angle: int
     """Cam2 Sensor Mounting Transform Alpha Angle: bits 112 to 127, -32768 to 32767; see
     `cam2_sensor_mounting_transform_alpha_angle_deg`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-157: Mounting angles: order of rotation.
+    Note ACP-157: Mounting angles: order of rotation.
     """
     cam2_sensor_mounting_transform_beta_angle: int
     """Cam2 Sensor Mounting Transform Beta Angle: bits 128 to 143, -32768 to 32767; see
     `cam2_sensor_mounting_transform_beta_angle_deg`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-157: Mounting angles: order of rotation.
+    Note ACP-157: Mounting angles: order of rotation.
     """
     cam2_sensor_mounting_transform_gamma_angle: int
     """Cam2 Sensor Mounting Transform Gamma Angle: bits 144 to 159, -32768 to 32767; see
     `cam2_sensor_mounting_transform_gamma_angle_deg`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-157: Mounting angles: order of rotation.
+    Note ACP-157: Mounting angles: order of rotation.
     """
     cam2_detection_threshold: int
     """Cam2 detection threshold: bits 160 to 167, 0 to 255."""
@@ -448,27 +432,23 @@ class CubesenseConfiguration(_base.Message):
 
     Register value.
 
-    Erratum ACP-145: Exposure and gain are register values.
+    Note ACP-145: Exposure and gain are register values.
     """
     cam2_boresight_x: int
     """Cam2 Boresight X: bits 192 to 207, 0 to 65535; see `cam2_boresight_x_pixels`.
 
     Where the boresight meets the image.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
+    Note ACP-149: Boresight ends at 655 pixels.
 
-    Erratum ACP-149: Boresight ends at 655 pixels.
-
-    Erratum ACP-154: Cam1 and Cam 1.
+    Note ACP-154: Cam1 and Cam 1.
     """
     cam2_boresight_y: int
     """Cam2 Boresight Y: bits 208 to 223, 0 to 65535; see `cam2_boresight_y_pixels`.
 
     Where the boresight meets the image.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-149: Boresight ends at 655 pixels.
+    Note ACP-149: Boresight ends at 655 pixels.
     """
     nadir_max_deviation_percentage: int
     """Nadir Max Deviation Percentage: bits 224 to 231, 0 to 255, in %.
@@ -482,7 +462,7 @@ class CubesenseConfiguration(_base.Message):
 
     Most edges that may deviate further. Above 50 the test is off.
 
-    Erratum ACP-152: More than 50 bad edges disable the check.
+    Note ACP-152: More than 50 bad edges disable the check.
     """
     nadir_max_radius: int
     """Nadir Max Radius: bits 240 to 247, 0 to 255, in deg.
@@ -497,206 +477,206 @@ class CubesenseConfiguration(_base.Message):
     cam_1_minimum_x_of_area_1: int
     """Cam 1 Minimum X of area 1: bits 256 to 271, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
 
-    Erratum ACP-154: Cam1 and Cam 1.
+    Note ACP-154: Cam1 and Cam 1.
     """
     cam_1_maximum_x_of_area_1: int
     """Cam 1 Maximum X of area 1: bits 272 to 287, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_minimum_y_of_area_1: int
     """Cam 1 Minimum Y of area 1: bits 288 to 303, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_maximum_y_of_area_1: int
     """Cam 1 Maximum Y of area 1: bits 304 to 319, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_minimum_x_of_area_2: int
     """Cam 1 Minimum X of area 2: bits 320 to 335, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_maximum_x_of_area_2: int
     """Cam 1 Maximum X of area 2: bits 336 to 351, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_minimum_y_of_area_2: int
     """Cam 1 Minimum Y of area 2: bits 352 to 367, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_maximum_y_of_area_2: int
     """Cam 1 Maximum Y of area 2: bits 368 to 383, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_minimum_x_of_area_3: int
     """Cam 1 Minimum X of area 3: bits 384 to 399, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_maximum_x_of_area_3: int
     """Cam 1 Maximum X of area 3: bits 400 to 415, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_minimum_y_of_area_3: int
     """Cam 1 Minimum Y of area 3: bits 416 to 431, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_maximum_y_of_area_3: int
     """Cam 1 Maximum Y of area 3: bits 432 to 447, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_minimum_x_of_area_4: int
     """Cam 1 Minimum X of area 4: bits 448 to 463, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_maximum_x_of_area_4: int
     """Cam 1 Maximum X of area 4: bits 464 to 479, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_minimum_y_of_area_4: int
     """Cam 1 Minimum Y of area 4: bits 480 to 495, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_maximum_y_of_area_4: int
     """Cam 1 Maximum Y of area 4: bits 496 to 511, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_minimum_x_of_area_5: int
     """Cam 1 Minimum X of area 5: bits 512 to 527, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_maximum_x_of_area_5: int
     """Cam 1 Maximum X of area 5: bits 528 to 543, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_minimum_y_of_area_5: int
     """Cam 1 Minimum Y of area 5: bits 544 to 559, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_1_maximum_y_of_area_5: int
     """Cam 1 Maximum Y of area 5: bits 560 to 575, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_minimum_x_of_area_1: int
     """Cam 2 Minimum X of area 1: bits 576 to 591, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
 
-    Erratum ACP-154: Cam1 and Cam 1.
+    Note ACP-154: Cam1 and Cam 1.
     """
     cam_2_maximum_x_of_area_1: int
     """Cam 2 Maximum X of area 1: bits 592 to 607, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_minimum_y_of_area_1: int
     """Cam 2 Minimum Y of area 1: bits 608 to 623, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_maximum_y_of_area_1: int
     """Cam 2 Maximum Y of area 1: bits 624 to 639, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_minimum_x_of_area_2: int
     """Cam 2 Minimum X of area 2: bits 640 to 655, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_maximum_x_of_area_2: int
     """Cam 2 Maximum X of area 2: bits 656 to 671, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_minimum_y_of_area_2: int
     """Cam 2 Minimum Y of area 2: bits 672 to 687, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_maximum_y_of_area_2: int
     """Cam 2 Maximum Y of area 2: bits 688 to 703, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_minimum_x_of_area_3: int
     """Cam 2 Minimum X of area 3: bits 704 to 719, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_maximum_x_of_area_3: int
     """Cam 2 Maximum X of area 3: bits 720 to 735, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_minimum_y_of_area_3: int
     """Cam 2 Minimum Y of area 3: bits 736 to 751, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_maximum_y_of_area_3: int
     """Cam 2 Maximum Y of area 3: bits 752 to 767, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_minimum_x_of_area_4: int
     """Cam 2 Minimum X of area 4: bits 768 to 783, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_maximum_x_of_area_4: int
     """Cam 2 Maximum X of area 4: bits 784 to 799, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_minimum_y_of_area_4: int
     """Cam 2 Minimum Y of area 4: bits 800 to 815, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_maximum_y_of_area_4: int
     """Cam 2 Maximum Y of area 4: bits 816 to 831, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_minimum_x_of_area_5: int
     """Cam 2 Minimum X of area 5: bits 832 to 847, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_maximum_x_of_area_5: int
     """Cam 2 Maximum X of area 5: bits 848 to 863, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_minimum_y_of_area_5: int
     """Cam 2 Minimum Y of area 5: bits 864 to 879, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
     cam_2_maximum_y_of_area_5: int
     """Cam 2 Maximum Y of area 5: bits 880 to 895, 0 to 65535.
 
-    Erratum ACP-153: Masked areas: purpose, unit and an unused area.
+    Note ACP-153: Masked areas: purpose, unit and an unused area.
     """
 
     def __init__(

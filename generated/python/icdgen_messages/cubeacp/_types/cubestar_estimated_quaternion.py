@@ -16,7 +16,7 @@ _pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
 class CubestarEstimatedQuaternion(_base.Message):
     """CubeStar Estimated Quaternion: telemetry 230, 6 bytes, table 173.
 
-    Erratum ACP-075: Quaternions: the fourth component.
+    Note ACP-075: Quaternions: the fourth component.
     """
 
     __slots__ = ("q0", "q1", "q2")
@@ -45,21 +45,21 @@ class CubestarEstimatedQuaternion(_base.Message):
 
     Of the attitude estimated by CubeStar, described as Q1.
 
-    Erratum ACP-112: CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112: CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     """
     q1: int
     """Q1: bits 16 to 31, -32768 to 32767; see `q1_physical`.
 
     Of the attitude estimated by CubeStar, described as Q2.
 
-    Erratum ACP-112: CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112: CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     """
     q2: int
     """Q2: bits 32 to 47, -32768 to 32767; see `q2_physical`.
 
     Of the attitude estimated by CubeStar, described as Q3.
 
-    Erratum ACP-112: CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112: CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     """
 
     def __init__(self, *, q0: int = 0, q1: int = 0, q2: int = 0) -> None:

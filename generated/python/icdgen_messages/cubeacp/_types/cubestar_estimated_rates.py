@@ -60,21 +60,21 @@ class CubestarEstimatedRates(_base.Message):
 
     Estimated by CubeStar, about its own X axis.
 
-    Erratum ACP-111: CubeStar rates have no unit.
+    Note ACP-111: CubeStar rates have no unit.
     """
     y_axis_rate: int
     """y-Axis rate: bits 16 to 31, -32768 to 32767; see `y_axis_rate_physical`.
 
     Estimated by CubeStar, about its own Y axis.
 
-    Erratum ACP-111: CubeStar rates have no unit.
+    Note ACP-111: CubeStar rates have no unit.
     """
     z_axis_rate: int
     """z-Axis rate: bits 32 to 47, -32768 to 32767; see `z_axis_rate_physical`.
 
     Estimated by CubeStar, about its own Z axis.
 
-    Erratum ACP-111: CubeStar rates have no unit.
+    Note ACP-111: CubeStar rates have no unit.
     """
 
     def __init__(

@@ -44,13 +44,13 @@ class CurrentAdcsState(_base.Message):
 
     State of the control processor, frame 1.
 
-    Erratum ACP-015: Ids 7, 132, 232 and 233 mean something else in the bootloader.
+    Note ACP-015: Ids 7, 132, 232 and 233 mean something else in the bootloader.
 
-    Erratum ACP-057: ACP stands for two things.
+    Note ACP-057: ACP stands for two things.
 
-    Erratum ACP-059: Current ADCS State and ADCS State.
+    Note ACP-059: Current ADCS State and ADCS State.
 
-    Erratum ACP-064: Which flags are latched.
+    Note ACP-064: Which flags are latched.
     """
 
     __slots__ = (
@@ -270,24 +270,24 @@ class CurrentAdcsState(_base.Message):
     attitude_estimation_mode: EstimModeSelect
     """Attitude Estimation Mode: bits 0 to 3, 0 to 15.
 
-    Erratum ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
+    Note ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
     """
     control_mode: ConModeSelect
     """Control Mode: bits 4 to 7, 0 to 15.
 
-    Erratum ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
+    Note ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
     """
     adcs_run_mode: AdcsRunMode
     """ADCS Run Mode: bits 8 to 9, 0 to 3.
 
-    Erratum ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
+    Note ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
     """
     asgp4_mode: Asgp4ModeSelect
     """ASGP4 Mode: bits 10 to 11, 0 to 3.
 
-    Erratum ACP-047: ASGP4 Mode is called an enabled state.
+    Note ACP-047: ASGP4 Mode is called an enabled state.
 
-    Erratum ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
+    Note ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
     """
     cubecontrol_signal_enabled: bool
     """CubeControl Signal Enabled: bit 12."""
@@ -306,24 +306,24 @@ class CurrentAdcsState(_base.Message):
     cubestar_enabled: bool
     """CubeStar Enabled: bit 19.
 
-    Erratum ACP-063: Star tracker has four spellings.
+    Note ACP-063: Star tracker has four spellings.
     """
     gps_receiver_enabled: bool
     """GPS Receiver Enabled: bit 20.
 
-    Erratum ACP-062: Power switches and enabled flags do not match.
+    Note ACP-062: Power switches and enabled flags do not match.
     """
     gps_lna_power_enabled: bool
     """GPS LNA Power Enabled: bit 21.
 
     Amplifier of the GPS antenna.
 
-    Erratum ACP-062: Power switches and enabled flags do not match.
+    Note ACP-062: Power switches and enabled flags do not match.
     """
     motor_driver_enabled: bool
     """Motor Driver Enabled: bit 22.
 
-    Erratum ACP-062: Power switches and enabled flags do not match.
+    Note ACP-062: Power switches and enabled flags do not match.
     """
     sun_is_above_local_horizon: bool
     """Sun is Above Local Horizon: bit 23.
@@ -351,7 +351,7 @@ class CurrentAdcsState(_base.Message):
 
     About a measured field of 65 uT. Whether above or below is not printed.
 
-    Erratum ACP-060: Magnetometer range: 65 uT without a comparison.
+    Note ACP-060: Magnetometer range: 65 uT without a comparison.
     """
     cam1_sram_overcurrent_detected: bool
     """Cam1 SRAM Overcurrent Detected: bit 33."""
@@ -372,7 +372,7 @@ class CurrentAdcsState(_base.Message):
 
     A detected sun angle was beyond +/-90 deg.
 
-    Erratum ACP-061: Sun and nadir sensor errors do not say which camera.
+    Note ACP-061: Sun and nadir sensor errors do not say which camera.
     """
     cam2_sram_overcurrent_detected: bool
     """Cam2 SRAM Overcurrent Detected: bit 38."""
@@ -393,7 +393,7 @@ class CurrentAdcsState(_base.Message):
 
     A detected nadir angle was beyond +/-60 deg.
 
-    Erratum ACP-061: Sun and nadir sensor errors do not say which camera.
+    Note ACP-061: Sun and nadir sensor errors do not say which camera.
     """
     rate_sensor_range_error: bool
     """Rate Sensor Range Error: bit 43.
@@ -415,12 +415,12 @@ class CurrentAdcsState(_base.Message):
 
     Too few stars were matched.
 
-    Erratum ACP-063: Star tracker has four spellings.
+    Note ACP-063: Star tracker has four spellings.
     """
     star_tracker_overcurrent_detected: bool
     """Star Tracker Overcurrent Detected: bit 47.
 
-    Erratum ACP-063: Star tracker has four spellings.
+    Note ACP-063: Star tracker has four spellings.
     """
 
     def __init__(

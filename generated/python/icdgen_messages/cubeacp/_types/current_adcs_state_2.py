@@ -42,11 +42,11 @@ class CurrentAdcsState2(_base.Message):
 
     State of the control processor, frame 2.
 
-    Erratum ACP-057: ACP stands for two things.
-
-    Erratum ACP-064: Which flags are latched.
-
     Erratum ACP-120: Current ADCS State 2: 6 bytes announced, 18 bits described.
+
+    Note ACP-057: ACP stands for two things.
+
+    Note ACP-064: Which flags are latched.
     """
 
     __slots__ = (
@@ -154,7 +154,7 @@ class CurrentAdcsState2(_base.Message):
 
     A parameter is out of bounds, or the SGP4 propagator could not start from them.
 
-    Erratum ACP-104: Orbit parameter flag has two reasons.
+    Note ACP-104: Orbit parameter flag has two reasons.
     """
     configuration_is_invalid: bool
     """Configuration is Invalid: bit 1.
@@ -162,7 +162,7 @@ class CurrentAdcsState2(_base.Message):
     Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at
     least one CSS.
 
-    Erratum ACP-102: Configuration flag: is invalid, in invalid.
+    Note ACP-102: Configuration flag: is invalid, in invalid.
     """
     control_mode_change_is_not_allowed: bool
     """Control Mode Change is not allowed: bit 2.

@@ -16,7 +16,7 @@ _pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
 class DeployMagnetometerBoom(_base.Message):
     """Deploy Magnetometer Boom: telecommand 7, 1 byte, table 73.
 
-    Erratum ACP-015: Ids 7, 132, 232 and 233 mean something else in the bootloader.
+    Note ACP-015: Ids 7, 132, 232 and 233 mean something else in the bootloader.
     """
 
     __slots__ = ("timeout",)
@@ -35,7 +35,7 @@ class DeployMagnetometerBoom(_base.Message):
 
     Of the deployment actuation.
 
-    Erratum ACP-016: Deployment timeout: range and default.
+    Note ACP-016: Deployment timeout: range and default.
     """
 
     def __init__(self, *, timeout: int = 0) -> None:

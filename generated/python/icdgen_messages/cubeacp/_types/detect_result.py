@@ -9,7 +9,7 @@ from ... import _enumeration
 class DetectResult(_enumeration.OpenEnum):
     """DetectResult, table 124.
 
-    Erratum ACP-079: DetectResult mixes sun and nadir.
+    Note ACP-079: DetectResult mixes sun and nadir.
     """
 
     STARTUP = 0, "Startup"

@@ -36,21 +36,21 @@ class EcefPosition(_base.Message):
 
     Erratum ACP-098: ECEF position: 16 bits in metres.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
     ecef_position_y: int
     """ECEF Position Y: bits 16 to 31, -32768 to 32767.
 
     Erratum ACP-098: ECEF position: 16 bits in metres.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
     ecef_position_z: int
     """ECEF Position Z: bits 32 to 47, -32768 to 32767.
 
     Erratum ACP-098: ECEF position: 16 bits in metres.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
 
     def __init__(

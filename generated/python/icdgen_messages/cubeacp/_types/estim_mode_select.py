@@ -11,9 +11,9 @@ class EstimModeSelect(_enumeration.OpenEnum):
 
     NO_ATTITUDE_ESTIMATION = 0, "No attitude estimation"
     MEMS_RATE_SENSING = 1, "MEMS rate sensing"
-    """Erratum ACP-029: Estimation modes have other names in settings."""
+    """Note ACP-029: Estimation modes have other names in settings."""
     MAGNETOMETER_RATE_FILTER = 2, "Magnetometer rate filter"
-    """Erratum ACP-029: Estimation modes have other names in settings."""
+    """Note ACP-029: Estimation modes have other names in settings."""
     MAGNETOMETER_RATE_FILTER_WITH_PITCH_ESTIMATION = (
         3,
         "Magnetometer rate filter with pitch estimation",

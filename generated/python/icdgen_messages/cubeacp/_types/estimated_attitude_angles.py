@@ -16,7 +16,7 @@ _pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
 class EstimatedAttitudeAngles(_base.Message):
     """Estimated Attitude Angles: telemetry 146, 6 bytes, table 102.
 
-    Erratum ACP-066: Attitude angles: order of rotation and frame.
+    Note ACP-066: Attitude angles: order of rotation and frame.
     """
 
     __slots__ = ("estimated_roll_angle", "estimated_pitch_angle", "estimated_yaw_angle")

@@ -16,7 +16,7 @@ _pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
 class EstimatedQuaternion(_base.Message):
     """Estimated Quaternion: telemetry 218, 6 bytes, table 165.
 
-    Erratum ACP-075: Quaternions: the fourth component.
+    Note ACP-075: Quaternions: the fourth component.
     """
 
     __slots__ = ("estimated_q1", "estimated_q2", "estimated_q3")
@@ -37,17 +37,17 @@ class EstimatedQuaternion(_base.Message):
     estimated_q1: int
     """Estimated q1: bits 0 to 15, -32768 to 32767.
 
-    Erratum ACP-100: Estimated quaternion has no formula.
+    Note ACP-100: Estimated quaternion has no formula.
     """
     estimated_q2: int
     """Estimated q2: bits 16 to 31, -32768 to 32767.
 
-    Erratum ACP-100: Estimated quaternion has no formula.
+    Note ACP-100: Estimated quaternion has no formula.
     """
     estimated_q3: int
     """Estimated q3: bits 32 to 47, -32768 to 32767.
 
-    Erratum ACP-100: Estimated quaternion has no formula.
+    Note ACP-100: Estimated quaternion has no formula.
     """
 
     def __init__(

@@ -302,19 +302,19 @@ class EstimationData(_base.Message):
     """Innovation Vector X: bits 144 to 159, -32768 to 32767; see
     `innovation_vector_x_physical`.
 
-    Erratum ACP-074: Innovation has no unit.
+    Note ACP-074: Innovation has no unit.
     """
     innovation_vector_y: int
     """Innovation Vector Y: bits 160 to 175, -32768 to 32767; see
     `innovation_vector_y_physical`.
 
-    Erratum ACP-074: Innovation has no unit.
+    Note ACP-074: Innovation has no unit.
     """
     innovation_vector_z: int
     """Innovation Vector Z: bits 176 to 191, -32768 to 32767; see
     `innovation_vector_z_physical`.
 
-    Erratum ACP-074: Innovation has no unit.
+    Note ACP-074: Innovation has no unit.
     """
     quaternion_error_q1: int
     """Quaternion Error - Q1: bits 192 to 207, -32768 to 32767; see
@@ -332,37 +332,37 @@ class EstimationData(_base.Message):
     """Quaternion Covariance - Q1 RMS: bits 240 to 255, -32768 to 32767; see
     `quaternion_covariance_q1_rms_physical`.
 
-    Erratum ACP-076: Quaternion covariance: an RMS with a sign.
+    Note ACP-076: Quaternion covariance: an RMS with a sign.
     """
     quaternion_covariance_q2_rms: int
     """Quaternion Covariance - Q2 RMS: bits 256 to 271, -32768 to 32767; see
     `quaternion_covariance_q2_rms_physical`.
 
-    Erratum ACP-076: Quaternion covariance: an RMS with a sign.
+    Note ACP-076: Quaternion covariance: an RMS with a sign.
     """
     quaternion_covariance_q3_rms: int
     """Quaternion Covariance - Q3 RMS: bits 272 to 287, -32768 to 32767; see
     `quaternion_covariance_q3_rms_physical`.
 
-    Erratum ACP-076: Quaternion covariance: an RMS with a sign.
+    Note ACP-076: Quaternion covariance: an RMS with a sign.
     """
     x_angular_rate_covariance: int
     """X Angular Rate Covariance: bits 288 to 303, -32768 to 32767; see
     `x_angular_rate_covariance_physical`.
 
-    Erratum ACP-077: Angular rate covariance: unit and sign.
+    Note ACP-077: Angular rate covariance: unit and sign.
     """
     y_angular_rate_covariance: int
     """Y Angular Rate Covariance: bits 304 to 319, -32768 to 32767; see
     `y_angular_rate_covariance_physical`.
 
-    Erratum ACP-077: Angular rate covariance: unit and sign.
+    Note ACP-077: Angular rate covariance: unit and sign.
     """
     z_angular_rate_covariance: int
     """Z Angular Rate Covariance: bits 320 to 335, -32768 to 32767; see
     `z_angular_rate_covariance_physical`.
 
-    Erratum ACP-077: Angular rate covariance: unit and sign.
+    Note ACP-077: Angular rate covariance: unit and sign.
     """
 
     def __init__(

@@ -34,9 +34,9 @@ class EstimationParameters(_base.Message):
 
     Noise covariances, and which sensors the estimator uses.
 
-    Erratum ACP-020: Reserved bits.
+    Note ACP-020: Reserved bits.
 
-    Erratum ACP-167: Estimation Parameters: more than its description.
+    Note ACP-167: Estimation Parameters: more than its description.
     """
 
     __slots__ = (
@@ -151,37 +151,37 @@ class EstimationParameters(_base.Message):
     magnetometer_rate_filter_system_noise: float
     """Magnetometer Rate Filter System Noise: bits 0 to 31, 32-bit float.
 
-    Erratum ACP-168: Noise: covariance or deviation, and no unit.
+    Note ACP-168: Noise: covariance or deviation, and no unit.
     """
     ekf_system_noise: float
     """EKF System Noise: bits 32 to 63, 32-bit float.
 
-    Erratum ACP-168: Noise: covariance or deviation, and no unit.
+    Note ACP-168: Noise: covariance or deviation, and no unit.
     """
     css_measurement_noise: float
     """CSS Measurement Noise: bits 64 to 95, 32-bit float.
 
-    Erratum ACP-168: Noise: covariance or deviation, and no unit.
+    Note ACP-168: Noise: covariance or deviation, and no unit.
     """
     sun_sensor_measurement_noise: float
     """Sun Sensor Measurement Noise: bits 96 to 127, 32-bit float.
 
-    Erratum ACP-168: Noise: covariance or deviation, and no unit.
+    Note ACP-168: Noise: covariance or deviation, and no unit.
     """
     nadir_sensor_measurement_noise: float
     """Nadir Sensor Measurement Noise: bits 128 to 159, 32-bit float.
 
-    Erratum ACP-168: Noise: covariance or deviation, and no unit.
+    Note ACP-168: Noise: covariance or deviation, and no unit.
     """
     magnetometer_measurement_noise: float
     """Magnetometer Measurement Noise: bits 160 to 191, 32-bit float.
 
-    Erratum ACP-168: Noise: covariance or deviation, and no unit.
+    Note ACP-168: Noise: covariance or deviation, and no unit.
     """
     star_tracker_measurement_noise: float
     """Star Tracker Measurement Noise: bits 192 to 223, 32-bit float.
 
-    Erratum ACP-168: Noise: covariance or deviation, and no unit.
+    Note ACP-168: Noise: covariance or deviation, and no unit.
     """
     use_sun_sensor: bool
     """Use Sun Sensor: bit 224.
@@ -218,16 +218,16 @@ class EstimationParameters(_base.Message):
 
     The magnetometer that estimation and control use.
 
-    Erratum ACP-049: Magnetometer mode can be set in two places.
+    Note ACP-049: Magnetometer mode can be set in two places.
 
-    Erratum ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
+    Note ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
     """
     raw_magnetometer_selection: MagModeVal
     """Magnetometer Selection for RAW MTM TLM: bits 232 to 233, 0 to 3.
 
     Magnetometer and sampling path for the second raw magnetometer frame.
 
-    Erratum ACP-118: Secondary magnetometer: fixed or selected.
+    Note ACP-118: Secondary magnetometer: fixed or selected.
     """
     estimation_transition_on_rate_sensor_error: bool
     """Automatic Estimation Transition due to Rate Sensor Errors: bit 234.

@@ -21,6 +21,6 @@ class ExecutionWaypoints(_enumeration.OpenEnum):
     SAVING_IMAGE_TO_SD_CARD = 8, "Saving Image to SD Card"
     LOGGING = 9, "Logging"
     LOG_FILE_COMPRESSION = 10, "Log File Compression"
-    """Erratum ACP-119: Loop waypoints: logs are compressed."""
+    """Note ACP-119: Loop waypoints: logs are compressed."""
     SAVING_LOG_TO_SD_CARD = 11, "Saving Log to SD Card"
     WRITING_TO_FLASH = 12, "Writing to flash"

@@ -70,25 +70,25 @@ class FineEstimatedAngularRates(_base.Message):
     """Estimated X Angular Rate: bits 0 to 15, -32768 to 32767; see
     `estimated_x_angular_rate_deg_per_s`.
 
-    Erratum ACP-109: Fine and normal rates have the same field names.
+    Note ACP-109: Fine and normal rates have the same field names.
 
-    Erratum ACP-110: Fine rates end at 32 deg/s.
+    Note ACP-110: Fine rates end at 32 deg/s.
     """
     estimated_y_angular_rate: int
     """Estimated Y Angular Rate: bits 16 to 31, -32768 to 32767; see
     `estimated_y_angular_rate_deg_per_s`.
 
-    Erratum ACP-109: Fine and normal rates have the same field names.
+    Note ACP-109: Fine and normal rates have the same field names.
 
-    Erratum ACP-110: Fine rates end at 32 deg/s.
+    Note ACP-110: Fine rates end at 32 deg/s.
     """
     estimated_z_angular_rate: int
     """Estimated Z Angular Rate: bits 32 to 47, -32768 to 32767; see
     `estimated_z_angular_rate_deg_per_s`.
 
-    Erratum ACP-109: Fine and normal rates have the same field names.
+    Note ACP-109: Fine and normal rates have the same field names.
 
-    Erratum ACP-110: Fine rates end at 32 deg/s.
+    Note ACP-110: Fine rates end at 32 deg/s.
     """
 
     def __init__(

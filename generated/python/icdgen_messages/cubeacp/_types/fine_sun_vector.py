@@ -18,7 +18,7 @@ class FineSunVector(_base.Message):
 
     As measured.
 
-    Erratum ACP-069: Reference frames of measured vectors are not named.
+    Note ACP-069: Reference frames of measured vectors are not named.
     """
 
     __slots__ = ("sun_x", "sun_y", "sun_z")

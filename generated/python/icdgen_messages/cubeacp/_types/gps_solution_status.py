@@ -9,7 +9,7 @@ from ... import _enumeration
 class GpsSolutionStatus(_enumeration.OpenEnum):
     """GpsSolutionStatus, table 85.
 
-    Erratum ACP-045: One GPS status for different receivers.
+    Note ACP-045: One GPS status for different receivers.
     """
 
     SOLUTION_COMPUTED = 0, "Solution computed"

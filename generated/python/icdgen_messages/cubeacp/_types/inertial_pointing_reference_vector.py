@@ -19,7 +19,7 @@ class InertialPointingReferenceVector(_base.Message):
 
     Unit vector for the inertial pointing mode.
 
-    Erratum ACP-024: Control modes that are named and not listed.
+    Note ACP-024: Control modes that are named and not listed.
     """
 
     __slots__ = ("inertial_reference_x", "inertial_reference_y", "inertial_reference_z")
@@ -66,25 +66,19 @@ class InertialPointingReferenceVector(_base.Message):
     """Inertial Reference X: bits 0 to 15, -32768 to 32767; see
     `inertial_reference_x_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-188: Inertial reference: unit vector without a frame.
+    Note ACP-188: Inertial reference: unit vector without a frame.
     """
     inertial_reference_y: int
     """Inertial Reference Y: bits 16 to 31, -32768 to 32767; see
     `inertial_reference_y_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-188: Inertial reference: unit vector without a frame.
+    Note ACP-188: Inertial reference: unit vector without a frame.
     """
     inertial_reference_z: int
     """Inertial Reference Z: bits 32 to 47, -32768 to 32767; see
     `inertial_reference_z_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-188: Inertial reference: unit vector without a frame.
+    Note ACP-188: Inertial reference: unit vector without a frame.
     """
 
     def __init__(

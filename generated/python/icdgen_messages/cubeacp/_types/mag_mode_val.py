@@ -11,15 +11,15 @@ class MagModeVal(_enumeration.OpenEnum):
 
     MTM is the magnetometer, Signal and Motor are the microcontrollers that sample it.
 
-    Erratum ACP-050: MagModeVal: one combination is missing, and None is not explained.
+    Note ACP-050: MagModeVal: one combination is missing, and None is not explained.
 
-    Erratum ACP-051: Magnetometers have four names for two.
+    Note ACP-051: Magnetometers have four names for two.
     """
 
     MAIN_MTM_SAMPLED_THROUGH_SIGNAL = 0, "Main MTM Sampled Through Signal"
     REDUNDANT_MTM_SAMPLED_THROUGH_SIGNAL = 1, "Redundant MTM Sampled Through Signal"
     MAIN_MTM_SAMPLED_THROUGH_MOTOR = 2, "Main MTM Sampled Through Motor"
     NONE = 3, "None"
-    """Erratum ACP-050: MagModeVal: one combination is missing, and None is not
+    """Note ACP-050: MagModeVal: one combination is missing, and None is not
     explained.
     """

@@ -18,7 +18,7 @@ class MagneticFieldVector(_base.Message):
 
     As measured.
 
-    Erratum ACP-069: Reference frames of measured vectors are not named.
+    Note ACP-069: Reference frames of measured vectors are not named.
     """
 
     __slots__ = ("magnetic_field_x", "magnetic_field_y", "magnetic_field_z")

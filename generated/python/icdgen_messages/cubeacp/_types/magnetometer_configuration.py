@@ -17,7 +17,7 @@ class MagnetometerConfiguration(_base.Message):
     """Magnetometer Configuration: set by telecommand 26, got by telemetry 204, 30
     bytes, table 190.
 
-    Erratum ACP-051: Magnetometers have four names for two.
+    Note ACP-051: Magnetometers have four names for two.
     """
 
     __slots__ = (
@@ -191,121 +191,91 @@ class MagnetometerConfiguration(_base.Message):
     """Magnetometer Mounting Transform Alpha Angle: bits 0 to 15, -32768 to 32767; see
     `magnetometer_mounting_transform_alpha_angle_deg`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-157: Mounting angles: order of rotation.
+    Note ACP-157: Mounting angles: order of rotation.
     """
     magnetometer_mounting_transform_beta_angle: int
     """Magnetometer Mounting Transform Beta Angle: bits 16 to 31, -32768 to 32767; see
     `magnetometer_mounting_transform_beta_angle_deg`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-157: Mounting angles: order of rotation.
+    Note ACP-157: Mounting angles: order of rotation.
     """
     magnetometer_mounting_transform_gamma_angle: int
     """Magnetometer Mounting Transform Gamma Angle: bits 32 to 47, -32768 to 32767; see
     `magnetometer_mounting_transform_gamma_angle_deg`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-157: Mounting angles: order of rotation.
+    Note ACP-157: Mounting angles: order of rotation.
     """
     magnetometer_channel_1_offset: int
     """Magnetometer Channel 1 Offset: bits 48 to 63, -32768 to 32767; see
     `magnetometer_channel_1_offset_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-155: Magnetometer offsets have no unit.
+    Note ACP-155: Magnetometer offsets have no unit.
     """
     magnetometer_channel_2_offset: int
     """Magnetometer Channel 2 Offset: bits 64 to 79, -32768 to 32767; see
     `magnetometer_channel_2_offset_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-155: Magnetometer offsets have no unit.
+    Note ACP-155: Magnetometer offsets have no unit.
     """
     magnetometer_channel_3_offset: int
     """Magnetometer Channel 3 Offset: bits 80 to 95, -32768 to 32767; see
     `magnetometer_channel_3_offset_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-155: Magnetometer offsets have no unit.
+    Note ACP-155: Magnetometer offsets have no unit.
     """
     magnetometer_sensitivity_matrix_s11: int
     """Magnetometer Sensitivity Matrix S11: bits 96 to 111, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s11_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-156: Sensitivity matrix: diagonal first.
+    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     magnetometer_sensitivity_matrix_s22: int
     """Magnetometer Sensitivity Matrix S22: bits 112 to 127, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s22_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-156: Sensitivity matrix: diagonal first.
+    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     magnetometer_sensitivity_matrix_s33: int
     """Magnetometer Sensitivity Matrix S33: bits 128 to 143, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s33_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-156: Sensitivity matrix: diagonal first.
+    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     magnetometer_sensitivity_matrix_s12: int
     """Magnetometer Sensitivity Matrix S12: bits 144 to 159, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s12_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-156: Sensitivity matrix: diagonal first.
+    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     magnetometer_sensitivity_matrix_s13: int
     """Magnetometer Sensitivity Matrix S13: bits 160 to 175, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s13_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-156: Sensitivity matrix: diagonal first.
+    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     magnetometer_sensitivity_matrix_s21: int
     """Magnetometer Sensitivity Matrix S21: bits 176 to 191, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s21_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-156: Sensitivity matrix: diagonal first.
+    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     magnetometer_sensitivity_matrix_s23: int
     """Magnetometer Sensitivity Matrix S23: bits 192 to 207, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s23_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-156: Sensitivity matrix: diagonal first.
+    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     magnetometer_sensitivity_matrix_s31: int
     """Magnetometer Sensitivity Matrix S31: bits 208 to 223, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s31_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-156: Sensitivity matrix: diagonal first.
+    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     magnetometer_sensitivity_matrix_s32: int
     """Magnetometer Sensitivity Matrix S32: bits 224 to 239, -32768 to 32767; see
     `magnetometer_sensitivity_matrix_s32_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-156: Sensitivity matrix: diagonal first.
+    Note ACP-156: Sensitivity matrix: diagonal first.
     """
 
     def __init__(

@@ -61,30 +61,30 @@ class MagnetorquerCommand(_base.Message):
 
     On-time.
 
-    Erratum ACP-070: Magnetorquers are commanded as a duty cycle and reported as an
+    Note ACP-070: Magnetorquers are commanded as a duty cycle and reported as an
     on-time.
 
-    Erratum ACP-071: 10ms units is a factor, not a unit.
+    Note ACP-071: 10ms units is a factor, not a unit.
     """
     y_magnetorquer_command: int
     """Y Magnetorquer Command: bits 16 to 31, -32768 to 32767, in 10ms units.
 
     On-time.
 
-    Erratum ACP-070: Magnetorquers are commanded as a duty cycle and reported as an
+    Note ACP-070: Magnetorquers are commanded as a duty cycle and reported as an
     on-time.
 
-    Erratum ACP-071: 10ms units is a factor, not a unit.
+    Note ACP-071: 10ms units is a factor, not a unit.
     """
     z_magnetorquer_command: int
     """Z Magnetorquer Command: bits 32 to 47, -32768 to 32767, in 10ms units.
 
     On-time.
 
-    Erratum ACP-070: Magnetorquers are commanded as a duty cycle and reported as an
+    Note ACP-070: Magnetorquers are commanded as a duty cycle and reported as an
     on-time.
 
-    Erratum ACP-071: 10ms units is a factor, not a unit.
+    Note ACP-071: 10ms units is a factor, not a unit.
     """
 
     def __init__(

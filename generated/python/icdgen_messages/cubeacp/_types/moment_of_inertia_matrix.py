@@ -97,17 +97,17 @@ class MomentOfInertiaMatrix(_base.Message):
     product_of_inertia_ixy: float
     """Product Of Inertia - Ixy: bits 96 to 127, 32-bit float, in kg.m^2.
 
-    Erratum ACP-201: Products of inertia: the sign is not given.
+    Note ACP-201: Products of inertia: the sign is not given.
     """
     product_of_inertia_ixz: float
     """Product Of Inertia - Ixz: bits 128 to 159, 32-bit float, in kg.m^2.
 
-    Erratum ACP-201: Products of inertia: the sign is not given.
+    Note ACP-201: Products of inertia: the sign is not given.
     """
     product_of_inertia_iyz: float
     """Product Of Inertia - Iyz: bits 160 to 191, 32-bit float, in kg.m^2.
 
-    Erratum ACP-201: Products of inertia: the sign is not given.
+    Note ACP-201: Products of inertia: the sign is not given.
     """
 
     def __init__(

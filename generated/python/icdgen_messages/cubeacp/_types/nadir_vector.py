@@ -18,7 +18,7 @@ class NadirVector(_base.Message):
 
     As measured.
 
-    Erratum ACP-069: Reference frames of measured vectors are not named.
+    Note ACP-069: Reference frames of measured vectors are not named.
     """
 
     __slots__ = ("nadir_x", "nadir_y", "nadir_z")

@@ -269,28 +269,28 @@ class PowerAndTemperatureMeasurements(_base.Message):
     wheel1_current: int
     """Wheel1Current: bits 112 to 127, 0 to 65535; see `wheel1_current_ma`.
 
-    Erratum ACP-083: Wheel currents: by number, described by axis.
+    Note ACP-083: Wheel currents: by number, described by axis.
 
-    Erratum ACP-084: Wheel and star tracker currents end at 655 mA.
+    Note ACP-084: Wheel and star tracker currents end at 655 mA.
     """
     wheel2_current: int
     """Wheel2Current: bits 128 to 143, 0 to 65535; see `wheel2_current_ma`.
 
-    Erratum ACP-083: Wheel currents: by number, described by axis.
+    Note ACP-083: Wheel currents: by number, described by axis.
 
-    Erratum ACP-084: Wheel and star tracker currents end at 655 mA.
+    Note ACP-084: Wheel and star tracker currents end at 655 mA.
     """
     wheel3_current: int
     """Wheel3Current: bits 144 to 159, 0 to 65535; see `wheel3_current_ma`.
 
-    Erratum ACP-083: Wheel currents: by number, described by axis.
+    Note ACP-083: Wheel currents: by number, described by axis.
 
-    Erratum ACP-084: Wheel and star tracker currents end at 655 mA.
+    Note ACP-084: Wheel and star tracker currents end at 655 mA.
     """
     cubestar_current: int
     """CubeStarCurrent: bits 160 to 175, 0 to 65535; see `cubestar_current_ma`.
 
-    Erratum ACP-084: Wheel and star tracker currents end at 655 mA.
+    Note ACP-084: Wheel and star tracker currents end at 655 mA.
     """
     magnetorquer_current: int
     """Magnetorquer Current: bits 176 to 191, 0 to 65535; see
@@ -300,47 +300,47 @@ class PowerAndTemperatureMeasurements(_base.Message):
     """CubeStar MCU temperature: bits 192 to 207, -32768 to 32767; see
     `cubestar_mcu_temperature_c`.
 
-    Erratum ACP-005: Symbol C is the coulomb.
+    Note ACP-005: Symbol C is the coulomb.
     """
     mcu_temperature: int
     """MCU Temperature: bits 208 to 223, -32768 to 32767, in C.
 
-    Erratum ACP-005: Symbol C is the coulomb.
+    Note ACP-005: Symbol C is the coulomb.
 
-    Erratum ACP-085: Temperatures have three scales.
+    Note ACP-085: Temperatures have three scales.
     """
     magnetometer_temperature: int
     """Magnetometer Temperature: bits 224 to 239, -32768 to 32767; see
     `magnetometer_temperature_c`.
 
-    Erratum ACP-005: Symbol C is the coulomb.
+    Note ACP-005: Symbol C is the coulomb.
     """
     redundant_magnetometer_temperature: int
     """Redundant Magnetometer Temperature: bits 240 to 255, -32768 to 32767; see
     `redundant_magnetometer_temperature_c`.
 
-    Erratum ACP-005: Symbol C is the coulomb.
+    Note ACP-005: Symbol C is the coulomb.
     """
     x_rate_sensor_temperature: int
     """X-Rate Sensor Temperature: bits 256 to 271, -32768 to 32767, in C.
 
-    Erratum ACP-005: Symbol C is the coulomb.
+    Note ACP-005: Symbol C is the coulomb.
 
-    Erratum ACP-085: Temperatures have three scales.
+    Note ACP-085: Temperatures have three scales.
     """
     y_rate_sensor_temperature: int
     """Y-Rate Sensor Temperature: bits 272 to 287, -32768 to 32767, in C.
 
-    Erratum ACP-005: Symbol C is the coulomb.
+    Note ACP-005: Symbol C is the coulomb.
 
-    Erratum ACP-085: Temperatures have three scales.
+    Note ACP-085: Temperatures have three scales.
     """
     z_rate_sensor_temperature: int
     """Z-Rate Sensor Temperature: bits 288 to 303, -32768 to 32767, in C.
 
-    Erratum ACP-005: Symbol C is the coulomb.
+    Note ACP-005: Symbol C is the coulomb.
 
-    Erratum ACP-085: Temperatures have three scales.
+    Note ACP-085: Temperatures have three scales.
     """
 
     def __init__(

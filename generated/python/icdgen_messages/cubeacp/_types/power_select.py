@@ -12,4 +12,4 @@ class PowerSelect(_enumeration.OpenEnum):
     OFF = 0, "Off"
     ON = 1, "On"
     POWER_STATE_KEPT_THE_SAME = 2, "Power state kept the same"
-    """Erratum ACP-137: Power state kept the same, when read."""
+    """Note ACP-137: Power state kept the same, when read."""

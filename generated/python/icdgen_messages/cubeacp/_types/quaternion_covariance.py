@@ -63,19 +63,19 @@ class QuaternionCovariance(_base.Message):
     """Quaternion Covariance - Q1 RMS: bits 0 to 15, -32768 to 32767; see
     `quaternion_covariance_q1_rms_physical`.
 
-    Erratum ACP-076: Quaternion covariance: an RMS with a sign.
+    Note ACP-076: Quaternion covariance: an RMS with a sign.
     """
     quaternion_covariance_q2_rms: int
     """Quaternion Covariance - Q2 RMS: bits 16 to 31, -32768 to 32767; see
     `quaternion_covariance_q2_rms_physical`.
 
-    Erratum ACP-076: Quaternion covariance: an RMS with a sign.
+    Note ACP-076: Quaternion covariance: an RMS with a sign.
     """
     quaternion_covariance_q3_rms: int
     """Quaternion Covariance - Q3 RMS: bits 32 to 47, -32768 to 32767; see
     `quaternion_covariance_q3_rms_physical`.
 
-    Erratum ACP-076: Quaternion covariance: an RMS with a sign.
+    Note ACP-076: Quaternion covariance: an RMS with a sign.
     """
 
     def __init__(

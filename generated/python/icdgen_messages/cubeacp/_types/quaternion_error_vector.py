@@ -16,7 +16,7 @@ _pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
 class QuaternionErrorVector(_base.Message):
     """Quaternion Error Vector: telemetry 163, 6 bytes, table 119.
 
-    Erratum ACP-075: Quaternions: the fourth component.
+    Note ACP-075: Quaternions: the fourth component.
     """
 
     __slots__ = ("quaternion_error_q1", "quaternion_error_q2", "quaternion_error_q3")
@@ -62,19 +62,19 @@ class QuaternionErrorVector(_base.Message):
     """Quaternion Error - Q1: bits 0 to 15, -32768 to 32767; see
     `quaternion_error_q1_physical`.
 
-    Erratum ACP-073: One factor, several notations.
+    Note ACP-073: One factor, several notations.
     """
     quaternion_error_q2: int
     """Quaternion Error - Q2: bits 16 to 31, -32768 to 32767; see
     `quaternion_error_q2_physical`.
 
-    Erratum ACP-073: One factor, several notations.
+    Note ACP-073: One factor, several notations.
     """
     quaternion_error_q3: int
     """Quaternion Error - Q3: bits 32 to 47, -32768 to 32767; see
     `quaternion_error_q3_physical`.
 
-    Erratum ACP-073: One factor, several notations.
+    Note ACP-073: One factor, several notations.
     """
 
     def __init__(

@@ -18,7 +18,7 @@ class RateSensorRates(_base.Message):
 
     As measured.
 
-    Erratum ACP-069: Reference frames of measured vectors are not named.
+    Note ACP-069: Reference frames of measured vectors are not named.
     """
 
     __slots__ = ("x_angular_rate", "y_angular_rate", "z_angular_rate")

@@ -59,23 +59,23 @@ class RateSensorTemperatures(_base.Message):
     x_rate_sensor_temperature: int
     """X-Rate Sensor Temperature: bits 0 to 15, -32768 to 32767, in C.
 
-    Erratum ACP-005: Symbol C is the coulomb.
+    Note ACP-005: Symbol C is the coulomb.
 
-    Erratum ACP-085: Temperatures have three scales.
+    Note ACP-085: Temperatures have three scales.
     """
     y_rate_sensor_temperature: int
     """Y-Rate Sensor Temperature: bits 16 to 31, -32768 to 32767, in C.
 
-    Erratum ACP-005: Symbol C is the coulomb.
+    Note ACP-005: Symbol C is the coulomb.
 
-    Erratum ACP-085: Temperatures have three scales.
+    Note ACP-085: Temperatures have three scales.
     """
     z_rate_sensor_temperature: int
     """Z-Rate Sensor Temperature: bits 32 to 47, -32768 to 32767, in C.
 
-    Erratum ACP-005: Symbol C is the coulomb.
+    Note ACP-005: Symbol C is the coulomb.
 
-    Erratum ACP-085: Temperatures have three scales.
+    Note ACP-085: Temperatures have three scales.
     """
 
     def __init__(

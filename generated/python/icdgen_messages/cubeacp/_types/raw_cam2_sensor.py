@@ -22,7 +22,7 @@ class RawCam2Sensor(_base.Message):
 
     What Cam2 captured and detected.
 
-    Erratum ACP-038: Simulated data: Cam1 first, in telemetry Cam2 first.
+    Note ACP-038: Simulated data: Cam1 first, in telemetry Cam2 first.
     """
 
     __slots__ = (
@@ -65,14 +65,14 @@ class RawCam2Sensor(_base.Message):
 
     Azimuth angle.
 
-    Erratum ACP-078: Camera results: centroid or angle.
+    Note ACP-078: Camera results: centroid or angle.
     """
     cam2_centroid_y: int
     """Cam2 centroid Y: bits 16 to 31, -32768 to 32767.
 
     Elevation angle.
 
-    Erratum ACP-078: Camera results: centroid or angle.
+    Note ACP-078: Camera results: centroid or angle.
     """
     cam2_capture_status: CaptureResult
     """Cam2 Capture status: bits 32 to 39, 0 to 255."""

@@ -39,42 +39,42 @@ class RawCss1To6(_base.Message):
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Erratum ACP-080: CSS raw values have no scale.
+    Note ACP-080: CSS raw values have no scale.
     """
     css2: int
     """CSS2: bits 8 to 15, 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Erratum ACP-080: CSS raw values have no scale.
+    Note ACP-080: CSS raw values have no scale.
     """
     css3: int
     """CSS3: bits 16 to 23, 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Erratum ACP-080: CSS raw values have no scale.
+    Note ACP-080: CSS raw values have no scale.
     """
     css4: int
     """CSS4: bits 24 to 31, 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Erratum ACP-080: CSS raw values have no scale.
+    Note ACP-080: CSS raw values have no scale.
     """
     css5: int
     """CSS5: bits 32 to 39, 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Erratum ACP-080: CSS raw values have no scale.
+    Note ACP-080: CSS raw values have no scale.
     """
     css6: int
     """CSS6: bits 40 to 47, 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Erratum ACP-080: CSS raw values have no scale.
+    Note ACP-080: CSS raw values have no scale.
     """
 
     def __init__(

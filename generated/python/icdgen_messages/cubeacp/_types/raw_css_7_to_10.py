@@ -40,28 +40,28 @@ class RawCss7To10(_base.Message):
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Erratum ACP-080: CSS raw values have no scale.
+    Note ACP-080: CSS raw values have no scale.
     """
     css8: int
     """CSS8: bits 8 to 15, 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Erratum ACP-080: CSS raw values have no scale.
+    Note ACP-080: CSS raw values have no scale.
     """
     css9: int
     """CSS9: bits 16 to 23, 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Erratum ACP-080: CSS raw values have no scale.
+    Note ACP-080: CSS raw values have no scale.
     """
     css10: int
     """CSS10: bits 24 to 31, 0 to 255.
 
     Sampled A/D value, follows the cosine of the sun angle.
 
-    Erratum ACP-080: CSS raw values have no scale.
+    Note ACP-080: CSS raw values have no scale.
     """
 
     def __init__(

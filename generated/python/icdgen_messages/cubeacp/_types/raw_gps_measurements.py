@@ -178,7 +178,7 @@ class RawGpsMeasurements(_base.Message):
     gps_solution_status: GpsSolutionStatus
     """Gps Solution Status: bits 0 to 7, 0 to 255.
 
-    Erratum ACP-042: GPS is spelt Gps in one field.
+    Note ACP-042: GPS is spelt Gps in one field.
     """
     number_of_tracked_gps_satellites: int
     """Number of tracked GPS satellites: bits 8 to 15, 0 to 255."""
@@ -196,44 +196,44 @@ class RawGpsMeasurements(_base.Message):
 
     Explained on page 656 of the OEMV615 reference manual.
 
-    Erratum ACP-088: GPS response: explained in another manual.
+    Note ACP-088: GPS response: explained in another manual.
     """
     gps_reference_week: int
     """GPS Reference Week: bits 48 to 63, 0 to 65535.
 
-    Erratum ACP-089: GPS week: with or without roll-overs.
+    Note ACP-089: GPS week: with or without roll-overs.
     """
     gps_time_milliseconds: int
     """GPS Time Milliseconds: bits 64 to 95, 0 to 4294967295, in ms."""
     ecef_position_x: int
     """ECEF Position X: bits 96 to 127, -2147483648 to 2147483647, in m.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
     ecef_velocity_x: int
     """ECEF Velocity X: bits 128 to 143, -32768 to 32767, in m/s.
 
-    Erratum ACP-044: GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044: GPS velocity: 16 bits of whole metres a second.
     """
     ecef_position_y: int
     """ECEF Position Y: bits 144 to 175, -2147483648 to 2147483647, in m.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
     ecef_velocity_y: int
     """ECEF Velocity Y: bits 176 to 191, -32768 to 32767, in m/s.
 
-    Erratum ACP-044: GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044: GPS velocity: 16 bits of whole metres a second.
     """
     ecef_position_z: int
     """ECEF Position Z: bits 192 to 223, -2147483648 to 2147483647, in m.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
     ecef_velocity_z: int
     """ECEF Velocity Z: bits 224 to 239, -32768 to 32767, in m/s.
 
-    Erratum ACP-044: GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044: GPS velocity: 16 bits of whole metres a second.
     """
     x_pos_standard_deviation: int
     """X-pos Standard Deviation: bits 240 to 247, 0 to 255; see
@@ -250,17 +250,17 @@ class RawGpsMeasurements(_base.Message):
     x_vel_standard_deviation: int
     """X-vel Standard Deviation: bits 264 to 271, 0 to 255, in m/s.
 
-    Erratum ACP-043: Velocity deviations: 8 bits of whole metres a second.
+    Note ACP-043: Velocity deviations: 8 bits of whole metres a second.
     """
     y_vel_standard_deviation: int
     """Y-vel Standard Deviation: bits 272 to 279, 0 to 255, in m/s.
 
-    Erratum ACP-043: Velocity deviations: 8 bits of whole metres a second.
+    Note ACP-043: Velocity deviations: 8 bits of whole metres a second.
     """
     z_vel_standard_deviation: int
     """Z-vel Standard Deviation: bits 280 to 287, 0 to 255, in m/s.
 
-    Erratum ACP-043: Velocity deviations: 8 bits of whole metres a second.
+    Note ACP-043: Velocity deviations: 8 bits of whole metres a second.
     """
 
     def __init__(

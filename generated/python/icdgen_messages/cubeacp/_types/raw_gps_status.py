@@ -83,7 +83,7 @@ class RawGpsStatus(_base.Message):
     gps_solution_status: GpsSolutionStatus
     """Gps Solution Status: bits 0 to 7, 0 to 255.
 
-    Erratum ACP-042: GPS is spelt Gps in one field.
+    Note ACP-042: GPS is spelt Gps in one field.
     """
     number_of_tracked_gps_satellites: int
     """Number of tracked GPS satellites: bits 8 to 15, 0 to 255."""
@@ -101,7 +101,7 @@ class RawGpsStatus(_base.Message):
 
     Explained on page 656 of the OEMV615 reference manual.
 
-    Erratum ACP-088: GPS response: explained in another manual.
+    Note ACP-088: GPS response: explained in another manual.
     """
 
     def __init__(

@@ -35,7 +35,7 @@ class RawGpsTime(_base.Message):
     gps_reference_week: int
     """GPS Reference Week: bits 0 to 15, 0 to 65535.
 
-    Erratum ACP-089: GPS week: with or without roll-overs.
+    Note ACP-089: GPS week: with or without roll-overs.
     """
     gps_time_milliseconds: int
     """GPS Time Milliseconds: bits 16 to 47, 0 to 4294967295, in ms."""

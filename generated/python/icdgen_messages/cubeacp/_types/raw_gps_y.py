@@ -38,14 +38,14 @@ class RawGpsY(_base.Message):
     ecef_position_y: int
     """ECEF Position Y: bits 0 to 31, -2147483648 to 2147483647, in m.
 
-    Erratum ACP-090: Raw GPS position: ECI by description, ECEF by name.
+    Note ACP-090: Raw GPS position: ECI by description, ECEF by name.
     """
     ecef_velocity_y: int
     """ECEF Velocity Y: bits 32 to 47, -32768 to 32767, in m/s.
 
-    Erratum ACP-044: GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044: GPS velocity: 16 bits of whole metres a second.
 
-    Erratum ACP-090: Raw GPS position: ECI by description, ECEF by name.
+    Note ACP-090: Raw GPS position: ECI by description, ECEF by name.
     """
 
     def __init__(self, *, ecef_position_y: int = 0, ecef_velocity_y: int = 0) -> None:

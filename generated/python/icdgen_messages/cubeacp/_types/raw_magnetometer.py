@@ -36,21 +36,21 @@ class RawMagnetometer(_base.Message):
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
     mag_y: int
     """MagY: bits 16 to 31, -32768 to 32767.
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
     mag_z: int
     """MagZ: bits 32 to 47, -32768 to 32767.
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
 
     def __init__(self, *, mag_x: int = 0, mag_y: int = 0, mag_z: int = 0) -> None:

@@ -36,21 +36,21 @@ class RawRateSensor(_base.Message):
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
     rate_y: int
     """RateY: bits 16 to 31, -32768 to 32767.
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
     rate_z: int
     """RateZ: bits 32 to 47, -32768 to 32767.
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
 
     def __init__(self, *, rate_x: int = 0, rate_y: int = 0, rate_z: int = 0) -> None:

@@ -32,9 +32,9 @@ class RawSensorMeasurements(_base.Message):
 
     Repeats `Raw Rate Sensor` from bit 224.
 
-    Erratum ACP-038: Simulated data: Cam1 first, in telemetry Cam2 first.
+    Note ACP-038: Simulated data: Cam1 first, in telemetry Cam2 first.
 
-    Erratum ACP-106: Messages have the names of groups.
+    Note ACP-106: Messages have the names of groups.
     """
 
     __slots__ = (
@@ -131,14 +131,14 @@ class RawSensorMeasurements(_base.Message):
 
     Azimuth angle.
 
-    Erratum ACP-078: Camera results: centroid or angle.
+    Note ACP-078: Camera results: centroid or angle.
     """
     cam2_centroid_y: int
     """Cam2 centroid Y: bits 16 to 31, -32768 to 32767.
 
     Elevation angle.
 
-    Erratum ACP-078: Camera results: centroid or angle.
+    Note ACP-078: Camera results: centroid or angle.
     """
     cam2_capture_status: CaptureResult
     """Cam2 Capture status: bits 32 to 39, 0 to 255."""
@@ -149,14 +149,14 @@ class RawSensorMeasurements(_base.Message):
 
     Azimuth angle.
 
-    Erratum ACP-078: Camera results: centroid or angle.
+    Note ACP-078: Camera results: centroid or angle.
     """
     cam1_centroid_y: int
     """Cam1 centroid Y: bits 64 to 79, -32768 to 32767.
 
     Elevation angle.
 
-    Erratum ACP-078: Camera results: centroid or angle.
+    Note ACP-078: Camera results: centroid or angle.
     """
     cam1_capture_status: CaptureResult
     """Cam1 Capture status: bits 80 to 87, 0 to 255."""
@@ -217,44 +217,44 @@ class RawSensorMeasurements(_base.Message):
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
-
     Erratum ACP-105: Raw Sensor Measurements repeats four of six bytes of one part.
+
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
     mag_y: int
     """MagY: bits 192 to 207, -32768 to 32767.
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
     mag_z: int
     """MagZ: bits 208 to 223, -32768 to 32767.
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
     rate_x: int
     """RateX: bits 224 to 239, -32768 to 32767.
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
     rate_y: int
     """RateY: bits 240 to 255, -32768 to 32767.
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
     rate_z: int
     """RateZ: bits 256 to 271, -32768 to 32767.
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
 
     def __init__(

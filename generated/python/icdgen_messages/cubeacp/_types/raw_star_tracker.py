@@ -218,29 +218,29 @@ class RawStarTracker(_base.Message):
     number_of_stars_detected: int
     """Number of stars detected: bits 0 to 7, 0 to 255, in stars.
 
-    Erratum ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    Note ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     value.
     """
     star_image_noise: int
     """Star image noise: bits 8 to 15, 0 to 255, in noise.
 
-    Erratum ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    Note ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     value.
 
-    Erratum ACP-094: Star image noise has no scale.
+    Note ACP-094: Star image noise has no scale.
     """
     invalid_stars: int
     """Invalid Stars: bits 16 to 23, 0 to 255, in Invalid stars.
 
     How many of the detected stars are invalid.
 
-    Erratum ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    Note ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     value.
     """
     number_of_stars_identified: int
     """Number of stars identified: bits 24 to 31, 0 to 255, in stars.
 
-    Erratum ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    Note ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     value.
     """
     identification_mode: StarIdModeVal
@@ -250,10 +250,10 @@ class RawStarTracker(_base.Message):
 
     Mean of the centre line of the image.
 
-    Erratum ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    Note ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     value.
 
-    Erratum ACP-095: Image dark value is the mean of a centre line.
+    Note ACP-095: Image dark value is the mean of a centre line.
     """
     image_capture_success: bool
     """Image Capture Success: bit 48."""
@@ -264,7 +264,7 @@ class RawStarTracker(_base.Message):
     attitude_success: bool
     """AttitudeSuccess: bit 51.
 
-    Erratum ACP-115: AttitudeSuccess is written in one piece.
+    Note ACP-115: AttitudeSuccess is written in one piece.
     """
     processing_time_error: bool
     """Processing Time Error: bit 52."""
@@ -277,7 +277,7 @@ class RawStarTracker(_base.Message):
     sample_period: int
     """Sample Period: bits 56 to 71, 0 to 65535.
 
-    Erratum ACP-113: Sample period of the star tracker has no unit.
+    Note ACP-113: Sample period of the star tracker has no unit.
     """
     star_1_confidence: int
     """Star 1 confidence: bits 72 to 79, 0 to 255, in %.
@@ -299,21 +299,21 @@ class RawStarTracker(_base.Message):
 
     Instrument magnitude.
 
-    Erratum ACP-092: Star magnitudes have no scale.
+    Note ACP-092: Star magnitudes have no scale.
     """
     magnitude_star_2: int
     """Magnitude Star 2: bits 112 to 127, 0 to 65535.
 
     Instrument magnitude.
 
-    Erratum ACP-092: Star magnitudes have no scale.
+    Note ACP-092: Star magnitudes have no scale.
     """
     magnitude_star_3: int
     """Magnitude Star 3: bits 128 to 143, 0 to 65535.
 
     Instrument magnitude.
 
-    Erratum ACP-092: Star magnitudes have no scale.
+    Note ACP-092: Star magnitudes have no scale.
     """
     catalogue_star_1: int
     """Catalogue Star 1: bits 144 to 159, 0 to 65535.
@@ -353,42 +353,42 @@ class RawStarTracker(_base.Message):
 
     Estimated by CubeStar, about its own X axis.
 
-    Erratum ACP-111: CubeStar rates have no unit.
+    Note ACP-111: CubeStar rates have no unit.
     """
     y_axis_rate: int
     """y-Axis rate: bits 352 to 367, -32768 to 32767; see `y_axis_rate_physical`.
 
     Estimated by CubeStar, about its own Y axis.
 
-    Erratum ACP-111: CubeStar rates have no unit.
+    Note ACP-111: CubeStar rates have no unit.
     """
     z_axis_rate: int
     """z-Axis rate: bits 368 to 383, -32768 to 32767; see `z_axis_rate_physical`.
 
     Estimated by CubeStar, about its own Z axis.
 
-    Erratum ACP-111: CubeStar rates have no unit.
+    Note ACP-111: CubeStar rates have no unit.
     """
     q0: int
     """Q0: bits 384 to 399, -32768 to 32767; see `q0_physical`.
 
     Of the attitude estimated by CubeStar, described as Q1.
 
-    Erratum ACP-112: CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112: CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     """
     q1: int
     """Q1: bits 400 to 415, -32768 to 32767; see `q1_physical`.
 
     Of the attitude estimated by CubeStar, described as Q2.
 
-    Erratum ACP-112: CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112: CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     """
     q2: int
     """Q2: bits 416 to 431, -32768 to 32767; see `q2_physical`.
 
     Of the attitude estimated by CubeStar, described as Q3.
 
-    Erratum ACP-112: CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112: CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     """
 
     def __init__(

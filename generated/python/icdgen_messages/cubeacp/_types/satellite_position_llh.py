@@ -66,12 +66,12 @@ class SatellitePositionLlh(_base.Message):
     longitude: int
     """Longitude: bits 16 to 31, -32768 to 32767; see `longitude_deg`.
 
-    Erratum ACP-068: Latitude and altitude are of WGS-84, longitude is not.
+    Note ACP-068: Latitude and altitude are of WGS-84, longitude is not.
     """
     altitude: int
     """Altitude: bits 32 to 47, 0 to 65535; see `altitude_km`.
 
-    Erratum ACP-067: Position and altitude do not reach equally far.
+    Note ACP-067: Position and altitude do not reach equally far.
     """
 
     def __init__(

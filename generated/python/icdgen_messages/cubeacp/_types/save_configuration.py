@@ -18,7 +18,7 @@ class SaveConfiguration(_base.Message):
 
     Keeps the current configuration in flash.
 
-    Erratum ACP-054: Two saves for three stored sets.
+    Note ACP-054: Two saves for three stored sets.
     """
 
     __slots__ = ()

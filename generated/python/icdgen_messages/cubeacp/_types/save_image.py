@@ -22,7 +22,7 @@ class SaveImage(_base.Message):
 
     Takes a picture with a CubeSense or the CubeStar camera and saves it to the SD card.
 
-    Erratum ACP-055: Save Image saves before it captures.
+    Note ACP-055: Save Image saves before it captures.
     """
 
     __slots__ = ("camera_select", "image_size")

@@ -22,9 +22,9 @@ class SdLog1Configuration(_base.Message):
 
     Which frames go into log 1, how often, and to which card.
 
-    Erratum ACP-185: Log1, LOG1, Log 1.
+    Note ACP-185: Log1, LOG1, Log 1.
 
-    Erratum ACP-186: A log that is reconfigured while it runs.
+    Note ACP-186: A log that is reconfigured while it runs.
     """
 
     __slots__ = ("log_selection", "log_period", "log_destination")
@@ -57,14 +57,14 @@ class SdLog1Configuration(_base.Message):
 
     Mask of up to 80 telemetry frames.
 
-    Erratum ACP-184: Log selection: up to 80 flags, 63 of them assigned.
+    Note ACP-184: Log selection: up to 80 flags, 63 of them assigned.
     """
     log_period: int
     """Log Period: bits 80 to 95, 0 to 65535.
 
     0: logging disabled.
 
-    Erratum ACP-183: Log period has no unit.
+    Note ACP-183: Log period has no unit.
     """
     log_destination: SdLogSelect
     """Log Destination: bits 96 to 103, 0 to 255."""

@@ -12,4 +12,4 @@ class SdLogSelect(_enumeration.OpenEnum):
     PRIMARY_SD_CARD = 0, "Primary SD Card"
     """On board."""
     SECONDARY_SD_CARD = 1, "Secondary SD Card"
-    """Erratum ACP-187: A secondary SD card."""
+    """Note ACP-187: A secondary SD card."""

@@ -16,9 +16,9 @@ _pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
 class SecondaryMagnetometerRawMeasurements(_base.Message):
     """Secondary Magnetometer Raw Measurements: telemetry 215, 6 bytes, table 163.
 
-    Erratum ACP-051: Magnetometers have four names for two.
+    Note ACP-051: Magnetometers have four names for two.
 
-    Erratum ACP-118: Secondary magnetometer: fixed or selected.
+    Note ACP-118: Secondary magnetometer: fixed or selected.
     """
 
     __slots__ = ("mag_x", "mag_y", "mag_z")
@@ -41,21 +41,21 @@ class SecondaryMagnetometerRawMeasurements(_base.Message):
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
     mag_y: int
     """MagY: bits 16 to 31, -32768 to 32767.
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
     mag_z: int
     """MagZ: bits 32 to 47, -32768 to 32767.
 
     Sampled A/D value.
 
-    Erratum ACP-082: Raw magnetometer and rate values are A/D values without a scale.
+    Note ACP-082: Raw magnetometer and rate values are A/D values without a scale.
     """
 
     def __init__(self, *, mag_x: int = 0, mag_y: int = 0, mag_z: int = 0) -> None:

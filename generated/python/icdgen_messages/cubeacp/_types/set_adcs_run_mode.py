@@ -20,7 +20,7 @@ class SetAdcsRunMode(_base.Message):
 
     Switches the control loop and chooses how it runs.
 
-    Erratum ACP-018: ADCS Run Mode is a message and an enumeration.
+    Note ACP-018: ADCS Run Mode is a message and an enumeration.
     """
 
     __slots__ = ("enabled",)
@@ -39,7 +39,7 @@ class SetAdcsRunMode(_base.Message):
 
     While off, the control program leaves the ADCS I2C bus alone.
 
-    Erratum ACP-017: A run mode called Enabled.
+    Note ACP-017: A run mode called Enabled.
     """
 
     def __init__(self, *, enabled: AdcsRunMode = AdcsRunMode.OFF) -> None:

@@ -51,9 +51,9 @@ class SetAttitudeControlMode(_base.Message):
 
     65535: no timeout.
 
-    Erratum ACP-022: Timeout of a control mode: 0.
+    Note ACP-022: Timeout of a control mode: 0.
 
-    Erratum ACP-023: Control mode None does not exist.
+    Note ACP-023: Control mode None does not exist.
     """
 
     def __init__(

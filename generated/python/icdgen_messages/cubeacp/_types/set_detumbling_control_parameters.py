@@ -19,7 +19,7 @@ class SetDetumblingControlParameters(_base.Message):
 
     Gains and references of the detumbling mode.
 
-    Erratum ACP-125: Eight messages are named Set and can be read.
+    Note ACP-125: Eight messages are named Set and can be read.
     """
 
     __slots__ = (
@@ -63,14 +63,14 @@ class SetDetumblingControlParameters(_base.Message):
 
     Ks.
 
-    Erratum ACP-163: Gains have no units.
+    Note ACP-163: Gains have no units.
     """
     detumbling_damping_gain: float
     """Detumbling Damping Gain: bits 32 to 63, 32-bit float.
 
     Kd.
 
-    Erratum ACP-163: Gains have no units.
+    Note ACP-163: Gains have no units.
     """
     reference_spin_rate: int
     """Reference spin rate: bits 64 to 79, -32768 to 32767; see
@@ -78,16 +78,14 @@ class SetDetumblingControlParameters(_base.Message):
 
     wy-ref.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-162: Limits of a sign in words only.
+    Note ACP-162: Limits of a sign in words only.
     """
     fast_bdot_detumbling_gain: float
     """Fast BDot Detumbling Gain: bits 80 to 111, 32-bit float.
 
     Kdf.
 
-    Erratum ACP-163: Gains have no units.
+    Note ACP-163: Gains have no units.
     """
 
     def __init__(

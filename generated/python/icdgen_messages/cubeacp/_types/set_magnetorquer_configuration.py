@@ -19,7 +19,7 @@ class SetMagnetorquerConfiguration(_base.Message):
     """Set Magnetorquer Configuration: set by telecommand 21, got by telemetry 136, 3
     bytes, table 179.
 
-    Erratum ACP-125: Eight messages are named Set and can be read.
+    Note ACP-125: Eight messages are named Set and can be read.
     """
 
     __slots__ = (
@@ -66,17 +66,17 @@ class SetMagnetorquerConfiguration(_base.Message):
     magnetorquer_1_configuration: AxisSelect
     """Magnetorquer 1 Configuration: bits 0 to 7, 0 to 255.
 
-    Erratum ACP-103: Configuration flag: outputs per axis, or axes per output.
+    Note ACP-103: Configuration flag: outputs per axis, or axes per output.
     """
     magnetorquer_2_configuration: AxisSelect
     """Magnetorquer 2 Configuration: bits 8 to 15, 0 to 255.
 
-    Erratum ACP-103: Configuration flag: outputs per axis, or axes per output.
+    Note ACP-103: Configuration flag: outputs per axis, or axes per output.
     """
     magnetorquer_3_configuration: AxisSelect
     """Magnetorquer 3 Configuration: bits 16 to 23, 0 to 255.
 
-    Erratum ACP-103: Configuration flag: outputs per axis, or axes per output.
+    Note ACP-103: Configuration flag: outputs per axis, or axes per output.
     """
 
     def __init__(

@@ -18,7 +18,7 @@ class SetMagnetorquerOutput(_base.Message):
 
     Only valid while the control mode is None.
 
-    Erratum ACP-023: Control mode None does not exist.
+    Note ACP-023: Control mode None does not exist.
     """
 
     __slots__ = (
@@ -68,25 +68,25 @@ class SetMagnetorquerOutput(_base.Message):
     """Commanded X Magnetorquer duty cycle: bits 0 to 15, -32768 to 32767; see
     `commanded_x_magnetorquer_duty_cycle_physical`.
 
-    Erratum ACP-030: Formulas are written in two directions.
+    Note ACP-030: Formulas are written in two directions.
 
-    Erratum ACP-031: Duty cycle: unit and range are not given.
+    Note ACP-031: Duty cycle: unit and range are not given.
     """
     commanded_y_magnetorquer_duty_cycle: int
     """Commanded Y Magnetorquer duty cycle: bits 16 to 31, -32768 to 32767; see
     `commanded_y_magnetorquer_duty_cycle_physical`.
 
-    Erratum ACP-030: Formulas are written in two directions.
+    Note ACP-030: Formulas are written in two directions.
 
-    Erratum ACP-031: Duty cycle: unit and range are not given.
+    Note ACP-031: Duty cycle: unit and range are not given.
     """
     commanded_z_magnetorquer_duty_cycle: int
     """Commanded Z Magnetorquer duty cycle: bits 32 to 47, -32768 to 32767; see
     `commanded_z_magnetorquer_duty_cycle_physical`.
 
-    Erratum ACP-030: Formulas are written in two directions.
+    Note ACP-030: Formulas are written in two directions.
 
-    Erratum ACP-031: Duty cycle: unit and range are not given.
+    Note ACP-031: Duty cycle: unit and range are not given.
     """
 
     def __init__(

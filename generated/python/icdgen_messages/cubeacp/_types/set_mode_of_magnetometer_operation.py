@@ -41,7 +41,7 @@ class SetModeOfMagnetometerOperation(_base.Message):
 
     The magnetometer that estimation and control use.
 
-    Erratum ACP-049: Magnetometer mode can be set in two places.
+    Note ACP-049: Magnetometer mode can be set in two places.
     """
 
     def __init__(

@@ -19,9 +19,9 @@ class SetRateGyroConfiguration(_base.Message):
     """Set Rate Gyro Configuration: set by telecommand 23, got by telemetry 138, 10
     bytes, table 182.
 
-    Erratum ACP-125: Eight messages are named Set and can be read.
+    Note ACP-125: Eight messages are named Set and can be read.
 
-    Erratum ACP-131: Gyro, rate sensor and MEMS.
+    Note ACP-131: Gyro, rate sensor and MEMS.
     """
 
     __slots__ = (
@@ -95,32 +95,26 @@ class SetRateGyroConfiguration(_base.Message):
     """X-Rate Sensor Offset: bits 24 to 39, -32768 to 32767; see
     `x_rate_sensor_offset_deg_per_s`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-132: Rate sensor offset and estimated gyro bias.
+    Note ACP-132: Rate sensor offset and estimated gyro bias.
     """
     y_rate_sensor_offset: int
     """Y-Rate Sensor Offset: bits 40 to 55, -32768 to 32767; see
     `y_rate_sensor_offset_deg_per_s`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-132: Rate sensor offset and estimated gyro bias.
+    Note ACP-132: Rate sensor offset and estimated gyro bias.
     """
     z_rate_sensor_offset: int
     """Z-Rate Sensor Offset: bits 56 to 71, -32768 to 32767; see
     `z_rate_sensor_offset_deg_per_s`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-132: Rate sensor offset and estimated gyro bias.
+    Note ACP-132: Rate sensor offset and estimated gyro bias.
     """
     rate_sensor_mult: int
     """RateSensorMult: bits 72 to 79, 0 to 255.
 
     Factor on the rate sensor measurements.
 
-    Erratum ACP-130: RateSensorMult has no scale and no blanks.
+    Note ACP-130: RateSensorMult has no scale and no blanks.
     """
 
     def __init__(

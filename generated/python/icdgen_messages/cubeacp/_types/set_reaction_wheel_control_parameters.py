@@ -22,7 +22,7 @@ class SetReactionWheelControlParameters(_base.Message):
 
     Gains and reference of the reaction-wheel mode.
 
-    Erratum ACP-125: Eight messages are named Set and can be read.
+    Note ACP-125: Eight messages are named Set and can be read.
     """
 
     __slots__ = (
@@ -73,32 +73,32 @@ class SetReactionWheelControlParameters(_base.Message):
 
     Kp2.
 
-    Erratum ACP-163: Gains have no units.
+    Note ACP-163: Gains have no units.
     """
     rwheel_derivative_gain: float
     """RWheel Derivative Gain: bits 32 to 63, 32-bit float.
 
     Kd2.
 
-    Erratum ACP-163: Gains have no units.
+    Note ACP-163: Gains have no units.
     """
     y_wheel_bias_momentum: float
     """Y-Wheel Bias Momentum: bits 64 to 95, 32-bit float, in Nms.
 
     H-bias.
 
-    Erratum ACP-165: Bias momentum of the Y-wheel among the reaction wheels.
+    Note ACP-165: Bias momentum of the Y-wheel among the reaction wheels.
     """
     sun_pointing_facet: AxisSelect
     """Sun-pointing Facet: bits 96 to 102, 0 to 127.
 
     Body axis that is turned towards the sun.
 
-    Erratum ACP-126: AxisSelect is used where Not Used is no answer.
+    Note ACP-126: AxisSelect is used where Not Used is no answer.
 
-    Erratum ACP-166: Facets have 7 bits and 8 bits.
+    Note ACP-166: Facets have 7 bits and 8 bits.
 
-    Erratum ACP-177: Sun-pointing facet and special control selection.
+    Note ACP-177: Sun-pointing facet and special control selection.
     """
     control_transition_on_wheel_error: bool
     """Automatic Control Transition due to Wheel Errors: bit 103.

@@ -21,9 +21,9 @@ class SetStarTrackerConfiguration(_base.Message):
 
     Of CubeStar.
 
-    Erratum ACP-020: Reserved bits.
+    Note ACP-020: Reserved bits.
 
-    Erratum ACP-125: Eight messages are named Set and can be read.
+    Note ACP-125: Eight messages are named Set and can be read.
     """
 
     __slots__ = (
@@ -236,63 +236,57 @@ class SetStarTrackerConfiguration(_base.Message):
     """StarTracker Mounting Transform Alpha Angle: bits 0 to 15, -32768 to 32767; see
     `star_tracker_mounting_transform_alpha_angle_deg`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-157: Mounting angles: order of rotation.
+    Note ACP-157: Mounting angles: order of rotation.
     """
     star_tracker_mounting_transform_beta_angle: int
     """StarTracker Mounting Transform Beta Angle: bits 16 to 31, -32768 to 32767; see
     `star_tracker_mounting_transform_beta_angle_deg`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-157: Mounting angles: order of rotation.
+    Note ACP-157: Mounting angles: order of rotation.
     """
     star_tracker_mounting_transform_gamma_angle: int
     """StarTracker Mounting Transform Gamma Angle: bits 32 to 47, -32768 to 32767; see
     `star_tracker_mounting_transform_gamma_angle_deg`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-157: Mounting angles: order of rotation.
+    Note ACP-157: Mounting angles: order of rotation.
     """
     star_tracker_exposure_time: int
     """StarTracker exposure time: bits 48 to 63, 0 to 65535.
 
     Register value.
 
-    Erratum ACP-145: Exposure and gain are register values.
+    Note ACP-145: Exposure and gain are register values.
 
-    Erratum ACP-147: Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    Note ACP-147: Star tracker fields: Star Tracker, StarTracker, Star tracking.
     """
     star_tracker_analog_gain: int
     """StarTracker analog gain: bits 64 to 79, 0 to 65535.
 
     Register value.
 
-    Erratum ACP-145: Exposure and gain are register values.
+    Note ACP-145: Exposure and gain are register values.
     """
     star_tracker_detection_threshold: int
     """StarTracker detection threshold: bits 80 to 87, 0 to 255.
 
-    Erratum ACP-146: Thresholds and counts of the star tracker have no description.
+    Note ACP-146: Thresholds and counts of the star tracker have no description.
     """
     star_tracker_star_threshold: int
     """StarTracker star threshold: bits 88 to 95, 0 to 255.
 
-    Erratum ACP-146: Thresholds and counts of the star tracker have no description.
+    Note ACP-146: Thresholds and counts of the star tracker have no description.
     """
     maximum_star_matched: int
     """Maximum Star Matched: bits 96 to 103, 0 to 255.
 
     Most stars that are matched.
 
-    Erratum ACP-146: Thresholds and counts of the star tracker have no description.
+    Note ACP-146: Thresholds and counts of the star tracker have no description.
     """
     detection_timeout_duration: int
     """Detection Timeout duration: bits 104 to 119, 0 to 65535.
 
-    Erratum ACP-141: Detection timeout has no unit.
+    Note ACP-141: Detection timeout has no unit.
     """
     maximum_star_pixel: int
     """Maximum Star Pixel: bits 120 to 127, 0 to 255.
@@ -310,16 +304,14 @@ class SetStarTrackerConfiguration(_base.Message):
 
     Of the star identification.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-142: Error margin: hundredths of a percent, 2.55 % at most.
+    Note ACP-142: Error margin: hundredths of a percent, 2.55 % at most.
     """
     star_tracker_delay_time: int
     """Star Tracker Delay Time: bits 144 to 159, 0 to 65535, in ms.
 
     Erratum ACP-140: milliseconds is ms.
 
-    Erratum ACP-147: Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    Note ACP-147: Star tracker fields: Star Tracker, StarTracker, Star tracking.
     """
     star_tracker_centroid_x: float
     """Star Tracker Centroid X: bits 160 to 191, 32-bit float, in pixels.
@@ -336,62 +328,56 @@ class SetStarTrackerConfiguration(_base.Message):
     k1_radial_distortion_coefficient: float
     """K1 radial distortion coefficient: bits 256 to 287, 32-bit float, in gain.
 
-    Erratum ACP-144: gain is no unit.
+    Note ACP-144: gain is no unit.
     """
     k2_radial_distortion_coefficient: float
     """K2 radial distortion coefficient: bits 288 to 319, 32-bit float, in gain.
 
-    Erratum ACP-144: gain is no unit.
+    Note ACP-144: gain is no unit.
     """
     p1_tangential_distortion_coefficient: float
     """P1 tangential distortion coefficient: bits 320 to 351, 32-bit float, in gain.
 
-    Erratum ACP-144: gain is no unit.
+    Note ACP-144: gain is no unit.
     """
     p2_tangential_distortion_coefficient: float
     """P2 tangential distortion coefficient: bits 352 to 383, 32-bit float, in gain.
 
-    Erratum ACP-144: gain is no unit.
+    Note ACP-144: gain is no unit.
     """
     star_tracking_window_width: int
     """Star tracking window width: bits 384 to 391, 0 to 255.
 
-    Erratum ACP-146: Thresholds and counts of the star tracker have no description.
+    Note ACP-146: Thresholds and counts of the star tracker have no description.
 
-    Erratum ACP-147: Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    Note ACP-147: Star tracker fields: Star Tracker, StarTracker, Star tracking.
     """
     star_tracking_margin: int
     """Star Tracking Margin: bits 392 to 399, 0 to 255; see
     `star_tracking_margin_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
+    Note ACP-143: Margins and search width have no unit.
 
-    Erratum ACP-143: Margins and search width have no unit.
-
-    Erratum ACP-147: Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    Note ACP-147: Star tracker fields: Star Tracker, StarTracker, Star tracking.
     """
     star_validation_margin: int
     """Star Validation Margin: bits 400 to 407, 0 to 255; see
     `star_validation_margin_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-143: Margins and search width have no unit.
+    Note ACP-143: Margins and search width have no unit.
     """
     star_tracking_module_enable: bool
     """Star Tracking Module Enable: bit 408."""
     star_tracking_location_prediction_enable: bool
     """Star Tracking Location Prediction Enable: bit 409.
 
-    Erratum ACP-147: Star tracker fields: Star Tracker, StarTracker, Star tracking.
+    Note ACP-147: Star tracker fields: Star Tracker, StarTracker, Star tracking.
     """
     star_tracking_search_width: int
     """Star Tracking Search Width: bits 416 to 423, 0 to 255; see
     `star_tracking_search_width_physical`.
 
-    Erratum ACP-001: Formula announced as giving the raw value gives the physical one.
-
-    Erratum ACP-143: Margins and search width have no unit.
+    Note ACP-143: Margins and search width have no unit.
     """
 
     def __init__(

@@ -21,7 +21,7 @@ class SetTrackingControllerGainParameters(_base.Message):
 
     Gains of the tracking mode.
 
-    Erratum ACP-125: Eight messages are named Set and can be read.
+    Note ACP-125: Eight messages are named Set and can be read.
     """
 
     __slots__ = (
@@ -64,28 +64,28 @@ class SetTrackingControllerGainParameters(_base.Message):
 
     Kp3.
 
-    Erratum ACP-163: Gains have no units.
+    Note ACP-163: Gains have no units.
     """
     tracking_derivative_gain: float
     """Tracking Derivative Gain: bits 32 to 63, 32-bit float.
 
     Kd3.
 
-    Erratum ACP-163: Gains have no units.
+    Note ACP-163: Gains have no units.
     """
     tracking_integral_gain: float
     """Tracking Integral Gain: bits 64 to 95, 32-bit float.
 
     Ki3.
 
-    Erratum ACP-163: Gains have no units.
+    Note ACP-163: Gains have no units.
     """
     target_tracking_facet: AxisSelect
     """Target-tracking Facet: bits 96 to 103, 0 to 255.
 
     Body axis that is pointed at the target.
 
-    Erratum ACP-126: AxisSelect is used where Not Used is no answer.
+    Note ACP-126: AxisSelect is used where Not Used is no answer.
     """
 
     def __init__(

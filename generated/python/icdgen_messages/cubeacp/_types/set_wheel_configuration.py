@@ -19,7 +19,7 @@ class SetWheelConfiguration(_base.Message):
     """Set Wheel Configuration: set by telecommand 22, got by telemetry 137, 4 bytes,
     table 181.
 
-    Erratum ACP-125: Eight messages are named Set and can be read.
+    Note ACP-125: Eight messages are named Set and can be read.
     """
 
     __slots__ = (
@@ -55,26 +55,26 @@ class SetWheelConfiguration(_base.Message):
     rw1_configuration: AxisSelect
     """RW1 Configuration: bits 0 to 7, 0 to 255.
 
-    Erratum ACP-129: Reaction wheels are RW1 and RW-X.
+    Note ACP-129: Reaction wheels are RW1 and RW-X.
     """
     rw2_configuration: AxisSelect
     """RW2 Configuration: bits 8 to 15, 0 to 255.
 
-    Erratum ACP-129: Reaction wheels are RW1 and RW-X.
+    Note ACP-129: Reaction wheels are RW1 and RW-X.
     """
     rw3_configuration: AxisSelect
     """RW3 Configuration: bits 16 to 23, 0 to 255.
 
-    Erratum ACP-129: Reaction wheels are RW1 and RW-X.
+    Note ACP-129: Reaction wheels are RW1 and RW-X.
     """
     rw4_configuration: AxisSelect
     """RW4 Configuration: bits 24 to 31, 0 to 255.
 
     Wheel 4 or the momentum wheel.
 
-    Erratum ACP-127: Four wheels can be configured, three are reported.
+    Note ACP-127: Four wheels can be configured, three are reported.
 
-    Erratum ACP-128: RW4 or Momentum wheel.
+    Note ACP-128: RW4 or Momentum wheel.
     """
 
     def __init__(

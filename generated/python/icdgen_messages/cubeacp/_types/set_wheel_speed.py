@@ -18,7 +18,7 @@ class SetWheelSpeed(_base.Message):
 
     Only valid while the control mode is None.
 
-    Erratum ACP-023: Control mode None does not exist.
+    Note ACP-023: Control mode None does not exist.
     """
 
     __slots__ = ("commanded_x_speed", "commanded_y_speed", "commanded_z_speed")

@@ -19,7 +19,7 @@ class SetYWheelControlParameters(_base.Message):
 
     Gains and reference of the Y-wheel mode.
 
-    Erratum ACP-125: Eight messages are named Set and can be read.
+    Note ACP-125: Eight messages are named Set and can be read.
     """
 
     __slots__ = (
@@ -75,32 +75,32 @@ class SetYWheelControlParameters(_base.Message):
 
     Kh.
 
-    Erratum ACP-163: Gains have no units.
+    Note ACP-163: Gains have no units.
 
-    Erratum ACP-164: Y-Momentum, Y-momentum and Y-Wheel.
+    Note ACP-164: Y-Momentum, Y-momentum and Y-Wheel.
     """
     y_momentum_nutation_damping_gain: float
     """Y-momentum Nutation Damping Gain: bits 32 to 63, 32-bit float.
 
     Kn.
 
-    Erratum ACP-163: Gains have no units.
+    Note ACP-163: Gains have no units.
 
-    Erratum ACP-164: Y-Momentum, Y-momentum and Y-Wheel.
+    Note ACP-164: Y-Momentum, Y-momentum and Y-Wheel.
     """
     y_momentum_proportional_gain: float
     """Y-momentum Proportional Gain: bits 64 to 95, 32-bit float.
 
     Kp1.
 
-    Erratum ACP-163: Gains have no units.
+    Note ACP-163: Gains have no units.
     """
     y_momentum_derivative_gain: float
     """Y-momentum Derivative Gain: bits 96 to 127, 32-bit float.
 
     Kd1.
 
-    Erratum ACP-163: Gains have no units.
+    Note ACP-163: Gains have no units.
     """
     reference_wheel_momentum: float
     """Reference Wheel Momentum: bits 128 to 159, 32-bit float, in Nms.
@@ -109,7 +109,7 @@ class SetYWheelControlParameters(_base.Message):
 
     Must be below 0.
 
-    Erratum ACP-162: Limits of a sign in words only.
+    Note ACP-162: Limits of a sign in words only.
     """
 
     def __init__(

@@ -70,7 +70,7 @@ class Sgp4OrbitParameters(_base.Message):
     b_star_drag_term: float
     """B-Star drag term: bits 256 to 319, 64-bit float.
 
-    Erratum ACP-161: B-Star has no unit.
+    Note ACP-161: B-Star has no unit.
     """
     mean_motion: float
     """Mean Motion: bits 320 to 383, 64-bit float, in orbits/day."""
@@ -81,7 +81,7 @@ class Sgp4OrbitParameters(_base.Message):
 
     Year and day in one number.
 
-    Erratum ACP-160: Epoch: year.day.
+    Note ACP-160: Epoch: year.day.
     """
 
     def __init__(

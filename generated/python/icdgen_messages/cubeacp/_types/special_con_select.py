@@ -9,14 +9,14 @@ from ... import _enumeration
 class SpecialConSelect(_enumeration.OpenEnum):
     """SpecialConSelect, table 203.
 
-    Erratum ACP-024: Control modes that are named and not listed.
+    Note ACP-024: Control modes that are named and not listed.
     """
 
     NONE = 0, "None"
     Z_AXIS_SUN_POINTING = 1, "Z-axis Sun pointing"
-    """Erratum ACP-177: Sun-pointing facet and special control selection."""
+    """Note ACP-177: Sun-pointing facet and special control selection."""
     GEO_TRACKING = 2, "GEO Tracking"
-    """Erratum ACP-176: Satellite position: range against GEO tracking."""
+    """Note ACP-176: Satellite position: range against GEO tracking."""
     INERTIAL_POINTING = 3, "Inertial pointing"
     Y_AXIS_SUN_POINTING = 4, "Y-axis Sun pointing"
-    """Erratum ACP-177: Sun-pointing facet and special control selection."""
+    """Note ACP-177: Sun-pointing facet and special control selection."""

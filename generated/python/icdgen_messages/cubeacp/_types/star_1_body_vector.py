@@ -60,21 +60,21 @@ class Star1BodyVector(_base.Message):
 
     Vector in the body frame.
 
-    Erratum ACP-091: Star vectors: X-vector is a component.
+    Note ACP-091: Star vectors: X-vector is a component.
     """
     star1_body_y: int
     """Star1BY: bits 16 to 31, -32768 to 32767; see `star1_body_y_physical`.
 
     Vector in the body frame.
 
-    Erratum ACP-091: Star vectors: X-vector is a component.
+    Note ACP-091: Star vectors: X-vector is a component.
     """
     star1_body_z: int
     """Star1BZ: bits 32 to 47, -32768 to 32767; see `star1_body_z_physical`.
 
     Vector in the body frame.
 
-    Erratum ACP-091: Star vectors: X-vector is a component.
+    Note ACP-091: Star vectors: X-vector is a component.
     """
 
     def __init__(

@@ -39,17 +39,17 @@ class Star2RawData(_base.Message):
 
     Number in the star catalogue.
 
-    Erratum ACP-117: Catalogue number or catalogue index.
+    Note ACP-117: Catalogue number or catalogue index.
     """
     centroid_x_star_2: int
     """Centroid X Star 2: bits 16 to 31, -32768 to 32767.
 
-    Erratum ACP-116: Star centroids have no scale.
+    Note ACP-116: Star centroids have no scale.
     """
     centroid_y_star_2: int
     """Centroid Y Star 2: bits 32 to 47, -32768 to 32767.
 
-    Erratum ACP-116: Star centroids have no scale.
+    Note ACP-116: Star centroids have no scale.
     """
 
     def __init__(

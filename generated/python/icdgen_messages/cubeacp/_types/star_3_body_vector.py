@@ -60,21 +60,21 @@ class Star3BodyVector(_base.Message):
 
     Vector in the body frame.
 
-    Erratum ACP-091: Star vectors: X-vector is a component.
+    Note ACP-091: Star vectors: X-vector is a component.
     """
     star3_body_y: int
     """Star3BY: bits 16 to 31, -32768 to 32767; see `star3_body_y_physical`.
 
     Vector in the body frame.
 
-    Erratum ACP-091: Star vectors: X-vector is a component.
+    Note ACP-091: Star vectors: X-vector is a component.
     """
     star3_body_z: int
     """Star3BZ: bits 32 to 47, -32768 to 32767; see `star3_body_z_physical`.
 
     Vector in the body frame.
 
-    Erratum ACP-091: Star vectors: X-vector is a component.
+    Note ACP-091: Star vectors: X-vector is a component.
     """
 
     def __init__(

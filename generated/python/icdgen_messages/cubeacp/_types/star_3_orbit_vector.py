@@ -60,21 +60,21 @@ class Star3OrbitVector(_base.Message):
 
     Vector in the orbit frame.
 
-    Erratum ACP-091: Star vectors: X-vector is a component.
+    Note ACP-091: Star vectors: X-vector is a component.
     """
     star3_orbit_y: int
     """Star3OY: bits 16 to 31, -32768 to 32767; see `star3_orbit_y_physical`.
 
     Vector in the orbit frame.
 
-    Erratum ACP-091: Star vectors: X-vector is a component.
+    Note ACP-091: Star vectors: X-vector is a component.
     """
     star3_orbit_z: int
     """Star3OZ: bits 32 to 47, -32768 to 32767; see `star3_orbit_z_physical`.
 
     Vector in the orbit frame.
 
-    Erratum ACP-091: Star vectors: X-vector is a component.
+    Note ACP-091: Star vectors: X-vector is a component.
     """
 
     def __init__(

@@ -9,7 +9,7 @@ from ... import _enumeration
 class StarIdModeVal(_enumeration.OpenEnum):
     """StarIDModeVal, table 147.
 
-    Erratum ACP-097: StarIDModeVal is not described.
+    Note ACP-097: StarIDModeVal is not described.
     """
 
     TRACKING_MODE = 0, "Tracking Mode"

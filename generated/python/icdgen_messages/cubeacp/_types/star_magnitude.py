@@ -39,21 +39,21 @@ class StarMagnitude(_base.Message):
 
     Instrument magnitude.
 
-    Erratum ACP-092: Star magnitudes have no scale.
+    Note ACP-092: Star magnitudes have no scale.
     """
     magnitude_star_2: int
     """Magnitude Star 2: bits 16 to 31, 0 to 65535.
 
     Instrument magnitude.
 
-    Erratum ACP-092: Star magnitudes have no scale.
+    Note ACP-092: Star magnitudes have no scale.
     """
     magnitude_star_3: int
     """Magnitude Star 3: bits 32 to 47, 0 to 65535.
 
     Instrument magnitude.
 
-    Erratum ACP-092: Star magnitudes have no scale.
+    Note ACP-092: Star magnitudes have no scale.
     """
 
     def __init__(

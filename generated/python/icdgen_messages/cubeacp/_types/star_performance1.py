@@ -20,7 +20,7 @@ class StarPerformance1(_base.Message):
 
     Quality of the star measurement, frame 1.
 
-    Erratum ACP-096: Star Performance2 has the description of Star Performance1.
+    Note ACP-096: Star Performance2 has the description of Star Performance1.
     """
 
     __slots__ = (
@@ -83,29 +83,29 @@ class StarPerformance1(_base.Message):
     number_of_stars_detected: int
     """Number of stars detected: bits 0 to 7, 0 to 255, in stars.
 
-    Erratum ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    Note ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     value.
     """
     star_image_noise: int
     """Star image noise: bits 8 to 15, 0 to 255, in noise.
 
-    Erratum ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    Note ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     value.
 
-    Erratum ACP-094: Star image noise has no scale.
+    Note ACP-094: Star image noise has no scale.
     """
     invalid_stars: int
     """Invalid Stars: bits 16 to 23, 0 to 255, in Invalid stars.
 
     How many of the detected stars are invalid.
 
-    Erratum ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    Note ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     value.
     """
     number_of_stars_identified: int
     """Number of stars identified: bits 24 to 31, 0 to 255, in stars.
 
-    Erratum ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    Note ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     value.
     """
     identification_mode: StarIdModeVal
@@ -115,10 +115,10 @@ class StarPerformance1(_base.Message):
 
     Mean of the centre line of the image.
 
-    Erratum ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
+    Note ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     value.
 
-    Erratum ACP-095: Image dark value is the mean of a centre line.
+    Note ACP-095: Image dark value is the mean of a centre line.
     """
 
     def __init__(

@@ -29,7 +29,7 @@ class StarPerformance2(_base.Message):
 
     Quality of the star measurement, frame 2.
 
-    Erratum ACP-096: Star Performance2 has the description of Star Performance1.
+    Note ACP-096: Star Performance2 has the description of Star Performance1.
     """
 
     __slots__ = (
@@ -88,7 +88,7 @@ class StarPerformance2(_base.Message):
     attitude_success: bool
     """AttitudeSuccess: bit 3.
 
-    Erratum ACP-115: AttitudeSuccess is written in one piece.
+    Note ACP-115: AttitudeSuccess is written in one piece.
     """
     processing_time_error: bool
     """Processing Time Error: bit 4."""
@@ -101,7 +101,7 @@ class StarPerformance2(_base.Message):
     sample_period: int
     """Sample Period: bits 8 to 23, 0 to 65535.
 
-    Erratum ACP-113: Sample period of the star tracker has no unit.
+    Note ACP-113: Sample period of the star tracker has no unit.
     """
     star_1_confidence: int
     """Star 1 confidence: bits 24 to 31, 0 to 255, in %.

@@ -18,7 +18,7 @@ _BITS_0 = _codec.bit_table((0, 8, ImSaveStatus))
 class StatusOfImageCaptureAndSaveOperation(_base.Message):
     """Status of Image Capture and Save Operation: telemetry 233, 2 bytes, table 176.
 
-    Erratum ACP-015: Ids 7, 132, 232 and 233 mean something else in the bootloader.
+    Note ACP-015: Ids 7, 132, 232 and 233 mean something else in the bootloader.
     """
 
     __slots__ = ("percentage_complete", "status")
@@ -42,7 +42,7 @@ class StatusOfImageCaptureAndSaveOperation(_base.Message):
     status: ImSaveStatus
     """Status: bits 8 to 15, 0 to 255.
 
-    Erratum ACP-124: Image status: no value for busy or done.
+    Note ACP-124: Image status: no value for busy or done.
     """
 
     def __init__(

@@ -64,19 +64,19 @@ class TrackingControllerTargetReference(_base.Message):
     geocentric_longitude_of_target: float
     """Geocentric longitude of target: bits 0 to 31, 32-bit float, in deg.
 
-    Erratum ACP-138: Target is geocentric, position is geodetic.
+    Note ACP-138: Target is geocentric, position is geodetic.
     """
     geocentric_latitude_of_target: float
     """Geocentric latitude of target: bits 32 to 63, 32-bit float, in deg.
 
-    Erratum ACP-138: Target is geocentric, position is geodetic.
+    Note ACP-138: Target is geocentric, position is geodetic.
     """
     geocentric_altitude_of_target: float
     """Geocentric altitude of target: bits 64 to 95, 32-bit float, in m.
 
-    Erratum ACP-138: Target is geocentric, position is geodetic.
-
     Erratum ACP-139: meter is m.
+
+    Note ACP-138: Target is geocentric, position is geodetic.
     """
 
     def __init__(

@@ -22,7 +22,7 @@ class TriggerAdcsLoopWithSimulatedSensorData(_base.Message):
     Runs the control loop once on the given measurements. Only valid while ADCS Run Mode
     is Triggered.
 
-    Erratum ACP-032: Simulated data are accepted while triggered, not while simulating.
+    Note ACP-032: Simulated data are accepted while triggered, not while simulating.
     """
 
     __slots__ = (
@@ -228,363 +228,363 @@ class TriggerAdcsLoopWithSimulatedSensorData(_base.Message):
 
     For this iteration.
 
-    Erratum ACP-039: Simulated data: whole seconds only.
+    Note ACP-039: Simulated data: whole seconds only.
     """
     css_raw_1: int
     """Css Raw 1: bits 32 to 47, 0 to 65535.
 
-    Erratum ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
     """
     css_raw_2: int
     """Css Raw 2: bits 48 to 63, 0 to 65535.
 
-    Erratum ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
     """
     css_raw_3: int
     """Css Raw 3: bits 64 to 79, 0 to 65535.
 
-    Erratum ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
     """
     css_raw_4: int
     """Css Raw 4: bits 80 to 95, 0 to 65535.
 
-    Erratum ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
     """
     css_raw_5: int
     """Css Raw 5: bits 96 to 111, 0 to 65535.
 
-    Erratum ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
     """
     css_raw_6: int
     """Css Raw 6: bits 112 to 127, 0 to 65535.
 
-    Erratum ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
     """
     css_raw_7: int
     """Css Raw 7: bits 128 to 143, 0 to 65535.
 
-    Erratum ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
     """
     css_raw_8: int
     """Css Raw 8: bits 144 to 159, 0 to 65535.
 
-    Erratum ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
     """
     css_raw_9: int
     """Css Raw 9: bits 160 to 175, 0 to 65535.
 
-    Erratum ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
     """
     css_raw_10: int
     """Css Raw 10: bits 176 to 191, 0 to 65535.
 
-    Erratum ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
+    Note ACP-033: Simulated data: sun sensors have 16 bits, measured ones 8.
     """
     cam1_raw_x: int
     """Cam1 Raw X: bits 192 to 207, -32768 to 32767.
 
     Raw angle.
 
-    Erratum ACP-036: Simulated data: raw camera angles.
+    Note ACP-036: Simulated data: raw camera angles.
 
-    Erratum ACP-038: Simulated data: Cam1 first, in telemetry Cam2 first.
+    Note ACP-038: Simulated data: Cam1 first, in telemetry Cam2 first.
     """
     cam1_raw_y: int
     """Cam1 Raw Y: bits 208 to 223, -32768 to 32767.
 
     Raw angle.
 
-    Erratum ACP-036: Simulated data: raw camera angles.
+    Note ACP-036: Simulated data: raw camera angles.
     """
     cam1_busy: int
     """Cam1 Busy: bits 224 to 231, 0 to 255.
 
     Capture status.
 
-    Erratum ACP-035: Simulated data: camera results are plain numbers.
+    Note ACP-035: Simulated data: camera results are plain numbers.
     """
     cam1_result: int
     """Cam1 Result: bits 232 to 239, 0 to 255.
 
     Detection result.
 
-    Erratum ACP-035: Simulated data: camera results are plain numbers.
+    Note ACP-035: Simulated data: camera results are plain numbers.
     """
     cam2_raw_x: int
     """Cam2 Raw X: bits 240 to 255, -32768 to 32767.
 
     Raw angle.
 
-    Erratum ACP-036: Simulated data: raw camera angles.
+    Note ACP-036: Simulated data: raw camera angles.
 
-    Erratum ACP-038: Simulated data: Cam1 first, in telemetry Cam2 first.
+    Note ACP-038: Simulated data: Cam1 first, in telemetry Cam2 first.
     """
     cam2_raw_y: int
     """Cam2 Raw Y: bits 256 to 271, -32768 to 32767.
 
     Raw angle.
 
-    Erratum ACP-036: Simulated data: raw camera angles.
+    Note ACP-036: Simulated data: raw camera angles.
     """
     cam2_busy: int
     """Cam2 Busy: bits 272 to 279, 0 to 255.
 
     Capture status.
 
-    Erratum ACP-035: Simulated data: camera results are plain numbers.
+    Note ACP-035: Simulated data: camera results are plain numbers.
     """
     cam2_result: int
     """Cam2 Result: bits 280 to 287, 0 to 255.
 
     Detection result.
 
-    Erratum ACP-035: Simulated data: camera results are plain numbers.
+    Note ACP-035: Simulated data: camera results are plain numbers.
     """
     mag_raw_x: int
     """Mag Raw X: bits 288 to 303, -32768 to 32767.
 
-    Erratum ACP-041: Simulated data: the second magnetometer is missing.
+    Note ACP-041: Simulated data: the second magnetometer is missing.
     """
     mag_raw_y: int
     """Mag Raw Y: bits 304 to 319, -32768 to 32767.
 
-    Erratum ACP-041: Simulated data: the second magnetometer is missing.
+    Note ACP-041: Simulated data: the second magnetometer is missing.
     """
     mag_raw_z: int
     """Mag Raw Z: bits 320 to 335, -32768 to 32767.
 
-    Erratum ACP-041: Simulated data: the second magnetometer is missing.
+    Note ACP-041: Simulated data: the second magnetometer is missing.
     """
     rate_raw_x: int
     """Rate Raw X: bits 336 to 367, -2147483648 to 2147483647.
 
-    Erratum ACP-034: Simulated data: rates have 32 bits, measured ones 16.
+    Note ACP-034: Simulated data: rates have 32 bits, measured ones 16.
     """
     rate_raw_y: int
     """Rate Raw Y: bits 368 to 399, -2147483648 to 2147483647.
 
-    Erratum ACP-034: Simulated data: rates have 32 bits, measured ones 16.
+    Note ACP-034: Simulated data: rates have 32 bits, measured ones 16.
     """
     rate_raw_z: int
     """Rate Raw Z: bits 400 to 431, -2147483648 to 2147483647.
 
-    Erratum ACP-034: Simulated data: rates have 32 bits, measured ones 16.
+    Note ACP-034: Simulated data: rates have 32 bits, measured ones 16.
     """
     wheel_raw_x: int
     """Wheel Raw X: bits 432 to 447, -32768 to 32767, in rpm.
 
-    Erratum ACP-040: Simulated data: raw wheel speeds in rpm.
+    Note ACP-040: Simulated data: raw wheel speeds in rpm.
     """
     wheel_raw_y: int
     """Wheel Raw Y: bits 448 to 463, -32768 to 32767, in rpm.
 
-    Erratum ACP-040: Simulated data: raw wheel speeds in rpm.
+    Note ACP-040: Simulated data: raw wheel speeds in rpm.
     """
     wheel_raw_z: int
     """Wheel Raw Z: bits 464 to 479, -32768 to 32767, in rpm.
 
-    Erratum ACP-040: Simulated data: raw wheel speeds in rpm.
+    Note ACP-040: Simulated data: raw wheel speeds in rpm.
     """
     star1_camera_x: int
     """Star1CameraX: bits 480 to 495, -32768 to 32767.
 
     Vector in the camera frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star1_camera_y: int
     """Star1CameraY: bits 496 to 511, -32768 to 32767.
 
     Vector in the camera frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star1_camera_z: int
     """Star1CameraZ: bits 512 to 527, -32768 to 32767.
 
     Vector in the camera frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star1_inertial_x: int
     """Star1InertialX: bits 528 to 543, -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star1_inertial_y: int
     """Star1InertialY: bits 544 to 559, -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star1_inertial_z: int
     """Star1InertialZ: bits 560 to 575, -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star2_camera_x: int
     """Star2CameraX: bits 576 to 591, -32768 to 32767.
 
     Vector in the camera frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star2_camera_y: int
     """Star2CameraY: bits 592 to 607, -32768 to 32767.
 
     Vector in the camera frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star2_camera_z: int
     """Star2CameraZ: bits 608 to 623, -32768 to 32767.
 
     Vector in the camera frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star2_inertial_x: int
     """Star2InertialX: bits 624 to 639, -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star2_inertial_y: int
     """Star2InertialY: bits 640 to 655, -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star2_inertial_z: int
     """Star2InertialZ: bits 656 to 671, -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star3_camera_x: int
     """Star3CameraX: bits 672 to 687, -32768 to 32767.
 
     Vector in the camera frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star3_camera_y: int
     """Star3CameraY: bits 688 to 703, -32768 to 32767.
 
     Vector in the camera frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star3_camera_z: int
     """Star3CameraZ: bits 704 to 719, -32768 to 32767.
 
     Vector in the camera frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star3_inertial_x: int
     """Star3InertialX: bits 720 to 735, -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star3_inertial_y: int
     """Star3InertialY: bits 736 to 751, -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     star3_inertial_z: int
     """Star3InertialZ: bits 752 to 767, -32768 to 32767.
 
     Vector in the inertial frame.
 
-    Erratum ACP-037: Simulated data: star vectors without a formula, in other frames.
+    Note ACP-037: Simulated data: star vectors without a formula, in other frames.
     """
     gps_solution_status: GpsSolutionStatus
     """Gps Solution Status: bits 768 to 775, 0 to 255.
 
-    Erratum ACP-042: GPS is spelt Gps in one field.
+    Note ACP-042: GPS is spelt Gps in one field.
     """
     gps_reference_week: int
     """GPS Reference Week: bits 776 to 791, 0 to 65535.
 
-    Erratum ACP-089: GPS week: with or without roll-overs.
+    Note ACP-089: GPS week: with or without roll-overs.
     """
     gps_time_milliseconds: int
     """GPS Time Milliseconds: bits 792 to 823, 0 to 4294967295, in ms."""
     ecef_position_x: int
     """ECEF Position X: bits 824 to 855, -2147483648 to 2147483647, in m.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
     ecef_velocity_x: int
     """ECEF Velocity X: bits 856 to 871, -32768 to 32767, in m/s.
 
-    Erratum ACP-044: GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044: GPS velocity: 16 bits of whole metres a second.
     """
     ecef_position_y: int
     """ECEF Position Y: bits 872 to 903, -2147483648 to 2147483647, in m.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
     ecef_velocity_y: int
     """ECEF Velocity Y: bits 904 to 919, -32768 to 32767, in m/s.
 
-    Erratum ACP-044: GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044: GPS velocity: 16 bits of whole metres a second.
     """
     ecef_position_z: int
     """ECEF Position Z: bits 920 to 951, -2147483648 to 2147483647, in m.
 
-    Erratum ACP-099: ECEF position: one name, two widths.
+    Note ACP-099: ECEF position: one name, two widths.
     """
     ecef_velocity_z: int
     """ECEF Velocity Z: bits 952 to 967, -32768 to 32767, in m/s.
 
-    Erratum ACP-044: GPS velocity: 16 bits of whole metres a second.
+    Note ACP-044: GPS velocity: 16 bits of whole metres a second.
     """
     x_pos_standard_deviation: int
     """X-pos Standard Deviation: bits 968 to 975, 0 to 255; see
     `x_pos_standard_deviation_m`.
 
-    Erratum ACP-030: Formulas are written in two directions.
+    Note ACP-030: Formulas are written in two directions.
     """
     y_pos_standard_deviation: int
     """Y-pos Standard Deviation: bits 976 to 983, 0 to 255; see
     `y_pos_standard_deviation_m`.
 
-    Erratum ACP-030: Formulas are written in two directions.
+    Note ACP-030: Formulas are written in two directions.
     """
     z_pos_standard_deviation: int
     """Z-pos Standard Deviation: bits 984 to 991, 0 to 255; see
     `z_pos_standard_deviation_m`.
 
-    Erratum ACP-030: Formulas are written in two directions.
+    Note ACP-030: Formulas are written in two directions.
     """
     x_vel_standard_deviation: int
     """X-vel Standard Deviation: bits 992 to 999, 0 to 255, in m/s.
 
-    Erratum ACP-043: Velocity deviations: 8 bits of whole metres a second.
+    Note ACP-043: Velocity deviations: 8 bits of whole metres a second.
     """
     y_vel_standard_deviation: int
     """Y-vel Standard Deviation: bits 1000 to 1007, 0 to 255, in m/s.
 
-    Erratum ACP-043: Velocity deviations: 8 bits of whole metres a second.
+    Note ACP-043: Velocity deviations: 8 bits of whole metres a second.
     """
     z_vel_standard_deviation: int
     """Z-vel Standard Deviation: bits 1008 to 1015, 0 to 255, in m/s.
 
-    Erratum ACP-043: Velocity deviations: 8 bits of whole metres a second.
+    Note ACP-043: Velocity deviations: 8 bits of whole metres a second.
     """
 
     def __init__(

@@ -48,14 +48,14 @@ class UartLogConfiguration(_base.Message):
 
     Mask of up to 80 telemetry frames.
 
-    Erratum ACP-184: Log selection: up to 80 flags, 63 of them assigned.
+    Note ACP-184: Log selection: up to 80 flags, 63 of them assigned.
     """
     log_period: int
     """Log Period: bits 80 to 95, 0 to 65535.
 
     0: logging disabled.
 
-    Erratum ACP-183: Log period has no unit.
+    Note ACP-183: Log period has no unit.
     """
 
     def __init__(

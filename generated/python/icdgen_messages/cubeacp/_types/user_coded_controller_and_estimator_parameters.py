@@ -51,12 +51,12 @@ class UserCodedControllerAndEstimatorParameters(_base.Message):
     user_coded_controller_settings: bytes
     """User Coded Controller Settings: bits 0 to 383.
 
-    Erratum ACP-178: User coded settings: content of the arrays.
+    Note ACP-178: User coded settings: content of the arrays.
     """
     user_coded_estimator_settings: bytes
     """User Coded Estimator Settings: bits 384 to 767.
 
-    Erratum ACP-178: User coded settings: content of the arrays.
+    Note ACP-178: User coded settings: content of the arrays.
     """
 
     def __init__(

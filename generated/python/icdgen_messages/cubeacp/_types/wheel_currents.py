@@ -64,23 +64,23 @@ class WheelCurrents(_base.Message):
     wheel1_current: int
     """Wheel1Current: bits 0 to 15, 0 to 65535; see `wheel1_current_ma`.
 
-    Erratum ACP-083: Wheel currents: by number, described by axis.
+    Note ACP-083: Wheel currents: by number, described by axis.
 
-    Erratum ACP-084: Wheel and star tracker currents end at 655 mA.
+    Note ACP-084: Wheel and star tracker currents end at 655 mA.
     """
     wheel2_current: int
     """Wheel2Current: bits 16 to 31, 0 to 65535; see `wheel2_current_ma`.
 
-    Erratum ACP-083: Wheel currents: by number, described by axis.
+    Note ACP-083: Wheel currents: by number, described by axis.
 
-    Erratum ACP-084: Wheel and star tracker currents end at 655 mA.
+    Note ACP-084: Wheel and star tracker currents end at 655 mA.
     """
     wheel3_current: int
     """Wheel3Current: bits 32 to 47, 0 to 65535; see `wheel3_current_ma`.
 
-    Erratum ACP-083: Wheel currents: by number, described by axis.
+    Note ACP-083: Wheel currents: by number, described by axis.
 
-    Erratum ACP-084: Wheel and star tracker currents end at 655 mA.
+    Note ACP-084: Wheel and star tracker currents end at 655 mA.
     """
 
     def __init__(

@@ -59,17 +59,17 @@ class WheelSpeedCommands(_base.Message):
     commanded_x_wheel_speed: int
     """Commanded X Wheel Speed: bits 0 to 15, -32768 to 32767, in rpm.
 
-    Erratum ACP-072: Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072: Commanded wheel speeds are described as wheel speeds.
     """
     commanded_y_wheel_speed: int
     """Commanded Y Wheel Speed: bits 16 to 31, -32768 to 32767, in rpm.
 
-    Erratum ACP-072: Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072: Commanded wheel speeds are described as wheel speeds.
     """
     commanded_z_wheel_speed: int
     """Commanded Z Wheel Speed: bits 32 to 47, -32768 to 32767, in rpm.
 
-    Erratum ACP-072: Commanded wheel speeds are described as wheel speeds.
+    Note ACP-072: Commanded wheel speeds are described as wheel speeds.
     """
 
     def __init__(

@@ -22,12 +22,11 @@ class DeploymentStatus(_base.Message):
 
     Only for the CubeMag of type Deploy.
 
-    Erratum MAG-005: Ids 188, 190, 193 and 197 are other frames elsewhere.
+    Note MAG-005: Ids 188, 190, 193 and 197 are other frames elsewhere.
 
-    Erratum MAG-011: Deployment Status: how to tell the type, and what other types
-    answer.
+    Note MAG-011: Deployment Status: how to tell the type, and what other types answer.
 
-    Erratum MAG-015: Deployment Status and measurements end in unexplained bits.
+    Note MAG-015: Deployment Status and measurements end in unexplained bits.
     """
 
     __slots__ = (
@@ -60,42 +59,42 @@ class DeploymentStatus(_base.Message):
 
     Through the burn wire.
 
-    Erratum MAG-012: Burn Current: 32 bits of whole milliamperes.
+    Note MAG-012: Burn Current: 32 bits of whole milliamperes.
     """
     deployment_pin_state: bool
     """Deployment Pin State: bit 32.
 
     Pin that detects the deployment.
 
-    Erratum MAG-013: Polarity of the deployment pins is not given.
+    Note MAG-013: Polarity of the deployment pins is not given.
     """
     burn_pin_state: bool
     """Burn Pin State: bit 33.
 
     Pin that enables the burn wire.
 
-    Erratum MAG-013: Polarity of the deployment pins is not given.
+    Note MAG-013: Polarity of the deployment pins is not given.
     """
     burn_under_current: bool
     """Burn UnderCurrent: bit 34.
 
     Too little current through the burn wire.
 
-    Erratum MAG-014: Limits of the burn current and the configured time-out.
+    Note MAG-014: Limits of the burn current and the configured time-out.
     """
     burn_over_current: bool
     """Burn OverCurrent: bit 35.
 
     Too much current through the burn wire.
 
-    Erratum MAG-014: Limits of the burn current and the configured time-out.
+    Note MAG-014: Limits of the burn current and the configured time-out.
     """
     deployment_timeout: bool
     """Deployment Timeout: bit 36.
 
     No deployment was detected within the configured time.
 
-    Erratum MAG-014: Limits of the burn current and the configured time-out.
+    Note MAG-014: Limits of the burn current and the configured time-out.
     """
 
     def __init__(

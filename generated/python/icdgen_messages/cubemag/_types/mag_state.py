@@ -11,7 +11,7 @@ class MagState(_enumeration.OpenEnum):
 
     State of the CubeMag service.
 
-    Erratum MAG-008: MagState has no deployed state.
+    Note MAG-008: MagState has no deployed state.
     """
 
     DEPLOY_ARM = 0, "Deploy Arm"

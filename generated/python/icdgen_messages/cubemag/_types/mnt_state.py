@@ -11,7 +11,7 @@ class MntState(_enumeration.OpenEnum):
 
     State of a magnetometer service.
 
-    Erratum MAG-009: MntState: Mnt is not explained.
+    Note MAG-009: MntState: Mnt is not explained.
     """
 
     OFF = 0, "Off"
@@ -20,8 +20,8 @@ class MntState(_enumeration.OpenEnum):
     AUTO = 3, "Auto"
     """Sampling automatically.
 
-    Erratum MAG-010: MntState: Auto and Sample.
+    Note MAG-010: MntState: Auto and Sample.
     """
     SAMPLE = 4, "Sample"
-    """Erratum MAG-010: MntState: Auto and Sample."""
+    """Note MAG-010: MntState: Auto and Sample."""
     ERROR = 5, "Error"

@@ -18,9 +18,9 @@ _BYTES_0 = _codec.Inverse(_BITS_0)
 class PrimaryMagnetometerMeasurement(_base.Message):
     """Primary Magnetometer Measurement: telemetry 197, 13 bytes, table 68.
 
-    Erratum MAG-005: Ids 188, 190, 193 and 197 are other frames elsewhere.
+    Note MAG-005: Ids 188, 190, 193 and 197 are other frames elsewhere.
 
-    Erratum MAG-015: Deployment Status and measurements end in unexplained bits.
+    Note MAG-015: Deployment Status and measurements end in unexplained bits.
     """
 
     __slots__ = ("x_axis", "y_axis", "z_axis", "data_valid")
@@ -42,34 +42,34 @@ class PrimaryMagnetometerMeasurement(_base.Message):
     x_axis: float
     """X_axis: bits 0 to 31, 32-bit float, in nT.
 
-    Erratum MAG-016: FLOAT is not defined.
+    Note MAG-016: FLOAT is not defined.
 
-    Erratum MAG-017: Axes of the measurements are not defined.
+    Note MAG-017: Axes of the measurements are not defined.
 
-    Erratum MAG-018: nT here, uT there.
+    Note MAG-018: nT here, uT there.
     """
     y_axis: float
     """Y_axis: bits 32 to 63, 32-bit float, in nT.
 
-    Erratum MAG-016: FLOAT is not defined.
+    Note MAG-016: FLOAT is not defined.
 
-    Erratum MAG-017: Axes of the measurements are not defined.
+    Note MAG-017: Axes of the measurements are not defined.
 
-    Erratum MAG-018: nT here, uT there.
+    Note MAG-018: nT here, uT there.
     """
     z_axis: float
     """Z_axis: bits 64 to 95, 32-bit float, in nT.
 
-    Erratum MAG-016: FLOAT is not defined.
+    Note MAG-016: FLOAT is not defined.
 
-    Erratum MAG-017: Axes of the measurements are not defined.
+    Note MAG-017: Axes of the measurements are not defined.
 
-    Erratum MAG-018: nT here, uT there.
+    Note MAG-018: nT here, uT there.
     """
     data_valid: bool
     """Data Valid: bit 96.
 
-    Erratum MAG-019: Measurements carry no time.
+    Note MAG-019: Measurements carry no time.
     """
 
     def __init__(

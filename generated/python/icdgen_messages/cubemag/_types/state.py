@@ -22,11 +22,11 @@ class State(_base.Message):
 
     States of all services.
 
-    Erratum MAG-004: Number 57 is used twice in the addendum.
+    Note MAG-004: Number 57 is used twice in the addendum.
 
-    Erratum MAG-005: Ids 188, 190, 193 and 197 are other frames elsewhere.
+    Note MAG-005: Ids 188, 190, 193 and 197 are other frames elsewhere.
 
-    Erratum MAG-006: State is described as all service states.
+    Note MAG-006: State is described as all service states.
     """
 
     __slots__ = ("mag_svc_state", "primary_mag_state", "red_mag_state")
@@ -51,21 +51,21 @@ class State(_base.Message):
 
     Of the CubeMag service.
 
-    Erratum MAG-007: State: names are cut short in three ways.
+    Note MAG-007: State: names are cut short in three ways.
     """
     primary_mag_state: MntState
     """Primary Mag State: bits 8 to 15, 0 to 255.
 
     Of the primary magnetometer.
 
-    Erratum MAG-007: State: names are cut short in three ways.
+    Note MAG-007: State: names are cut short in three ways.
     """
     red_mag_state: MntState
     """Red Mag State: bits 16 to 23, 0 to 255.
 
     Of the redundant magnetometer.
 
-    Erratum MAG-007: State: names are cut short in three ways.
+    Note MAG-007: State: names are cut short in three ways.
     """
 
     def __init__(

@@ -20,13 +20,13 @@ class MotorPower(_base.Message):
 
     Whether the motor is switched on.
 
-    Erratum WHL-005: Table numbers collide with those of the manual and of CubeMag.
+    Note WHL-005: Table numbers collide with those of the manual and of CubeMag.
 
-    Erratum WHL-006: Ids 188, 196 and 197 are other frames elsewhere.
+    Note WHL-006: Ids 188, 196 and 197 are other frames elsewhere.
 
-    Erratum WHL-015: Motor Power is described as a telecommand, with a doubled word.
+    Note WHL-015: Motor Power is described as a telecommand, with a doubled word.
 
-    Erratum WHL-016: Motor Power: seven bits are not described.
+    Note WHL-016: Motor Power: seven bits are not described.
     """
 
     __slots__ = ("motor_power_switch",)
@@ -45,7 +45,7 @@ class MotorPower(_base.Message):
     motor_power_switch: bool
     """Motor Power Switch: bit 0.
 
-    Erratum WHL-015: Motor Power is described as a telecommand, with a doubled word.
+    Note WHL-015: Motor Power is described as a telecommand, with a doubled word.
     """
 
     def __init__(self, *, motor_power_switch: bool = False) -> None:

@@ -16,5 +16,5 @@ class WheelErrorState(_enumeration.OpenEnum):
     SPEED_NOT_REACHED_TIMEOUT = 3, "Speed Not Reached Timeout"
     """The speed asked for was not reached in time.
 
-    Erratum WHL-011: Speed Not Reached Timeout: the time allowed is not given.
+    Note WHL-011: Speed Not Reached Timeout: the time allowed is not given.
     """

@@ -18,13 +18,13 @@ class WheelReferenceSpeed(_base.Message):
 
     Speed that the momentum wheel is set to.
 
-    Erratum WHL-005: Table numbers collide with those of the manual and of CubeMag.
+    Note WHL-005: Table numbers collide with those of the manual and of CubeMag.
 
-    Erratum WHL-006: Ids 188, 196 and 197 are other frames elsewhere.
+    Note WHL-006: Ids 188, 196 and 197 are other frames elsewhere.
 
-    Erratum WHL-012: Wheel Reference Speed is described as a telecommand.
+    Note WHL-012: Wheel Reference Speed is described as a telecommand.
 
-    Erratum WHL-013: Momentum wheel in one place, wheel in the others.
+    Note WHL-013: Momentum wheel in one place, wheel in the others.
     """
 
     __slots__ = ("reference_speed",)
@@ -47,9 +47,9 @@ class WheelReferenceSpeed(_base.Message):
 
     Erratum WHL-007: RPM is rpm.
 
-    Erratum WHL-009: FLOAT is not defined.
+    Note WHL-009: FLOAT is not defined.
 
-    Erratum WHL-014: Reference speed and reference torque: which one is in force.
+    Note WHL-014: Reference speed and reference torque: which one is in force.
     """
 
     def __init__(self, *, reference_speed: float = 0.0) -> None:

@@ -18,9 +18,9 @@ _BITS_0 = _codec.bit_table((0, 8, WheelErrorState))
 class WheelSpeed(_base.Message):
     """Wheel Speed: telemetry 188, 5 bytes, table 47.
 
-    Erratum WHL-005: Table numbers collide with those of the manual and of CubeMag.
+    Note WHL-005: Table numbers collide with those of the manual and of CubeMag.
 
-    Erratum WHL-006: Ids 188, 196 and 197 are other frames elsewhere.
+    Note WHL-006: Ids 188, 196 and 197 are other frames elsewhere.
     """
 
     __slots__ = ("wheel_speed", "wheel_error_state")
@@ -49,14 +49,14 @@ class WheelSpeed(_base.Message):
 
     Erratum WHL-007: RPM is rpm.
 
-    Erratum WHL-008: Wheel speed: float here, integer in the control program.
+    Note WHL-008: Wheel speed: float here, integer in the control program.
 
-    Erratum WHL-009: FLOAT is not defined.
+    Note WHL-009: FLOAT is not defined.
     """
     wheel_error_state: WheelErrorState
     """Wheel Error State: bits 32 to 39, 0 to 255.
 
-    Erratum WHL-010: Wheel Error State: data that are valid are an error state.
+    Note WHL-010: Wheel Error State: data that are valid are an error state.
     """
 
     def __init__(

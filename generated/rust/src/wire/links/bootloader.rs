@@ -5,8 +5,8 @@
 #[rustfmt::skip]
 use crate::wire::link::{
     Acknowledge, Can, CanPart, CanTypes, CrcForm, DownloadForm, ErasureForm, Extended, Files, Form,
-    Framing, HoleMapForm, Ids, IndexForm, Link, ListForm, MapMessage, PerBus, Piece, Polled, Reason,
-    Role, Settings, Span, Step, TimeForm, TimePart, UploadForm,
+    Framing, HoleMapForm, Ids, IndexForm, Link, ListForm, MapMessage, OperationForm, PerBus, Piece,
+    Polled, Reason, Role, Settings, Span, Step, TimeForm, TimePart, UploadForm,
 };
 
 /// Bytes that buffers need for the longest message of either direction, with its id and checksum.
@@ -25,6 +25,10 @@ pub const LONGEST: usize = 28;
 #[rustfmt::skip]
 pub static LINK: Link = Link {
     node: "bootloader",
+    nodes: &[
+        "bootloader",
+        "common",
+    ],
     node_type: Some(110),
     interface_version: Some(3),
     longest: 23,
@@ -119,8 +123,9 @@ pub static LINK: Link = Link {
         start: 0x7f,
         end: 0xff,
         escaped: 0x1f,
-        // Assumed. That the id is escaped like the data is not said. It matters for telecommand 31
-        // only, and for the id in its acknowledge.
+        // Assumed. By Table 4 an escape byte is followed by one of three bytes, wherever it stands;
+        // so an id of 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in
+        // its acknowledge.
         escapes_id: true,
         ignores_other: false,
     }),
@@ -391,6 +396,16 @@ pub static LINK: Link = Link {
             finalize_timeout_ms: 5_000,
             // Assumed. Nothing is said about giving up.
             rounds: 32,
+            destination_bytes: Some(524_288),
+            destinations: &[
+                3,
+                4,
+                5,
+                6,
+                7,
+                8,
+                9,
+            ],
         }),
         erase: Some(ErasureForm {
             request: Step {
@@ -436,6 +451,66 @@ pub static LINK: Link = Link {
             // Assumed. No time is given.
             timeout_ms: 60_000,
         }),
+    }),
+    program_copy: Some(OperationForm {
+        request: Step {
+            id: 103,
+            fresh: &[0, 0],
+            places: &[
+                (Role::Program, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+            ],
+            payload: None,
+        },
+        progress: Step {
+            id: 233,
+            fresh: &[0],
+            places: &[
+                (Role::Busy, &[Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
+                (Role::Error, &[Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
+            ],
+            payload: None,
+        },
+        // Assumed. No time is given.
+        poll_interval_ms: 50,
+        // Assumed. No time is given. The same area is erased as for an upload, which takes up to 8
+        // s, and then written.
+        timeout_ms: 10_000,
+        // Assumed. A copy is described from external flash only. What the other programs of the
+        // enumeration would do is not said.
+        programs: &[
+            3,
+            4,
+            5,
+            6,
+            7,
+            8,
+            9,
+        ],
+    }),
+    program_information: Some(OperationForm {
+        request: Step {
+            id: 102,
+            fresh: &[0],
+            places: &[
+                (Role::Program, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+            ],
+            payload: None,
+        },
+        progress: Step {
+            id: 232,
+            fresh: &[0, 0, 0, 0, 0, 0, 0, 0],
+            places: &[
+                (Role::Program, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+                (Role::Busy, &[Piece { byte: 1, shift: 0, bits: 1, at: 0 }]),
+                (Role::Size, &[Piece { byte: 2, shift: 0, bits: 8, at: 0 }, Piece { byte: 3, shift: 0, bits: 8, at: 8 }, Piece { byte: 4, shift: 0, bits: 8, at: 16 }, Piece { byte: 5, shift: 0, bits: 8, at: 24 }]),
+                (Role::Checksum, &[Piece { byte: 6, shift: 0, bits: 8, at: 0 }, Piece { byte: 7, shift: 0, bits: 8, at: 8 }]),
+            ],
+            payload: None,
+        },
+        // Assumed. No time is given.
+        poll_interval_ms: 50,
+        timeout_ms: 2_000,
+        programs: &[],
     }),
     identification: Some(Step {
         id: 128,

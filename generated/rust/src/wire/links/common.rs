@@ -6,13 +6,25 @@
 use crate::wire::link::{
     Acknowledge, Can, CanPart, CanTypes, CrcForm, DownloadForm, ErasureForm, Extended, Files, Form,
     Framing, HoleMapForm, Ids, IndexForm, Link, ListForm, MapMessage, PerBus, Piece, Polled, Reason,
-    Role, Settings, Span, Step, TimeForm, TimePart, UploadForm,
+    Role, Settings, Span, Step, TimeForm, TimePart,
 };
 
 /// Bytes that buffers need for the longest message of either direction, with its id and checksum.
 pub const LONGEST: usize = 28;
 
 /// The protocol of node `common`. What the manual leaves open is marked as assumed.
+///
+/// Assumed (`file_transfer.upload`, `poll_interval_ms`): No time is given.
+///
+/// Assumed (`file_transfer.upload`, `rounds`): Nothing is said about giving up.
+///
+/// Assumed (`file_transfer.upload`, `checksum_covers_fill`): Not said. The node learns the length
+/// of the block only when the block is committed, after the checksum.
+///
+/// Assumed (`file_transfer.upload`, `finalize`): The procedure ends with the checksum and does not
+/// name the telecommand that commits the block.
+///
+/// Assumed (`file_transfer.upload`, `finalize_timeout_ms`): No time is given.
 ///
 /// Assumed (`boot`, `attempts`): One attempt and two more are announced. But the status is raised
 /// before each start, so it reads 3 Failed boot attempts before the third, and at that value no
@@ -23,6 +35,9 @@ pub const LONGEST: usize = 28;
 #[rustfmt::skip]
 pub static LINK: Link = Link {
     node: "common",
+    nodes: &[
+        "common",
+    ],
     node_type: None,
     interface_version: None,
     longest: 23,
@@ -109,8 +124,9 @@ pub static LINK: Link = Link {
         start: 0x7f,
         end: 0xff,
         escaped: 0x1f,
-        // Assumed. That the id is escaped like the data is not said. It matters for telecommand 31
-        // only, and for the id in its acknowledge.
+        // Assumed. By Table 4 an escape byte is followed by one of three bytes, wherever it stands;
+        // so an id of 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in
+        // its acknowledge.
         escapes_id: true,
         ignores_other: false,
     }),
@@ -309,79 +325,7 @@ pub static LINK: Link = Link {
             // Assumed. Nothing is said about giving up.
             rounds: 32,
         }),
-        upload: Some(UploadForm {
-            initiate: Step {
-                id: 114,
-                fresh: &[0, 0],
-                places: &[
-                    (Role::Destination, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (Role::BlockSize, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
-                ],
-                payload: None,
-            },
-            initiated: Step {
-                id: 244,
-                fresh: &[0],
-                places: &[
-                    (Role::Busy, &[Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
-                ],
-                payload: None,
-            },
-            begin: Step {
-                id: 117,
-                fresh: &[],
-                places: &[],
-                payload: None,
-            },
-            packet: Step {
-                id: 115,
-                fresh: &[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
-                places: &[
-                    (Role::Number, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }, Piece { byte: 1, shift: 0, bits: 8, at: 8 }]),
-                ],
-                payload: Some(Span { at: 2, bytes: 20 }),
-            },
-            checksum: Step {
-                id: 246,
-                fresh: &[0, 0],
-                places: &[
-                    (Role::Checksum, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }, Piece { byte: 1, shift: 0, bits: 8, at: 8 }]),
-                ],
-                payload: None,
-            },
-            // Assumed. The procedure ends with the checksum and does not name the telecommand that
-            // commits the block.
-            finalize: Step {
-                id: 116,
-                fresh: &[0, 0, 0, 0, 0, 0, 0],
-                places: &[
-                    (Role::Destination, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (Role::Offset, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }, Piece { byte: 2, shift: 0, bits: 8, at: 8 }, Piece { byte: 3, shift: 0, bits: 8, at: 16 }, Piece { byte: 4, shift: 0, bits: 8, at: 24 }]),
-                    (Role::Length, &[Piece { byte: 5, shift: 0, bits: 8, at: 0 }, Piece { byte: 6, shift: 0, bits: 8, at: 8 }]),
-                ],
-                payload: None,
-            },
-            finalized: Step {
-                id: 245,
-                fresh: &[0],
-                places: &[
-                    (Role::Busy, &[Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
-                    (Role::Error, &[Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
-                ],
-                payload: None,
-            },
-            block_size: 0,
-            // Assumed. Not said. The node learns the length of the block only when the block is
-            // committed, after the checksum.
-            checksum_covers_fill: true,
-            // Assumed. No time is given.
-            poll_interval_ms: 50,
-            erase_timeout_ms: 8_000,
-            // Assumed. No time is given.
-            finalize_timeout_ms: 5_000,
-            // Assumed. Nothing is said about giving up.
-            rounds: 32,
-        }),
+        upload: None,
         erase: Some(ErasureForm {
             request: Step {
                 id: 108,
@@ -427,6 +371,8 @@ pub static LINK: Link = Link {
             timeout_ms: 60_000,
         }),
     }),
+    program_copy: None,
+    program_information: None,
     identification: Some(Step {
         id: 128,
         fresh: &[0, 0, 0, 0, 0, 0, 0, 0],

@@ -7,13 +7,25 @@ use crate::wire::link::{
     Acknowledge, Can, CanPart, CanTypes, Checksum, CrcForm, DownloadForm, ErasureForm, Extended,
     Files, Form, Framing, HoleMapForm, Ids, IndexForm, Link, ListForm, LogBit, LogFile, LogMask,
     LogMessage, MapMessage, PerBus, Piece, Polled, Reason, Role, Settings, Span, Step, TimeForm,
-    TimePart, UploadForm,
+    TimePart,
 };
 
 /// Bytes that buffers need for the longest message of either direction, with its id and checksum.
 pub const LONGEST: usize = 506;
 
 /// The protocol of node `cubeacp`. What the manual leaves open is marked as assumed.
+///
+/// Assumed (`file_transfer.upload`, `poll_interval_ms`): No time is given.
+///
+/// Assumed (`file_transfer.upload`, `rounds`): Nothing is said about giving up.
+///
+/// Assumed (`file_transfer.upload`, `checksum_covers_fill`): Not said. The node learns the length
+/// of the block only when the block is committed, after the checksum.
+///
+/// Assumed (`file_transfer.upload`, `finalize`): The procedure ends with the checksum and does not
+/// name the telecommand that commits the block.
+///
+/// Assumed (`file_transfer.upload`, `finalize_timeout_ms`): No time is given.
 ///
 /// Assumed (`boot`, `attempts`): One attempt and two more are announced. But the status is raised
 /// before each start, so it reads 3 Failed boot attempts before the third, and at that value no
@@ -27,6 +39,10 @@ pub const LONGEST: usize = 506;
 #[rustfmt::skip]
 pub static LINK: Link = Link {
     node: "cubeacp",
+    nodes: &[
+        "cubeacp",
+        "common",
+    ],
     node_type: Some(10),
     interface_version: Some(7),
     longest: 506,
@@ -254,8 +270,9 @@ pub static LINK: Link = Link {
         start: 0x7f,
         end: 0xff,
         escaped: 0x1f,
-        // Assumed. That the id is escaped like the data is not said. It matters for telecommand 31
-        // only, and for the id in its acknowledge.
+        // Assumed. By Table 4 an escape byte is followed by one of three bytes, wherever it stands;
+        // so an id of 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in
+        // its acknowledge.
         escapes_id: true,
         ignores_other: false,
     }),
@@ -318,8 +335,9 @@ pub static LINK: Link = Link {
         // Assumed. Whether the id counts among the bytes of a command is not said. The extra byte
         // of a frame can cover the frame only.
         covers_id: false,
-        // Assumed. Checksums on CAN are not sent. In an extended message the receiver could not
-        // tell the checksum from the fill.
+        // Assumed. The checksum is offered for commands in general, CAN included. None is sent
+        // there by choice, for in an extended message the receiver could not tell the checksum from
+        // the fill.
         telecommands: PerBus { uart: true, i2c: true, can: false },
         telemetry: PerBus { uart: false, i2c: true, can: false },
         bytes: 1,
@@ -419,8 +437,8 @@ pub static LINK: Link = Link {
         frames_at: 6,
         file_type: Some(2),
     }),
-    // Assumed. Start, end and escapes of these messages are not described. They are taken to be
-    // those of every other message.
+    // Assumed. Section 5.2 has start, end and escapes for all that goes over the UART, and makes no
+    // exception for these messages.
     log_message: Some(LogMessage { id: 255, mask_at: 1, frames_at: 11 }),
     time: Some(TimeForm {
         year: TimePart { at: 25, bits: 7, factor: 1, offset: 1_980 },
@@ -558,79 +576,7 @@ pub static LINK: Link = Link {
             // Assumed. Nothing is said about giving up.
             rounds: 32,
         }),
-        upload: Some(UploadForm {
-            initiate: Step {
-                id: 114,
-                fresh: &[0, 0],
-                places: &[
-                    (Role::Destination, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (Role::BlockSize, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
-                ],
-                payload: None,
-            },
-            initiated: Step {
-                id: 244,
-                fresh: &[0],
-                places: &[
-                    (Role::Busy, &[Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
-                ],
-                payload: None,
-            },
-            begin: Step {
-                id: 117,
-                fresh: &[],
-                places: &[],
-                payload: None,
-            },
-            packet: Step {
-                id: 115,
-                fresh: &[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
-                places: &[
-                    (Role::Number, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }, Piece { byte: 1, shift: 0, bits: 8, at: 8 }]),
-                ],
-                payload: Some(Span { at: 2, bytes: 20 }),
-            },
-            checksum: Step {
-                id: 246,
-                fresh: &[0, 0],
-                places: &[
-                    (Role::Checksum, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }, Piece { byte: 1, shift: 0, bits: 8, at: 8 }]),
-                ],
-                payload: None,
-            },
-            // Assumed. The procedure ends with the checksum and does not name the telecommand that
-            // commits the block.
-            finalize: Step {
-                id: 116,
-                fresh: &[0, 0, 0, 0, 0, 0, 0],
-                places: &[
-                    (Role::Destination, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (Role::Offset, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }, Piece { byte: 2, shift: 0, bits: 8, at: 8 }, Piece { byte: 3, shift: 0, bits: 8, at: 16 }, Piece { byte: 4, shift: 0, bits: 8, at: 24 }]),
-                    (Role::Length, &[Piece { byte: 5, shift: 0, bits: 8, at: 0 }, Piece { byte: 6, shift: 0, bits: 8, at: 8 }]),
-                ],
-                payload: None,
-            },
-            finalized: Step {
-                id: 245,
-                fresh: &[0],
-                places: &[
-                    (Role::Busy, &[Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
-                    (Role::Error, &[Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
-                ],
-                payload: None,
-            },
-            block_size: 0,
-            // Assumed. Not said. The node learns the length of the block only when the block is
-            // committed, after the checksum.
-            checksum_covers_fill: true,
-            // Assumed. No time is given.
-            poll_interval_ms: 50,
-            erase_timeout_ms: 8_000,
-            // Assumed. No time is given.
-            finalize_timeout_ms: 5_000,
-            // Assumed. Nothing is said about giving up.
-            rounds: 32,
-        }),
+        upload: None,
         erase: Some(ErasureForm {
             request: Step {
                 id: 108,
@@ -676,6 +622,8 @@ pub static LINK: Link = Link {
             timeout_ms: 60_000,
         }),
     }),
+    program_copy: None,
+    program_information: None,
     identification: Some(Step {
         id: 128,
         fresh: &[0, 0, 0, 0, 0, 0, 0, 0],

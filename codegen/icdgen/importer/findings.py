@@ -1,0 +1,33 @@
+"""What each finding of an import means: ``findings.md``, read only when somebody asks."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+_PAGE = Path(__file__).with_name("findings.md")
+_SECTION = re.compile(r"^## (IMP[0-9]{3}): (.+) \((error|warning|note)\)\n", re.MULTILINE)
+
+
+class Page(NamedTuple):
+    """``text`` is the reason, and below it an example as an indented block, in Markdown."""
+
+    title: str
+    severity: str
+    text: str
+
+
+@cache
+def pages() -> dict[str, Page]:
+    """The pages by code, ascending."""
+    _, *parts = _SECTION.split(_PAGE.read_text(encoding="utf-8"))
+    found = zip(parts[0::4], parts[1::4], parts[2::4], parts[3::4], strict=True)
+    return {code: Page(title, severity, text.strip("\n")) for code, title, severity, text in found}
+
+
+def explain(code: str) -> str:
+    """The page of a finding in Markdown. Raises `KeyError`."""
+    page = pages()[code]
+    return f"# {code}: {page.title} ({page.severity})\n\n{page.text}\n"

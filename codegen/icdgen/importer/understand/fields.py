@@ -1,0 +1,252 @@
+"""The rows of a message's table -> its fields."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from icdgen.importer.document import Header, Table, Trouble
+from icdgen.importer.profile import Profile
+from icdgen.importer.understand import bitfields, counting, descriptions, formulas, numbers, types
+from icdgen.importer.understand.counting import Extent, Units
+from icdgen.importer.understand.model import ReadField
+from icdgen.importer.understand.rows import Entry, entries
+from icdgen.importer.understand.types import Type
+from icdgen.importer.words import grows, number, tidy_unit
+
+MOST_BITS = 64  # of a number
+_NONE = ("", "-", "–", "n/a", "na", "none")
+_SCALED_UNIT = re.compile(r"(?P<factor>[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[^0-9\s].*)?\Z")
+
+
+@dataclass(slots=True)
+class Line:
+    """A row on its way to a field. ``at`` and ``width`` are as printed, ``units`` what their cells say they count."""
+
+    entry: Entry
+    where: str
+    type: Type | None
+    at: int | None = None
+    width: int | None = None
+    units: tuple[int, int] = (0, 0)
+
+    @property
+    def extent(self) -> Extent:
+        kind = self.type.kind if self.type else ""
+        return Extent(self.at, self.width, self.type.bits * self.type.count if self.type else 0, kind, *self.units)
+
+
+class Unreadable(Exception):
+    """The table has fields, and something makes all of them doubtful; the finding was given."""
+
+
+def read(table: Table, profile: Profile, length: int | None, troubles: list[Trouble]) -> list[ReadField]:
+    """The fields of a table with headings. Raises `Unreadable` where none of them can be held."""
+    header = table.header
+    assert header is not None
+    found = entries(table, troubles, lambda cells: _stands_alone(cells, header, profile))
+    lines = [line for entry in found if (line := _line(entry, header, table, profile, troubles))]
+    if any(numbers.span(entry.get("at") or entry.get("at_bytes")) for entry in found):
+        for line in lines:  # beside ranges, a single position is one bit or one byte
+            if line.width is None and not (line.type and line.type.bits):
+                line.width, line.units = 1, (line.units[0], line.units[0])
+    units = counting.decide(header, [line.extent for line in lines], length, profile)
+    if units is None:
+        titles = " and ".join(
+            f"`{title}`" for role, title in zip(header.roles, header.titles, strict=True) if role in ("at", "bits")
+        )
+        troubles.append(Trouble("IMP036", f"{table.title}: nothing tells whether {titles} count bits or bytes", table.spot,
+                                "name the heading in the profile under at, at_bytes, bits or bits_bytes; it was left out",
+                                "error"))  # fmt: skip
+        raise Unreadable
+    made: list[ReadField] = []
+    implicit = not _positions(header)
+    if implicit and lines:
+        troubles.append(Trouble("IMP038", f"{table.title}: it prints no offsets; they follow from the widths", table.spot,
+                                "compare the length with the page", "note"))  # fmt: skip
+    at = 0
+    for line in lines:
+        bits = _bits(line, units, troubles)
+        if bits is None:
+            if implicit:
+                message = f"{line.where}: without its width nothing tells where the rest stands"
+                troubles.append(Trouble("IMP023", message, line.entry.spot, "the rest was left out", "error"))
+                break
+            continue
+        start = at if implicit else (line.at or 0) * (line.units[0] or units.at) + _within(line, header)
+        made += _fields(line, start, bits, table, profile, troubles)
+        at = start + bits
+    return made
+
+
+def _positions(header: Header) -> bool:
+    return "at" in header.roles or "at_bytes" in header.roles
+
+
+def _stands_alone(cells: dict[str, str], header: Header, profile: Profile) -> bool:
+    """Whether a row without an offset is a row all the same: it has a name, and a type or a width."""
+    if not cells.get("name"):
+        return False
+    width = cells.get("bits") or cells.get("bits_bytes") or ""
+    return types.read(cells.get("type", ""), profile) is not None or numbers.figure(width) is not None
+
+
+def _line(entry: Entry, header: Header, table: Table, profile: Profile, troubles: list[Trouble]) -> Line | None:
+    """Reads offset, width and type of a row; None, and a finding, where one of them is there and cannot be read."""
+    name = entry.get("name")
+    line = Line(
+        entry, f"{table.title}, field `{name}`" if name else table.title, types.read(entry.get("type"), profile)
+    )
+    at_unit = width_unit = 0
+    if _positions(header):
+        text = entry.get("at") or entry.get("at_bytes")
+        if span := numbers.span(text):
+            line.at, line.width = span
+            at_unit = width_unit = 0 if entry.get("at") else 8
+        elif figure := numbers.figure(text):
+            line.at, at_unit = figure
+        else:
+            _refuse(text, "the offset", line, table, troubles)
+            return None
+        if not at_unit and not entry.get("at"):
+            at_unit = 8
+    for role in ("bits", "bits_bytes"):
+        text = entry.get(role)
+        if not text:
+            continue
+        figure = numbers.figure(text)
+        if figure is None:
+            _refuse(text, "the width", line, table, troubles)
+            return None
+        line.width, width_unit = figure.value, figure.unit or (8 if role == "bits_bytes" else 0)
+        break
+    line.units = (at_unit, width_unit)
+    return line
+
+
+def _refuse(text: str, what: str, line: Line, table: Table, troubles: list[Trouble]) -> None:
+    if grows(text):
+        troubles.append(Trouble("IMP037", f"{line.where}: {what} `{text}` depends on a count, which the ICD format cannot hold",
+                                line.entry.spot, "the row was left out", "error"))  # fmt: skip
+    else:
+        numbers.refused(text, what, line.where, line.entry.spot, troubles)
+
+
+def _within(line: Line, header: Header) -> int:
+    """The bit within the byte, where one column counts bytes and another one the bits in them."""
+    if line.entry.get("at") and "at_bytes" in header.roles:
+        return 8 * (number(line.entry.get("at_bytes")) or 0)
+    return 0
+
+
+def _bits(line: Line, units: Units, troubles: list[Trouble]) -> int | None:
+    """The width in bits; None, and a finding, where nothing tells it or two things contradict each other."""
+    told = line.type.bits * line.type.count if line.type else 0
+    if line.width is None:
+        if told:
+            return told
+        troubles.append(Trouble("IMP023", f"{line.where}: neither a width nor a type that tells it", line.entry.spot,
+                                "look at the page; the row was left out", "error"))  # fmt: skip
+        return None
+    own = line.units[1] or (line.units[0] if _is_range(line) else 0) or units.width
+    bits = line.width * own
+    if told and line.type and line.type.count > 1 and bits == line.type.bits:
+        return told  # the width is that of one element
+    if told and bits != told and line.type and (line.type.kind != "bool" or line.type.count > 1):
+        troubles.append(Trouble("IMP026", f"{line.where}: its type `{line.entry.get('type')}` has {told} bits, its width is "
+                                f"{bits}", line.entry.spot, "the width is held; look at the page", "error"))  # fmt: skip
+        line.type = line.type._replace(count=1)
+    return bits
+
+
+def _is_range(line: Line) -> bool:
+    return not line.entry.get("bits") and not line.entry.get("bits_bytes")
+
+
+def _fields(
+    line: Line, at: int, bits: int, table: Table, profile: Profile, troubles: list[Trouble]
+) -> list[ReadField]:  # fmt: skip
+    """The field of a row; for an array one for each element."""
+    entry, name = line.entry, line.entry.get("name")
+    kind = _kind(line, bits, troubles)
+    if not name:
+        troubles.append(Trouble("IMP025", f"{table.title}: the field at bit {at} has no name", entry.spot,
+                                "name it in the ICD, or by an erratum", "error"))  # fmt: skip
+        name = f"Unnamed {at}"
+    described = _described(entry, profile, kind == "enum")
+    for problem in described.problems:
+        text = entry.get("description")
+        troubles.append(Trouble("IMP040", f"{line.where}: {problem}: `{text[-160:]}`", entry.spot, "read the page"))
+    count = line.type.count if line.type else 1
+    if count > 1 and kind != "bytes":
+        troubles.append(Trouble("IMP029", f"{line.where}: its {count} elements are held as {count} fields", entry.spot,
+                                "the ICD format has no arrays", "note"))  # fmt: skip
+        each = bits // count
+        return [ReadField(f"{name} {i + 1}", at + i * each, each, kind, described, entry.spot) for i in range(count)]
+    made = ReadField(name, at, bits, kind, described, entry.spot)
+    if kind == "uint" and bits <= MOST_BITS:
+        found = bitfields.read(entry.get("description"), bits)
+        if found is None:
+            troubles.append(Trouble("IMP040", f"{line.where}: the bits that it names overlap, or do not fit into it: "
+                                    f"`{entry.get('description')[:160]}`", entry.spot, "read the page"))  # fmt: skip
+        elif found:
+            made.bitfields = found
+            troubles.append(Trouble("IMP029", f"{line.where}: its description names {len(found)} fields of bits", entry.spot,
+                                    "held under `bitfields:`; compare them with the page", "note"))  # fmt: skip
+    return [made]
+
+
+def _kind(line: Line, bits: int, troubles: list[Trouble]) -> str:
+    """The type as the ICD calls it."""
+    if line.type is not None:
+        if not line.type.is_said:
+            troubles.append(Trouble("IMP026", f"{line.where}: the type `{line.entry.get('type')}` does not say whether the "
+                                    "value has a sign", line.entry.spot, "held as uint; look at the page"))  # fmt: skip
+        return line.type.kind
+    text = line.entry.get("type")
+    what = f"the type `{text}` is unknown" if text else "it has no type"
+    fallback = "uint" if bits <= MOST_BITS else "bytes"
+    troubles.append(Trouble("IMP026", f"{line.where}: {what}", line.entry.spot,
+                            f"held as {fallback}; add the name to `types:` of the profile", "error"))  # fmt: skip
+    return fallback
+
+
+def _described(entry: Entry, profile: Profile, is_enum: bool) -> descriptions.Described:
+    text = entry.get("description")
+    if is_enum and entry.get("values"):
+        text = f"{text} {entry.get('values')}"
+    made = descriptions.read(text, profile, is_enum)
+    if is_enum and made.enum_table is None and not made.enum_title and entry.get("values"):
+        made.enum_title = entry.get("values")
+    _unit(tidy_unit(entry.get("unit")).strip("()- "), made)
+    formula = entry.get("formula").strip()
+    if formula.casefold() not in _NONE:
+        scaled = formulas.per_step(formula, descriptions.names(profile))
+        if scaled is None:
+            made.problems.append(f"the formula `{formula}` cannot be read")
+        else:
+            _scale(scaled.formula, made)
+            _unit(scaled.unit, made)
+    return made
+
+
+def _unit(text: str, made: descriptions.Described) -> None:
+    """A cell of units: a unit, a factor (``0.01``), or both (``10 mV``)."""
+    if text.casefold() in _NONE:
+        return
+    match = _SCALED_UNIT.match(text)
+    if match and not (match["unit"] or "").startswith(("/", "^", "*", "·")):  # `1/s`, `10^-3 T` are units
+        scaled = formulas.per_step(match["factor"], None)
+        _scale(scaled.formula if scaled else "", made)
+        text = tidy_unit(match["unit"] or "")
+        if not text:
+            return
+    if made.unit and made.unit != text:
+        made.problems.append(f"its unit is `{text}` in one column and `{made.unit}` in another")
+    made.unit = text
+
+
+def _scale(formula: str, made: descriptions.Described) -> None:
+    if formula and made.formula and formula != made.formula:
+        made.problems.append(f"it gives two formulas: `{made.formula}` and `{formula}`")
+    made.formula = formula or made.formula

@@ -1,0 +1,132 @@
+"""What an import says is explained, is said in one order, is never merged, and never ends in a traceback."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+from reportlab.pdfgen.canvas import Canvas
+
+from icdgen.importer import findings
+from icdgen.importer.document import CERTAIN
+from tests.conftest import ROOT
+from tests.importer.test_command import TEXT, icdgen
+from tests.importer.test_text import ENUM, MESSAGE, found, read
+
+SOURCES = [*(ROOT / "codegen" / "icdgen" / "importer").rglob("*.py"), ROOT / "codegen/icdgen/commands/import_.py"]
+
+
+def test_every_code_that_an_import_gives_has_a_page_with_an_example():
+    given = {code for path in SOURCES for code in re.findall(r'"(IMP[0-9]{3})"', path.read_text("utf-8"))}
+    assert given == set(findings.pages())
+    assert all(re.search(r"^ {4}\S", page.text, re.M) for page in findings.pages().values())
+
+
+def test_icdgen_rule_explains_and_lists_the_findings_of_an_import(tmp_path):
+    assert icdgen("rule", "imp030", cwd=tmp_path).stdout.startswith("# IMP030: a table was not understood (warning)\n")
+    assert "\nIMP063  taken from the list\n" in icdgen("rule", cwd=tmp_path).stdout
+
+
+def draw_message(path, below: float = 0, crop=None) -> None:
+    """A ruled message table near the lower edge of the page; ``below``: points by which its last row lies under it."""
+    canvas = Canvas(str(path), pagesize=(400, 300), invariant=1)
+    if crop:
+        canvas.setCropBox(crop)
+    rows = [["ID", "140", "Frame Length (bytes)", "", "4"], ["Offset (bits)", "Length (bits)", "Name", "Data Type", "Notes"],
+            ["0", "16", "Pressure", "INT", "of the tank"], ["16", "16", "Speed", "INT", "of the pump"]]  # fmt: skip
+    top = 4 * 20 - below
+    for index, row in enumerate(rows):
+        y = top - 20 * index
+        for column, text in enumerate(row):
+            canvas.rect(20 + 70 * column, y - 20, 70, 20)
+            canvas.setFont("Helvetica", 7)
+            canvas.drawString(23 + 70 * column, y - 13, text)
+    canvas.drawString(20, 290, "Manual of the pump")
+    canvas.showPage()
+    canvas.save()
+
+
+def test_text_below_the_edge_of_the_page_is_left_out_and_said(tmp_path):
+    canvas = Canvas(str(tmp_path / "edge.pdf"), pagesize=(400, 300), invariant=1)
+    canvas.drawString(20, 200, "Nothing but prose")
+    canvas.drawString(20, -40, "under the edge")
+    canvas.showPage()
+    canvas.save()
+    run = icdgen("import", "edge.pdf", cwd=tmp_path)
+    assert run.returncode == 1
+    assert "Traceback" not in run.stderr
+    assert "note[IMP013] page 1: 3 words stand outside the visible page" in run.stdout
+
+
+@pytest.mark.parametrize("crop", [None, (0, 50, 400, 300), (0, 150, 200, 300)])
+def test_a_table_over_the_edge_of_the_page_costs_neither_summary_nor_report(tmp_path, crop):
+    draw_message(tmp_path / "pump.pdf", below=30, crop=crop)
+    run = icdgen("import", "pump.pdf", "--report", "report.html", cwd=tmp_path)
+    assert "Traceback" not in run.stderr
+    assert "findings: " in run.stdout
+    assert "<h1>" in (tmp_path / "report.html").read_text("utf-8")
+
+
+def test_findings_stand_in_the_same_order_in_each_run(tmp_path):
+    text = "".join(MESSAGE.replace("INT", f"WORD{n}").replace("ID\t140", f"ID\t{n}") for n in range(100, 120))
+    (tmp_path / "pump.txt").write_text(text, encoding="utf-8")
+    runs = {icdgen("import", "pump.txt", "--dry-run", "--format", "json", cwd=tmp_path).stdout for _ in range(3)}
+    assert len(runs) == 1
+
+
+def test_equal_findings_of_one_place_are_counted_and_not_merged(tmp_path):
+    text = MESSAGE.replace("\t24\t1\t", "\t24\t1\t\tWORD\t\n\t25\t1\t") + ENUM
+    twice = text.replace("\t0\t16\tPressure", "\t\t16\tPressure\tINT\tPressure\n\t\t16\tPressure")
+    result, _ = read(tmp_path, twice)
+    assert found(result, "IMP023") == 2 * [
+        "table 7: Pump State Telemetry Format, field `Pressure`: the offset is empty"
+    ]
+
+
+def test_a_message_that_is_left_out_is_not_called_certain(tmp_path):
+    text = MESSAGE.replace("Table 7: Pump State Telemetry Format", "").replace("Frame Length (bytes)", "Length (bytes)")
+    result, tree = read(tmp_path, text + ENUM)
+    assert "messages" not in tree
+    assert found(result, "IMP031")
+    assert result.sureness()[CERTAIN] == 1  # the enumeration
+
+
+def test_nothing_found_names_the_headings_that_were_seen_and_gives_a_report(tmp_path):
+    text = "Table 1: Things\n\nPlace\tSize\tThing\n1\t2\tx\n\nTable 2: More\n\nPlace\tSize\tThing\n1\t2\ty\n"
+    (tmp_path / "odd.txt").write_text(text, encoding="utf-8")
+    run = icdgen("import", "odd.txt", "--report", "report.html", cwd=tmp_path)
+    assert run.returncode == 1
+    assert "tables begin with `Place | Size | Thing` (2 times)" in run.stdout
+    assert "Things" in (tmp_path / "report.html").read_text("utf-8")
+    assert not (tmp_path / "icd").exists()
+
+
+def test_json_is_json_whatever_happens(tmp_path):
+    (tmp_path / "odd.txt").write_text("nothing\n", encoding="utf-8")
+    (tmp_path / "bad.pdf").write_bytes(b"%PDF-1.4\n" + b"\x00garbage" * 40)
+    (tmp_path / "pump.txt").write_text(TEXT, encoding="utf-8")
+    (tmp_path / "words.yaml").write_text("profile: 1\nheadingz: {}\n", encoding="utf-8")
+    for arguments, code in ((["odd.txt"], "IMP004"), (["bad.pdf"], "IMP003"), (["none.txt"], "IMP002"),
+                            (["pump.txt", "--profile", "words.yaml"], "IMP001")):  # fmt: skip
+        run = icdgen("import", *arguments, "--format", "json", cwd=tmp_path)
+        assert (run.returncode, run.stderr) == (1, "")
+        assert [f["code"] for f in json.loads(run.stdout)["findings"]] == [code]
+
+
+def test_a_row_without_offset_does_not_vanish_in_the_row_above(tmp_path):
+    result, _ = read(tmp_path, MESSAGE.replace("\t24\t1\tValve Open", "\t\t\tValve Open") + ENUM)
+    assert "field `Valve Open`: the offset is empty" in found(result, "IMP023")[0]
+
+
+def test_a_column_that_nobody_knows_is_named_with_what_it_holds(tmp_path):
+    text = MESSAGE.replace("Data Type\tDescription", "Data Type\tDescription\tGain").replace(
+        "Valve open\n", "Valve open\t2.5\n"
+    )
+    result, _ = read(tmp_path, text + ENUM)
+    assert "the column `Gain` has no role, its cells were left out: `2.5`" in found(result, "IMP027")[0]
+
+
+def test_a_table_without_a_caption_is_not_passed_over(tmp_path):
+    result, _ = read(tmp_path, MESSAGE + ENUM + "\nSome prose.\n\nStep\tShade\nfirst\tred\nsecond\tblue\n")
+    assert "it begins with `Step | Shade`" in found(result, "IMP030")[0]

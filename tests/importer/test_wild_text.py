@@ -1,0 +1,160 @@
+"""What manuals in the wild print in other places and other units than a column of bits: ids in headings and prose, bytes, arrays,
+fields within cells, factors as units."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.importer import profile, run
+from tests.importer.test_text import found
+
+FIELDS = "Offset\tSize\tName\tType\tUnit\n0\t1\tMode\tU8\t\n1\t2\tSpeed\tU16\trpm\n3\t4\tTime\tU32\tms\n"
+
+
+def read(tmp_path, text: str, words: str = ""):
+    (tmp_path / "motor.txt").write_text(text, encoding="utf-8")
+    path = None
+    if words:
+        path = tmp_path / "words.yaml"
+        path.write_text("profile: 1\n" + words, encoding="utf-8")
+    result, trees = run.run(tmp_path / "motor.txt", profile.load(path), jobs=1)
+    return result, trees.get("motor", {})
+
+
+def places(message: dict) -> list[tuple]:
+    return [(f["at"], f["bits"], f["name"]) for f in message.get("fields", [])]
+
+
+BYTES = [(0, 8, "Mode"), (8, 16, "Speed"), (24, 32, "Time")]
+
+
+@pytest.mark.parametrize(
+    ("heading", "ids", "name"),
+    [
+        ("Motor State (0x21)", 0x21, "Motor State"),
+        ("3.2 Motor State (0x00 0x21)", 0x21, "Motor State"),
+        ("Motor State: 0x0021", 0x21, "Motor State"),
+        ("Motor State – 21h", 0x21, "Motor State"),
+        ("Motor State\n\nTelemetry ID 33, requested by the host.", 33, "Motor State"),
+        ("4.1 Motor State\n\nThe message ID: 0x21 is sent once a second.", 33, "Motor State"),
+        ("Table 4: Motor State (0x21)", 33, "Motor State"),
+    ],
+)
+def test_id_and_name_stand_in_heading_caption_or_prose(tmp_path, heading, ids, name):
+    _, tree = read(tmp_path, f"5 Telemetry\n\n{heading}\n\n{FIELDS}")
+    message = tree["messages"][0]
+    assert (message["name"], message["id"], message["kind"], message["length"]) == (name, ids, "telemetry", 7)
+    assert places(message) == BYTES
+
+
+def test_a_pattern_of_the_profile_finds_what_the_shipped_ones_do_not(tmp_path):
+    text = f"UBX-like: motor state\n\nHeader B5 class 12 number 0\n\n{FIELDS}"
+    words = 'patterns: ["UBX-like: {name}", "class {id} number"]\ndefaults: {kind: telemetry}\n'
+    assert "messages" not in read(tmp_path, text)[1]
+    message = read(tmp_path, text, words)[1]["messages"][0]
+    assert (message["name"], message["id"], message["kind"]) == ("motor state", 12, "telemetry")
+
+
+def test_an_id_that_the_format_cannot_hold_is_one_line_of_the_report(tmp_path):
+    result, tree = read(tmp_path, f"5 Telemetry\n\nNAV-PVT (0x01 0x07)\n\n{FIELDS}\nSlow (0x21)\n\n{FIELDS}")
+    assert [m["name"] for m in tree["messages"]] == ["Slow"]
+    assert "its id 263 (0x107) is above 255" in found(result, "IMP037")[0]
+
+
+def test_one_heading_gives_its_id_to_one_table(tmp_path):
+    result, tree = read(tmp_path, f"5 Telemetry\n\n5.1 Motor State (0x21)\n\n{FIELDS}\nAnd further:\n\n{FIELDS}")
+    assert len(tree["messages"]) == 1
+    assert "no id" in found(result, "IMP031")[0]
+
+
+@pytest.mark.parametrize(
+    ("table", "expected"),
+    [
+        (FIELDS, BYTES),
+        (FIELDS.replace("Size", "Length (bytes)").replace("Offset", "Byte"), BYTES),
+        ("Offset\tSize\tName\tType\n0\t8\tMode\tU8\n8\t16\tSpeed\tU16\n24\t32\tTime\tU32\n", BYTES),
+        ("Offset\tSize\tName\tType\n0\t1 byte\tMode\tU8\n1\t2 bytes\tSpeed\tU16\n3\t4 bytes\tTime\tU32\n", BYTES),
+        ("Byte\tName\tType\n0\tMode\tUINT\n1-2\tSpeed\tUINT\nByte3~Byte6\tTime\tUINT\n", BYTES),
+        ("Name\tType\nMode\tuint8_t\nSpeed\tuint16_t\nTime\tuint32_t\n", BYTES),
+        ("Name\tSize (bytes)\tType\nMode\t1\tUINT\nSpeed\t2\tUINT\nTime\t4\tUINT\n", BYTES),
+        ("Offset\tName\tType\n0\tMode\t1 byte, unsigned\n1\tSpeed\tunsigned 16 bit\n3\tTime\t4BYTE unsigned\n", BYTES),
+    ],
+)
+def test_bits_and_bytes_are_told_apart(tmp_path, table, expected):
+    result, tree = read(tmp_path, f"5 Telemetry\n\nState (0x21)\n\n{table}")
+    assert places(tree["messages"][0]) == expected
+    assert not [t for t in result.troubles if t.severity == "error" and t.code != "IMP032"]
+
+
+def test_what_the_profile_says_of_a_heading_stands_above_what_comes_with_icdgen(tmp_path):
+    table = "Offset\tSize\tName\tType\n0\t1\tA\tUINT\n1\t1\tB\tUINT\n"
+    result, tree = read(tmp_path, f"5 Telemetry\n\nState (0x21)\n\n{table}")
+    assert "messages" not in tree
+    assert "nothing tells whether `Offset` and `Size` count bits or bytes" in found(result, "IMP036")[0]
+    for words, scale in (("at_bytes: [Offset], bits_bytes: [Size]", 8), ("at: [Offset], bits: [Size]", 1)):
+        _, tree = read(tmp_path, f"5 Telemetry\n\nState (0x21)\n\n{table}", f"headings: {{fields: {{{words}}}}}\n")
+        assert places(tree["messages"][0]) == [(0, scale, "A"), (scale, scale, "B")]
+
+
+def test_a_width_that_contradicts_its_type_is_an_error(tmp_path):
+    result, _ = read(tmp_path, "5 Telemetry\n\nS (0x21)\n\nOffset (bits)\tLength (bits)\tName\tType\n0\t8\tA\tU16\n")
+    assert "its type `U16` has 16 bits, its width is 8" in found(result, "IMP026")[0]
+
+
+@pytest.mark.parametrize("kind", ["U1[3]", "uint8_t [3]", "U8 x 3", "3 x U8"])
+def test_an_array_is_a_field_for_each_element(tmp_path, kind):
+    table = f"Offset (bytes)\tName\tType\n0\tRate\t{kind}\n3\tTime\ts32[2]\n"
+    result, tree = read(tmp_path, f"5 Telemetry\n\nState (0x21)\n\n{table}")
+    assert places(tree["messages"][0]) == [
+        (0, 8, "Rate 1"), (8, 8, "Rate 2"), (16, 8, "Rate 3"), (24, 32, "Time 1"), (56, 32, "Time 2"),
+    ]  # fmt: skip
+    assert len(found(result, "IMP029")) == 2
+
+
+def test_bits_that_a_cell_names_are_held_with_their_field(tmp_path):
+    table = "Byte\tName\tType\tDescription\n0\tStatus\tU8\tbit 0-3: mode, bit 4: heater on; bits 5..7: spare\n"
+    result, tree = read(tmp_path, f"5 Telemetry\n\nState (0x21)\n\n{table}")
+    assert tree["messages"][0]["fields"][0]["bitfields"] == [
+        {"at": 0, "bits": 4, "name": "mode"}, {"at": 4, "bits": 1, "name": "heater on"}, {"at": 5, "bits": 3, "name": "spare"},
+    ]  # fmt: skip
+    result, tree = read(tmp_path, f"5 Telemetry\n\nState (0x21)\n\n{table.replace('5..7', '4..9')}")
+    assert "bitfields" not in tree["messages"][0]["fields"][0]
+    assert "overlap, or do not fit" in found(result, "IMP040")[0]
+
+
+@pytest.mark.parametrize(
+    ("heading", "cell", "formula", "unit"),
+    [
+        ("Unit", "0.01", "raw*0.01", None),
+        ("Unit", "10 mV", "raw*10", "mV"),
+        ("Unit", "10mV", "raw*10", "mV"),
+        ("Unit", "m/s", None, "m/s"),
+        ("Unit", "1/s", None, "1/s"),
+        ("Scale", "1e-7", "raw*1e-7", None),
+        ("Scale", "2^-20", "raw/1048576", None),
+        ("Scale", "1/256", "raw/256", None),
+        ("Scale", "0.25 °C/LSB", "raw*0.25", "°C"),
+        ("Scale", "LSB = 0.5 dps", "raw*0.5", "dps"),
+    ],
+)
+def test_a_factor_is_a_factor_wherever_it_stands(tmp_path, heading, cell, formula, unit):
+    table = f"Offset (bits)\tLength (bits)\tName\tType\t{heading}\n0\t16\tA\tINT\t{cell}\n"
+    _, tree = read(tmp_path, f"5 Telemetry\n\nState (0x21)\n\n{table}")
+    field = tree["messages"][0]["fields"][0]
+    assert (field.get("formula"), field.get("unit")) == (formula, unit)
+
+
+@pytest.mark.parametrize("cell", ["10^-3 T", "0.1 to 0.5", "see 3.1", "sqrt(raw)"])
+def test_a_factor_that_cannot_be_read_is_said_and_not_guessed(tmp_path, cell):
+    table = f"Offset (bits)\tLength (bits)\tName\tType\tScale\n0\t16\tA\tINT\t{cell}\n"
+    result, tree = read(tmp_path, f"5 Telemetry\n\nState (0x21)\n\n{table}")
+    assert "formula" not in tree["messages"][0]["fields"][0]
+    assert found(result, "IMP040")
+
+
+@pytest.mark.parametrize("length", ["8 + 6*N", "8+6*N", "4*n", "N + 1"])
+def test_a_length_that_depends_on_a_count_is_one_line_of_the_report(tmp_path, length):
+    text = f"Table 3: State Telemetry\n\nID\t7\nLength (bytes)\t{length}\n{FIELDS}"
+    result, tree = read(tmp_path, text)
+    assert "messages" not in tree
+    assert "depends on a count" in found(result, "IMP037")[0]
