@@ -73,14 +73,21 @@ class Generated:
         return cut.names(cut.icd)
 
     @cached_property
+    def _nodes_keep_names(self) -> bool:
+        return all(node.old.name == node.new.name for node in self._match.nodes if node.both)
+
+    @cached_property
     def _at_home(self) -> Names:
-        if all(node.old.name == node.new.name for node in self._match.nodes if node.both):
+        if self._nodes_keep_names:
             return self.new
         cut = self._cut(1, NODES)
         return cut.names(cut.icd)
 
     @cached_property
     def clothed(self) -> Names:
+        owners = [(pair.old, pair.new) for pair in self._match.pair_of.values() if pair.both]
+        if self._nodes_keep_names and all((a.name, a.identifier) == (b.name, b.identifier) for a, b in owners):
+            return self.new
         return self._dressed.names(self._dressed.icd)
 
     @cached_property
@@ -269,19 +276,19 @@ def _types(cut: Icd) -> Types:
     from icdgen.backends.rust.names import Enums
     from icdgen.describe import describe
 
-    made: dict[str, object] = {}
+    rust, description = Enums(cut), describe(cut)
+    nodes = {node.name: node for node in cut.nodes}
 
     def of(language: str, node: Node, message: Message, field: Field) -> str:
-        home = next((one for one in cut.nodes if one.name == message.node), node)
+        home = nodes.get(message.node, node)
         if language == "python":
             plain = {"uint": "int", "enum": "int"}.get(field.type, field.type)
             return class_name(field.enum, cut.node(field.enum.node)) if field.type == "enum" and field.enum else plain
         if language == "rust":
-            enums = made.setdefault("rust", Enums(cut))
-            return raw_type(field, home, enums) if field.type != "enum" or field.enum else f"u{field.bits}"
+            return raw_type(field, home, rust) if field.type != "enum" or field.enum else f"u{field.bits}"
         if field.type == "bytes":
             return f"uint8_t[{field.bits // 8}]"
-        described = describe(cut).message(message)
-        return next(type_of(one) for one in described.fields if one.field is field)
+        fields = description.message(message).fields
+        return next(type_of(one) for one in fields if one.field is field)
 
     return of
