@@ -7,7 +7,6 @@
  * @file
  * Boot And Running Program Status: telemetry 129, 6 bytes. Table 28.
  * Causes of the last reset and reboot, and the running program.
- * \@note Note COM-060 (open): The running program answers more than the text says, or less.
  * \@note Note COM-062 (certain): Capitals of the boot status frame differ in the text.
  */
 

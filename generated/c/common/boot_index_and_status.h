@@ -7,7 +7,6 @@
  * @file
  * Boot Index and Status: telemetry 130, 2 bytes. Table 32.
  * Program selected for booting, and how the last attempt went.
- * \@note Note COM-060 (open): The running program answers more than the text says, or less.
  */
 
 #include "../icdgen.h"

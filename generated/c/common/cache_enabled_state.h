@@ -6,7 +6,6 @@
 /**
  * @file
  * Cache enabled state: configuration, set by telecommand 3, got by telemetry 131, 1 byte. Table 48.
- * \@note Note COM-107 (certain): Get ids do not follow from set ids.
  */
 
 #include "../icdgen.h"

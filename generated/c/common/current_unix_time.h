@@ -6,7 +6,6 @@
 /**
  * @file
  * Current Unix Time: configuration, set by telecommand 2, got by telemetry 140, 6 bytes. Table 50.
- * \@note Note COM-107 (certain): Get ids do not follow from set ids.
  */
 
 #include "../icdgen.h"

@@ -381,10 +381,7 @@ enum {
     COMMON_TC_ERROR_REASON_NO_ERROR = 0,
     /** Invalid TC (1). */
     COMMON_TC_ERROR_REASON_INVALID_TC = 1,
-    /**
-     * Incorrect Length (2).
-     * \@note Note COM-094 (open): What happens to a telecommand of the wrong length.
-     */
+    /** Incorrect Length (2). */
     COMMON_TC_ERROR_REASON_INCORRECT_LENGTH = 2,
     /** Incorrect Parameter (3). */
     COMMON_TC_ERROR_REASON_INCORRECT_PARAMETER = 3,

@@ -21,10 +21,7 @@
 
 /** Raw values. */
 typedef struct {
-    /**
-     * File Type: bits 0 to 3.
-     * \@note Note COM-098 (certain): File Type is 8 bits in telecommands and 4 bits in the frame.
-     */
+    /** File Type: bits 0 to 3. */
     common_file_type_t file_type;
     /**
      * Busy Updating: bit 4. The other fields are valid once this is clear.

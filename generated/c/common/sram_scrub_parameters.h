@@ -6,7 +6,6 @@
 /**
  * @file
  * SRAM Scrub Parameters: configuration, set by telecommand 8, got by telemetry 134, 2 bytes. Table 49.
- * \@note Note COM-107 (certain): Get ids do not follow from set ids.
  */
 
 #include "../icdgen.h"

@@ -7,7 +7,6 @@
  * @file
  * Unix Time Save to Flash: configuration, set by telecommand 9, got by telemetry 145, 2 bytes. Table 51.
  * When the Unix time is kept in flash, so that it survives a power cycle.
- * \@note Note COM-107 (certain): Get ids do not follow from set ids.
  * \@note Note COM-112 (certain): Unix Time Save to Flash is described in two spellings.
  */
 

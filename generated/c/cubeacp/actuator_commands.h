@@ -7,7 +7,6 @@
  * @file
  * Actuator Commands: telemetry 192, 12 bytes. Table 151.
  * Repeats Magnetorquer Command from byte 0. Repeats Wheel Speed Commands from byte 6.
- * \@note Note ACP-106 (certain): Messages have the names of groups.
  */
 
 #include "../icdgen.h"

@@ -16,7 +16,6 @@
  * Parameters from byte 347. Repeats Augmented-SGP4 Parameters from byte 378. Repeats User-coded Controller and
  * Estimator Parameters from byte 408.
  * \@note Note ACP-020 (open): Reserved bits.
- * \@note Note ACP-158 (certain): ADCS configuration in list order, not in id order.
  * \@note Note ACP-159 (open): The current configuration is not all of it.
  */
 
@@ -136,13 +135,11 @@ typedef struct {
     /**
      * Cam1 Boresight X: bits 384 to 399, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels. Where the boresight
      * meets the image.
-     * \@note Note ACP-149 (open): Boresight ends at 655 pixels.
      */
     uint16_t cam1_boresight_x;
     /**
      * Cam1 Boresight Y: bits 400 to 415, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels. Where the boresight
      * meets the image.
-     * \@note Note ACP-149 (open): Boresight ends at 655 pixels.
      */
     uint16_t cam1_boresight_y;
     /**
@@ -169,13 +166,11 @@ typedef struct {
     /**
      * Cam2 Boresight X: bits 496 to 511, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels. Where the boresight
      * meets the image.
-     * \@note Note ACP-149 (open): Boresight ends at 655 pixels.
      */
     uint16_t cam2_boresight_x;
     /**
      * Cam2 Boresight Y: bits 512 to 527, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels. Where the boresight
      * meets the image.
-     * \@note Note ACP-149 (open): Boresight ends at 655 pixels.
      */
     uint16_t cam2_boresight_y;
     /**
@@ -187,7 +182,6 @@ typedef struct {
     /**
      * Nadir Max Bad Edges: bits 536 to 543, raw 0 to 255. Most edges that may deviate further. Above 50 the test is
      * off.
-     * \@note Note ACP-152 (open): More than 50 bad edges disable the check.
      */
     uint8_t nadir_max_bad_edges;
     /**
@@ -574,10 +568,7 @@ typedef struct {
     float rwheel_derivative_gain;
     /** Y-Wheel Bias Momentum: bits 2440 to 2471, 32-bit float, in Nms. H-bias. */
     float y_wheel_bias_momentum;
-    /**
-     * Sun-pointing Facet: bits 2472 to 2478. Body axis that is turned towards the sun.
-     * \@note Note ACP-166 (certain): Facets have 7 bits and 8 bits.
-     */
+    /** Sun-pointing Facet: bits 2472 to 2478. Body axis that is turned towards the sun. */
     cubeacp_axis_select_t sun_pointing_facet;
     /**
      * Automatic Control Transition due to Wheel Errors: bit 2479. From the wheel modes to Y-Thomson on a wheel error.

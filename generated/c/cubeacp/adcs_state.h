@@ -25,25 +25,15 @@
 
 /** Raw values. */
 typedef struct {
-    /**
-     * Attitude Estimation Mode: bits 0 to 3.
-     * \@note Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
-     */
+    /** Attitude Estimation Mode: bits 0 to 3. */
     cubeacp_estim_mode_select_t attitude_estimation_mode;
-    /**
-     * Control Mode: bits 4 to 7.
-     * \@note Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
-     */
+    /** Control Mode: bits 4 to 7. */
     cubeacp_con_mode_select_t control_mode;
-    /**
-     * ADCS Run Mode: bits 8 to 9.
-     * \@note Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
-     */
+    /** ADCS Run Mode: bits 8 to 9. */
     cubeacp_adcs_run_mode_t adcs_run_mode;
     /**
      * ASGP4 Mode: bits 10 to 11.
      * \@note Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
-     * \@note Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
      */
     cubeacp_asgp4_mode_select_t asgp4_mode;
     /** CubeControl Signal Enabled: bit 12. */

@@ -6,7 +6,7 @@
 /**
  * @file
  * ASGP4 Run Mode: telecommand 31, 1 byte. Table 86.
- * \@note Note ACP-046 (likely): Telecommand 31 has the id of the escape byte.
+ * \@note Note ACP-046 (certain): Telecommand 31 has the id of the escape byte.
  */
 
 #include "../icdgen.h"

@@ -53,14 +53,12 @@ typedef struct {
     /**
      * Cam1 Boresight X: bits 80 to 95, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels. Where the boresight
      * meets the image.
-     * \@note Note ACP-149 (open): Boresight ends at 655 pixels.
      * \@note Note ACP-154 (certain): Cam1 and Cam 1.
      */
     uint16_t cam1_boresight_x;
     /**
      * Cam1 Boresight Y: bits 96 to 111, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels. Where the boresight
      * meets the image.
-     * \@note Note ACP-149 (open): Boresight ends at 655 pixels.
      */
     uint16_t cam1_boresight_y;
     /**
@@ -93,14 +91,12 @@ typedef struct {
     /**
      * Cam2 Boresight X: bits 192 to 207, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels. Where the boresight
      * meets the image.
-     * \@note Note ACP-149 (open): Boresight ends at 655 pixels.
      * \@note Note ACP-154 (certain): Cam1 and Cam 1.
      */
     uint16_t cam2_boresight_x;
     /**
      * Cam2 Boresight Y: bits 208 to 223, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels. Where the boresight
      * meets the image.
-     * \@note Note ACP-149 (open): Boresight ends at 655 pixels.
      */
     uint16_t cam2_boresight_y;
     /**
@@ -112,7 +108,6 @@ typedef struct {
     /**
      * Nadir Max Bad Edges: bits 232 to 239, raw 0 to 255. Most edges that may deviate further. Above 50 the test is
      * off.
-     * \@note Note ACP-152 (open): More than 50 bad edges disable the check.
      */
     uint8_t nadir_max_bad_edges;
     /**

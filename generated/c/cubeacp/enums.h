@@ -11,10 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/**
- * AdcsRunMode: an enumeration. Table 75.
- * \@note Note ACP-018 (certain): ADCS Run Mode is a message and an enumeration.
- */
+/** AdcsRunMode: an enumeration. Table 75. */
 typedef uint8_t cubeacp_adcs_run_mode_t;
 
 enum {
@@ -505,10 +502,7 @@ static inline const char *cubeacp_capture_result_name(cubeacp_capture_result_t v
     }
 }
 
-/**
- * DetectResult: an enumeration. Table 124.
- * \@note Note ACP-079 (certain): DetectResult mixes sun and nadir.
- */
+/** DetectResult: an enumeration. Table 124. */
 typedef uint8_t cubeacp_detect_result_t;
 
 enum {

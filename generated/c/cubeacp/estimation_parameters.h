@@ -73,7 +73,6 @@ typedef struct {
     /**
      * Magnetometer Mode: bits 230 to 231. The magnetometer that estimation and control use.
      * \@note Note ACP-049 (open): Magnetometer mode can be set in two places.
-     * \@note Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
      */
     cubeacp_mag_mode_val_t magnetometer_mode;
     /**

@@ -56,55 +56,46 @@ typedef struct {
     /**
      * Magnetometer Sensitivity Matrix S11: bits 96 to 111, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * \@note Note ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t magnetometer_sensitivity_matrix_s11;
     /**
      * Magnetometer Sensitivity Matrix S22: bits 112 to 127, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * \@note Note ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t magnetometer_sensitivity_matrix_s22;
     /**
      * Magnetometer Sensitivity Matrix S33: bits 128 to 143, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * \@note Note ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t magnetometer_sensitivity_matrix_s33;
     /**
      * Magnetometer Sensitivity Matrix S12: bits 144 to 159, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * \@note Note ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t magnetometer_sensitivity_matrix_s12;
     /**
      * Magnetometer Sensitivity Matrix S13: bits 160 to 175, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * \@note Note ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t magnetometer_sensitivity_matrix_s13;
     /**
      * Magnetometer Sensitivity Matrix S21: bits 176 to 191, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * \@note Note ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t magnetometer_sensitivity_matrix_s21;
     /**
      * Magnetometer Sensitivity Matrix S23: bits 192 to 207, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * \@note Note ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t magnetometer_sensitivity_matrix_s23;
     /**
      * Magnetometer Sensitivity Matrix S31: bits 208 to 223, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * \@note Note ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t magnetometer_sensitivity_matrix_s31;
     /**
      * Magnetometer Sensitivity Matrix S32: bits 224 to 239, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * \@note Note ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t magnetometer_sensitivity_matrix_s32;
 } cubeacp_magnetometer_configuration_t;

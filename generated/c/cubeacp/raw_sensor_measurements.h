@@ -9,7 +9,6 @@
  * Repeats Raw Cam2 Sensor from byte 0. Repeats Raw Cam1 Sensor from byte 6. Repeats Raw CSS 1 to 6 from byte 12.
  * Repeats Raw CSS 7 to 10 from byte 18. Repeats Raw Magnetometer from byte 22. Repeats Raw Rate Sensor from byte 28.
  * \@note Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
- * \@note Note ACP-106 (certain): Messages have the names of groups.
  */
 
 #include "../icdgen.h"

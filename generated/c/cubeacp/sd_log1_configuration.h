@@ -7,7 +7,7 @@
  * @file
  * SD Log1 Configuration: configuration, set by telecommand 104, got by telemetry 235, 13 bytes. Table 210.
  * Which frames go into log 1, how often, and to which card.
- * \@note Note ACP-185 (certain): Log1, LOG1, Log 1.
+ * \@note Note ACP-185 (certain): Log1 is LOG1 in its description.
  * \@note Note ACP-186 (open): A log that is reconfigured while it runs.
  */
 

@@ -7,7 +7,7 @@
  * @file
  * SD Log2 Configuration: configuration, set by telecommand 105, got by telemetry 236, 13 bytes. Table 212.
  * Which frames go into log 2, how often, and to which card.
- * \@note Note ACP-185 (certain): Log1, LOG1, Log 1.
+ * \@note Note ACP-185 (certain): Log1 is LOG1 in its description.
  * \@note Note ACP-186 (open): A log that is reconfigured while it runs.
  */
 

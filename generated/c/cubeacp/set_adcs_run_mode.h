@@ -7,7 +7,6 @@
  * @file
  * ADCS Run Mode: telecommand 10, 1 byte. Table 74.
  * Switches the control loop and chooses how it runs.
- * \@note Note ACP-018 (certain): ADCS Run Mode is a message and an enumeration.
  */
 
 #include "../icdgen.h"

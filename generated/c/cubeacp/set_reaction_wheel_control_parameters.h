@@ -41,7 +41,6 @@ typedef struct {
     /**
      * Sun-pointing Facet: bits 96 to 102. Body axis that is turned towards the sun.
      * \@note Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
-     * \@note Note ACP-166 (certain): Facets have 7 bits and 8 bits.
      * \@note Note ACP-177 (open): Sun-pointing facet and special control selection.
      */
     cubeacp_axis_select_t sun_pointing_facet;

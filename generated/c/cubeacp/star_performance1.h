@@ -29,7 +29,6 @@ typedef struct {
     /**
      * Star image noise: bits 8 to 15, raw 0 to 255, in noise.
      * \@note Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel value.
-     * \@note Note ACP-094 (open): Star image noise has no scale.
      */
     uint8_t star_image_noise;
     /**
@@ -47,7 +46,6 @@ typedef struct {
     /**
      * Image dark value: bits 40 to 47, raw 0 to 255, in 8-bit pixel value. Mean of the centre line of the image.
      * \@note Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel value.
-     * \@note Note ACP-095 (open): Image dark value is the mean of a centre line.
      */
     uint8_t image_dark_value;
 } cubeacp_star_performance1_t;

@@ -20,10 +20,7 @@
 
 /** Raw values. */
 typedef struct {
-    /**
-     * Unix Time: bits 0 to 31, raw 0 to 4294967295, in s. For this iteration.
-     * \@note Note ACP-039 (open): Simulated data: whole seconds only.
-     */
+    /** Unix Time: bits 0 to 31, raw 0 to 4294967295, in s. For this iteration. */
     uint32_t unix_time;
     /**
      * Css Raw 1: bits 32 to 47, raw 0 to 65535.

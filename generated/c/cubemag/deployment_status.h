@@ -7,7 +7,6 @@
  * @file
  * Deployment Status: telemetry 190, 5 bytes. Table 61.
  * Only for the CubeMag of type Deploy.
- * \@note Note MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
  * \@note Note MAG-011 (open): Deployment Status: how to tell the type, and what other types answer.
  * \@note Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
  */

@@ -6,7 +6,6 @@
 /**
  * @file
  * Redundant Magnetometer Measurement: telemetry 193, 13 bytes. Table 64.
- * \@note Note MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
  * \@note Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
  */
 
@@ -40,10 +39,7 @@ typedef struct {
      * \@note Note MAG-018 (certain): nT here, uT there.
      */
     float z_axis;
-    /**
-     * Data Valid: bit 96.
-     * \@note Note MAG-019 (open): Measurements carry no time.
-     */
+    /** Data Valid: bit 96. */
     bool data_valid;
 } cubemag_redundant_magnetometer_measurement_t;
 

@@ -8,8 +8,6 @@
  * State: telemetry 188, 3 bytes. Table 57.
  * States of all services.
  * \@note Note MAG-004 (certain): Number 57 is used twice in the addendum.
- * \@note Note MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
- * \@note Note MAG-006 (open): State is described as all service states.
  */
 
 #include "../icdgen.h"

@@ -8,7 +8,6 @@
  * Wheel Reference Speed: telemetry 196, 4 bytes. Table 56.
  * Speed that the momentum wheel is set to.
  * \@note Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
- * \@note Note WHL-006 (certain): Ids 188, 196 and 197 are other frames elsewhere.
  * \@note Note WHL-012 (likely): Wheel Reference Speed is described as a telecommand.
  * \@note Note WHL-013 (open): Momentum wheel in one place, wheel in the others.
  */

@@ -7,7 +7,6 @@
  * @file
  * Wheel Speed: telemetry 188, 5 bytes. Table 47.
  * \@note Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
- * \@note Note WHL-006 (certain): Ids 188, 196 and 197 are other frames elsewhere.
  */
 
 #include "../icdgen.h"
@@ -23,7 +22,7 @@ typedef struct {
     /**
      * Wheel Speed: bits 0 to 31, 32-bit float, in rpm.
      * @note Erratum WHL-007 (certain): RPM is rpm.
-     * \@note Note WHL-008 (open): Wheel speed: float here, integer in the control program.
+     * \@note Note WHL-008 (open): Wheel speed: the positive direction is not given.
      * \@note Note WHL-009 (likely): FLOAT is not defined.
      */
     float wheel_speed;

@@ -9,8 +9,6 @@ use crate::support::{put, take, Coded, Error, Scale};
 ///
 /// Causes of the last reset and reboot, and the running program.
 ///
-/// Note COM-060 (open): The running program answers more than the text says, or less.
-///
 /// Note COM-062 (certain): Capitals of the boot status frame differ in the text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -8,8 +8,6 @@ use crate::support::{Coded, Error};
 /// Boot Index and Status: telemetry 130, 2 bytes. Table 32.
 ///
 /// Program selected for booting, and how the last attempt went.
-///
-/// Note COM-060 (open): The running program answers more than the text says, or less.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

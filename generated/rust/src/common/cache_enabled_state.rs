@@ -5,8 +5,6 @@
 use crate::support::Error;
 
 /// Cache enabled state: configuration, set by 3 and got by 131, 1 byte. Table 48.
-///
-/// Note COM-107 (certain): Get ids do not follow from set ids.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -5,8 +5,6 @@
 use crate::support::{put, take, Error};
 
 /// Current Unix Time: configuration, set by 2 and got by 140, 6 bytes. Table 50.
-///
-/// Note COM-107 (certain): Get ids do not follow from set ids.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -17,8 +17,6 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct FileInformation {
     /// File Type (bits 0 to 3).
-    ///
-    /// Note COM-098 (certain): File Type is 8 bits in telecommands and 4 bits in the frame.
     pub file_type: Coded<enums::FileType>,
     /// Busy Updating (bit 4).
     ///

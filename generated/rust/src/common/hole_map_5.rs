@@ -14,8 +14,6 @@ use crate::support::{array, put_array, Error};
 ///
 /// Note COM-117 (likely): Hole map: bits beyond the last packet.
 ///
-/// Note COM-118 (likely): Hole map: order of the eight parts.
-///
 /// Note COM-124 (certain): The hole map is read with eight frames, one table is referred to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

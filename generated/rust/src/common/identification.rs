@@ -8,8 +8,7 @@ use crate::support::{put, take, Error};
 ///
 /// Tells which program is running. Requesting it from the bootloader keeps it from booting on.
 ///
-/// Note COM-054 (open): Waiting times before the identification request differ, and the request
-/// itself stops the boot.
+/// Note COM-054 (likely): The identification request stops the boot that it is to check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -32,7 +31,7 @@ pub struct Identification {
     ///
     /// Erratum COM-057 (certain): Runtime has its unit in words only.
     ///
-    /// Note COM-056 (open): Runtime wraps after 18 hours.
+    /// Note COM-056 (open): Runtime ends after 18 hours.
     pub runtime_seconds: u16,
     /// Runtime (milliseconds) (bits 48 to 63): 0 to 65535 ms.
     ///

@@ -5,8 +5,6 @@
 use crate::support::{put, take, Error};
 
 /// SRAM Scrub Parameters: configuration, set by 8 and got by 134, 2 bytes. Table 49.
-///
-/// Note COM-107 (certain): Get ids do not follow from set ids.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

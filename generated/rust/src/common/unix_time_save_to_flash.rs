@@ -8,8 +8,6 @@ use crate::support::Error;
 ///
 /// When the Unix time is kept in flash, so that it survives a power cycle.
 ///
-/// Note COM-107 (certain): Get ids do not follow from set ids.
-///
 /// Note COM-112 (certain): Unix Time Save to Flash is described in two spellings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -5,8 +5,6 @@
 use crate::support::{put, take, Error};
 
 /// Actuator Commands: telemetry 192, 12 bytes. Table 151.
-///
-/// Note ACP-106 (certain): Messages have the names of groups.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

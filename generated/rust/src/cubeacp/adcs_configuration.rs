@@ -11,8 +11,6 @@ use crate::support::{array, flags, put, put_array, take, Coded, Error, Scale};
 ///
 /// Note ACP-020 (open): Reserved bits.
 ///
-/// Note ACP-158 (certain): ADCS configuration in list order, not in id order.
-///
 /// Note ACP-159 (open): The current configuration is not all of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -120,15 +118,11 @@ pub struct AdcsConfiguration {
     /// pixels.
     ///
     /// Where the boresight meets the image.
-    ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam1_boresight_x: u16,
     /// Cam1 Boresight Y (bits 400 to 415): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35
     /// pixels.
     ///
     /// Where the boresight meets the image.
-    ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam1_boresight_y: u16,
     /// Cam2 Sensor Mounting Transform Alpha Angle (bits 416 to 431): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
@@ -151,15 +145,11 @@ pub struct AdcsConfiguration {
     /// pixels.
     ///
     /// Where the boresight meets the image.
-    ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam2_boresight_x: u16,
     /// Cam2 Boresight Y (bits 512 to 527): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35
     /// pixels.
     ///
     /// Where the boresight meets the image.
-    ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam2_boresight_y: u16,
     /// Nadir Max Deviation Percentage (bits 528 to 535): 0 to 255 %.
     ///
@@ -170,8 +160,6 @@ pub struct AdcsConfiguration {
     /// Nadir Max Bad Edges (bits 536 to 543): 0 to 255.
     ///
     /// Most edges that may deviate further. Above 50 the test is off.
-    ///
-    /// Note ACP-152 (open): More than 50 bad edges disable the check.
     pub nadir_max_bad_edges: u8,
     /// Nadir Max Radius (bits 544 to 551): 0 to 255 deg.
     ///
@@ -511,8 +499,6 @@ pub struct AdcsConfiguration {
     /// Sun-pointing Facet (bits 2472 to 2478).
     ///
     /// Body axis that is turned towards the sun.
-    ///
-    /// Note ACP-166 (certain): Facets have 7 bits and 8 bits.
     pub sun_pointing_facet: Coded<enums::AxisSelect>,
     /// Automatic Control Transition due to Wheel Errors (bit 2479).
     ///

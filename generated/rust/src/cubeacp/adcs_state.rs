@@ -17,22 +17,14 @@ use crate::support::{flags, put, take, Coded, Error, Scale};
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct AdcsState {
     /// Attitude Estimation Mode (bits 0 to 3).
-    ///
-    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub attitude_estimation_mode: Coded<enums::EstimModeSelect>,
     /// Control Mode (bits 4 to 7).
-    ///
-    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub control_mode: Coded<enums::ConModeSelect>,
     /// ADCS Run Mode (bits 8 to 9).
-    ///
-    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub adcs_run_mode: Coded<enums::AdcsRunMode>,
     /// ASGP4 Mode (bits 10 to 11).
     ///
     /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
-    ///
-    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub asgp4_mode: Coded<enums::Asgp4ModeSelect>,
     /// CubeControl Signal Enabled (bit 12).
     pub cubecontrol_signal_enabled: bool,

@@ -7,7 +7,7 @@ use crate::support::{Coded, Error};
 
 /// ASGP4 Run Mode: telecommand 31, 1 byte. Table 86.
 ///
-/// Note ACP-046 (likely): Telecommand 31 has the id of the escape byte.
+/// Note ACP-046 (certain): Telecommand 31 has the id of the escape byte.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

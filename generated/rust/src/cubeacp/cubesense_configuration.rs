@@ -42,15 +42,11 @@ pub struct CubesenseConfiguration {
     ///
     /// Where the boresight meets the image.
     ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
-    ///
     /// Note ACP-154 (certain): Cam1 and Cam 1.
     pub cam1_boresight_x: u16,
     /// Cam1 Boresight Y (bits 96 to 111): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels.
     ///
     /// Where the boresight meets the image.
-    ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam1_boresight_y: u16,
     /// Cam2 Sensor Mounting Transform Alpha Angle (bits 112 to 127): raw, -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
@@ -82,16 +78,12 @@ pub struct CubesenseConfiguration {
     ///
     /// Where the boresight meets the image.
     ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
-    ///
     /// Note ACP-154 (certain): Cam1 and Cam 1.
     pub cam2_boresight_x: u16,
     /// Cam2 Boresight Y (bits 208 to 223): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35
     /// pixels.
     ///
     /// Where the boresight meets the image.
-    ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam2_boresight_y: u16,
     /// Nadir Max Deviation Percentage (bits 224 to 231): 0 to 255 %.
     ///
@@ -102,8 +94,6 @@ pub struct CubesenseConfiguration {
     /// Nadir Max Bad Edges (bits 232 to 239): 0 to 255.
     ///
     /// Most edges that may deviate further. Above 50 the test is off.
-    ///
-    /// Note ACP-152 (open): More than 50 bad edges disable the check.
     pub nadir_max_bad_edges: u8,
     /// Nadir Max Radius (bits 240 to 247): 0 to 255 deg.
     ///

@@ -73,8 +73,6 @@ pub struct EstimationParameters {
     /// The magnetometer that estimation and control use.
     ///
     /// Note ACP-049 (open): Magnetometer mode can be set in two places.
-    ///
-    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub magnetometer_mode: Coded<enums::MagModeVal>,
     /// Magnetometer Selection for RAW MTM TLM (bits 232 to 233).
     ///

@@ -13,18 +13,12 @@ use crate::support::{put, take, Error, Scale};
 pub struct QuaternionErrorVector {
     /// Quaternion Error - Q1 (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
     /// to 3.2767.
-    ///
-    /// Note ACP-073 (certain): One factor, several notations.
     pub quaternion_error_q1: i16,
     /// Quaternion Error - Q2 (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
     /// to 3.2767.
-    ///
-    /// Note ACP-073 (certain): One factor, several notations.
     pub quaternion_error_q2: i16,
     /// Quaternion Error - Q3 (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
     /// to 3.2767.
-    ///
-    /// Note ACP-073 (certain): One factor, several notations.
     pub quaternion_error_q3: i16,
 }
 

@@ -8,8 +8,6 @@ use crate::support::{put, take, Coded, Error};
 /// Raw Sensor Measurements: telemetry 194, 34 bytes. Table 153.
 ///
 /// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
-///
-/// Note ACP-106 (certain): Messages have the names of groups.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -19,8 +19,6 @@ pub struct RawStarTracker {
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
-    ///
-    /// Note ACP-094 (open): Star image noise has no scale.
     pub star_image_noise: u8,
     /// Invalid Stars (bits 16 to 23): 0 to 255 Invalid stars.
     ///
@@ -42,8 +40,6 @@ pub struct RawStarTracker {
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
-    ///
-    /// Note ACP-095 (open): Image dark value is the mean of a centre line.
     pub image_dark_value: u8,
     /// Image Capture Success (bit 48).
     pub image_capture_success: bool,

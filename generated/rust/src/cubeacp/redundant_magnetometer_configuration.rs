@@ -44,48 +44,30 @@ pub struct RedundantMagnetometerConfiguration {
     pub redundant_magnetometer_channel_3_offset: i16,
     /// Redundant Magnetometer Sensitivity Matrix S11 (bits 96 to 111): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s11: i16,
     /// Redundant Magnetometer Sensitivity Matrix S22 (bits 112 to 127): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s22: i16,
     /// Redundant Magnetometer Sensitivity Matrix S33 (bits 128 to 143): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s33: i16,
     /// Redundant Magnetometer Sensitivity Matrix S12 (bits 144 to 159): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s12: i16,
     /// Redundant Magnetometer Sensitivity Matrix S13 (bits 160 to 175): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s13: i16,
     /// Redundant Magnetometer Sensitivity Matrix S21 (bits 176 to 191): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s21: i16,
     /// Redundant Magnetometer Sensitivity Matrix S23 (bits 192 to 207): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s23: i16,
     /// Redundant Magnetometer Sensitivity Matrix S31 (bits 208 to 223): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s31: i16,
     /// Redundant Magnetometer Sensitivity Matrix S32 (bits 224 to 239): raw, -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s32: i16,
 }
 

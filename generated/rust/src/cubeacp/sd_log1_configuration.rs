@@ -9,7 +9,7 @@ use crate::support::{array, put, put_array, take, Coded, Error};
 ///
 /// Which frames go into log 1, how often, and to which card.
 ///
-/// Note ACP-185 (certain): Log1, LOG1, Log 1.
+/// Note ACP-185 (certain): Log1 is LOG1 in its description.
 ///
 /// Note ACP-186 (open): A log that is reconfigured while it runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -8,8 +8,6 @@ use crate::support::{Coded, Error};
 /// ADCS Run Mode: telecommand 10, 1 byte. Table 74.
 ///
 /// Switches the control loop and chooses how it runs.
-///
-/// Note ACP-018 (certain): ADCS Run Mode is a message and an enumeration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

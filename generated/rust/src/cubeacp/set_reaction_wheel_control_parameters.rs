@@ -39,8 +39,6 @@ pub struct SetReactionWheelControlParameters {
     ///
     /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
     ///
-    /// Note ACP-166 (certain): Facets have 7 bits and 8 bits.
-    ///
     /// Note ACP-177 (open): Sun-pointing facet and special control selection.
     pub sun_pointing_facet: Coded<enums::AxisSelect>,
     /// Automatic Control Transition due to Wheel Errors (bit 103).

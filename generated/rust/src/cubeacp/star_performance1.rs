@@ -23,8 +23,6 @@ pub struct StarPerformance1 {
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
-    ///
-    /// Note ACP-094 (open): Star image noise has no scale.
     pub star_image_noise: u8,
     /// Invalid Stars (bits 16 to 23): 0 to 255 Invalid stars.
     ///
@@ -46,8 +44,6 @@ pub struct StarPerformance1 {
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
-    ///
-    /// Note ACP-095 (open): Image dark value is the mean of a centre line.
     pub image_dark_value: u8,
 }
 

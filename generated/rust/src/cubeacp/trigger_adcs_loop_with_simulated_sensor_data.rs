@@ -18,8 +18,6 @@ pub struct TriggerAdcsLoopWithSimulatedSensorData {
     /// Unix Time (bits 0 to 31): 0 to 4294967295 s.
     ///
     /// For this iteration.
-    ///
-    /// Note ACP-039 (open): Simulated data: whole seconds only.
     pub unix_time: u32,
     /// Css Raw 1 (bits 32 to 47): 0 to 65535.
     ///

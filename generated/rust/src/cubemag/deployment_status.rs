@@ -8,8 +8,6 @@ use crate::support::{flags, put, take, Error};
 ///
 /// Only for the CubeMag of type Deploy.
 ///
-/// Note MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
-///
 /// Note MAG-011 (open): Deployment Status: how to tell the type, and what other types answer.
 ///
 /// Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.

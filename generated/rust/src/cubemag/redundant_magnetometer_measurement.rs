@@ -6,8 +6,6 @@ use crate::support::{put, take, Error};
 
 /// Redundant Magnetometer Measurement: telemetry 193, 13 bytes. Table 64.
 ///
-/// Note MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
-///
 /// Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -38,8 +36,6 @@ pub struct RedundantMagnetometerMeasurement {
     /// Note MAG-018 (certain): nT here, uT there.
     pub z_axis: f32,
     /// Data Valid (bit 96).
-    ///
-    /// Note MAG-019 (open): Measurements carry no time.
     pub data_valid: bool,
 }
 

@@ -10,10 +10,6 @@ use crate::support::{Coded, Error};
 /// States of all services.
 ///
 /// Note MAG-004 (certain): Number 57 is used twice in the addendum.
-///
-/// Note MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
-///
-/// Note MAG-006 (open): State is described as all service states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

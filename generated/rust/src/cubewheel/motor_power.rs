@@ -10,8 +10,6 @@ use crate::support::Error;
 ///
 /// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
 ///
-/// Note WHL-006 (certain): Ids 188, 196 and 197 are other frames elsewhere.
-///
 /// Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
 ///
 /// Note WHL-016 (open): Motor Power: seven bits are not described.

@@ -10,8 +10,6 @@ use crate::support::{put, take, Error};
 ///
 /// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
 ///
-/// Note WHL-006 (certain): Ids 188, 196 and 197 are other frames elsewhere.
-///
 /// Note WHL-012 (likely): Wheel Reference Speed is described as a telecommand.
 ///
 /// Note WHL-013 (open): Momentum wheel in one place, wheel in the others.

@@ -8,8 +8,6 @@ use crate::support::{put, take, Coded, Error};
 /// Wheel Speed: telemetry 188, 5 bytes. Table 47.
 ///
 /// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
-///
-/// Note WHL-006 (certain): Ids 188, 196 and 197 are other frames elsewhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -18,7 +16,7 @@ pub struct WheelSpeed {
     ///
     /// Erratum WHL-007 (certain): RPM is rpm.
     ///
-    /// Note WHL-008 (open): Wheel speed: float here, integer in the control program.
+    /// Note WHL-008 (open): Wheel speed: the positive direction is not given.
     ///
     /// Note WHL-009 (likely): FLOAT is not defined.
     pub wheel_speed: f32,

@@ -25,8 +25,6 @@ class BootAndRunningProgramStatus(_base.Message):
 
     Causes of the last reset and reboot, and the running program.
 
-    Note COM-060: The running program answers more than the text says, or less.
-
     Note COM-062: Capitals of the boot status frame differ in the text.
     """
 

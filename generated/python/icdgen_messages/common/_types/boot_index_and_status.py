@@ -22,8 +22,6 @@ class BootIndexAndStatus(_base.Message):
     """Boot Index and Status: telemetry 130, 2 bytes, table 32.
 
     Program selected for booting, and how the last attempt went.
-
-    Note COM-060: The running program answers more than the text says, or less.
     """
 
     __slots__ = ("program_index", "boot_status")

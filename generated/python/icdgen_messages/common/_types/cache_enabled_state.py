@@ -18,8 +18,6 @@ _BYTES_0 = _codec.Inverse(_BITS_0)
 class CacheEnabledState(_base.Message):
     """Cache enabled state: set by telecommand 3, got by telemetry 131, 1 byte, table
     48.
-
-    Note COM-107: Get ids do not follow from set ids.
     """
 
     __slots__ = ("enabled_state",)

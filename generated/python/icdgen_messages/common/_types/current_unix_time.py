@@ -14,9 +14,8 @@ _pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
 
 @dataclass(init=False, repr=False, eq=False)
 class CurrentUnixTime(_base.Message):
-    """Current Unix Time: set by telecommand 2, got by telemetry 140, 6 bytes, table 50.
-
-    Note COM-107: Get ids do not follow from set ids.
+    """Current Unix Time: set by telecommand 2, got by telemetry 140, 6 bytes, table
+    50.
     """
 
     __slots__ = ("current_unix_time", "milliseconds")

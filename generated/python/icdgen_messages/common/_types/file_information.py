@@ -61,10 +61,7 @@ class FileInformation(_base.Message):
     )
 
     file_type: FileType
-    """File Type: bits 0 to 3, 0 to 15.
-
-    Note COM-098: File Type is 8 bits in telecommands and 4 bits in the frame.
-    """
+    """File Type: bits 0 to 3, 0 to 15."""
     busy_updating: bool
     """Busy Updating: bit 4.
 

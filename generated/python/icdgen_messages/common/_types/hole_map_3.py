@@ -25,8 +25,6 @@ class HoleMap3(_base.Message):
 
     Note COM-117: Hole map: bits beyond the last packet.
 
-    Note COM-118: Hole map: order of the eight parts.
-
     Note COM-124: The hole map is read with eight frames, one table is referred to.
     """
 

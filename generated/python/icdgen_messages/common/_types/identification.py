@@ -19,8 +19,7 @@ class Identification(_base.Message):
     Tells which program is running. Requesting it from the bootloader keeps it from
     booting on.
 
-    Note COM-054: Waiting times before the identification request differ, and the
-    request itself stops the boot.
+    Note COM-054: The identification request stops the boot that it is to check.
     """
 
     __slots__ = (
@@ -77,7 +76,7 @@ class Identification(_base.Message):
 
     Erratum COM-057: Runtime has its unit in words only.
 
-    Note COM-056: Runtime wraps after 18 hours.
+    Note COM-056: Runtime ends after 18 hours.
     """
     runtime_milliseconds: int
     """Runtime (milliseconds): bits 48 to 63, 0 to 65535, in ms.

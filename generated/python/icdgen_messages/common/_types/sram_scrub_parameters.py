@@ -16,8 +16,6 @@ _pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
 class SramScrubParameters(_base.Message):
     """SRAM Scrub Parameters: set by telecommand 8, got by telemetry 134, 2 bytes, table
     49.
-
-    Note COM-107: Get ids do not follow from set ids.
     """
 
     __slots__ = ("scrub_size",)

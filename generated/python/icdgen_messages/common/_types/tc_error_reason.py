@@ -12,7 +12,6 @@ class TcErrorReason(_enumeration.OpenEnum):
     NO_ERROR = 0, "No Error"
     INVALID_TC = 1, "Invalid TC"
     INCORRECT_LENGTH = 2, "Incorrect Length"
-    """Note COM-094: What happens to a telecommand of the wrong length."""
     INCORRECT_PARAMETER = 3, "Incorrect Parameter"
     CRC_CHECK_FAILED = 4, "CRC check failed"
     """Note COM-095: Reasons for a TC error: three in the text, four in the table.

@@ -21,8 +21,6 @@ class UnixTimeSaveToFlash(_base.Message):
 
     When the Unix time is kept in flash, so that it survives a power cycle.
 
-    Note COM-107: Get ids do not follow from set ids.
-
     Note COM-112: Unix Time Save to Flash is described in two spellings.
     """
 

@@ -19,8 +19,6 @@ class ActuatorCommands(_base.Message):
     Repeats `Magnetorquer Command` from bit 0.
 
     Repeats `Wheel Speed Commands` from bit 48.
-
-    Note ACP-106: Messages have the names of groups.
     """
 
     __slots__ = (

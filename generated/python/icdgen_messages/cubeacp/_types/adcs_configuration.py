@@ -81,8 +81,6 @@ class AdcsConfiguration(_base.Message):
 
     Note ACP-020: Reserved bits.
 
-    Note ACP-158: ADCS configuration in list order, not in id order.
-
     Note ACP-159: The current configuration is not all of it.
     """
 
@@ -1715,15 +1713,11 @@ class AdcsConfiguration(_base.Message):
     """Cam1 Boresight X: bits 384 to 399, 0 to 65535; see `cam1_boresight_x_pixels`.
 
     Where the boresight meets the image.
-
-    Note ACP-149: Boresight ends at 655 pixels.
     """
     cam1_boresight_y: int
     """Cam1 Boresight Y: bits 400 to 415, 0 to 65535; see `cam1_boresight_y_pixels`.
 
     Where the boresight meets the image.
-
-    Note ACP-149: Boresight ends at 655 pixels.
     """
     cam2_sensor_mounting_transform_alpha_angle: int
     """Cam2 Sensor Mounting Transform Alpha Angle: bits 416 to 431, -32768 to 32767; see
@@ -1750,15 +1744,11 @@ class AdcsConfiguration(_base.Message):
     """Cam2 Boresight X: bits 496 to 511, 0 to 65535; see `cam2_boresight_x_pixels`.
 
     Where the boresight meets the image.
-
-    Note ACP-149: Boresight ends at 655 pixels.
     """
     cam2_boresight_y: int
     """Cam2 Boresight Y: bits 512 to 527, 0 to 65535; see `cam2_boresight_y_pixels`.
 
     Where the boresight meets the image.
-
-    Note ACP-149: Boresight ends at 655 pixels.
     """
     nadir_max_deviation_percentage: int
     """Nadir Max Deviation Percentage: bits 528 to 535, 0 to 255, in %.
@@ -1771,8 +1761,6 @@ class AdcsConfiguration(_base.Message):
     """Nadir Max Bad Edges: bits 536 to 543, 0 to 255.
 
     Most edges that may deviate further. Above 50 the test is off.
-
-    Note ACP-152: More than 50 bad edges disable the check.
     """
     nadir_max_radius: int
     """Nadir Max Radius: bits 544 to 551, 0 to 255, in deg.
@@ -2185,8 +2173,6 @@ class AdcsConfiguration(_base.Message):
     """Sun-pointing Facet: bits 2472 to 2478, 0 to 127.
 
     Body axis that is turned towards the sun.
-
-    Note ACP-166: Facets have 7 bits and 8 bits.
     """
     control_transition_on_wheel_error: bool
     """Automatic Control Transition due to Wheel Errors: bit 2479.

@@ -7,10 +7,7 @@ from ... import _enumeration
 
 
 class AdcsRunMode(_enumeration.OpenEnum):
-    """AdcsRunMode, table 75.
-
-    Note ACP-018: ADCS Run Mode is a message and an enumeration.
-    """
+    """AdcsRunMode, table 75."""
 
     OFF = 0, "Off"
     """The loop does not run.

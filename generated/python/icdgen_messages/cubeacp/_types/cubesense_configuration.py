@@ -394,16 +394,12 @@ class CubesenseConfiguration(_base.Message):
 
     Where the boresight meets the image.
 
-    Note ACP-149: Boresight ends at 655 pixels.
-
     Note ACP-154: Cam1 and Cam 1.
     """
     cam1_boresight_y: int
     """Cam1 Boresight Y: bits 96 to 111, 0 to 65535; see `cam1_boresight_y_pixels`.
 
     Where the boresight meets the image.
-
-    Note ACP-149: Boresight ends at 655 pixels.
     """
     cam2_sensor_mounting_transform_alpha_angle: int
     """Cam2 Sensor Mounting Transform Alpha Angle: bits 112 to 127, -32768 to 32767; see
@@ -439,16 +435,12 @@ class CubesenseConfiguration(_base.Message):
 
     Where the boresight meets the image.
 
-    Note ACP-149: Boresight ends at 655 pixels.
-
     Note ACP-154: Cam1 and Cam 1.
     """
     cam2_boresight_y: int
     """Cam2 Boresight Y: bits 208 to 223, 0 to 65535; see `cam2_boresight_y_pixels`.
 
     Where the boresight meets the image.
-
-    Note ACP-149: Boresight ends at 655 pixels.
     """
     nadir_max_deviation_percentage: int
     """Nadir Max Deviation Percentage: bits 224 to 231, 0 to 255, in %.
@@ -461,8 +453,6 @@ class CubesenseConfiguration(_base.Message):
     """Nadir Max Bad Edges: bits 232 to 239, 0 to 255.
 
     Most edges that may deviate further. Above 50 the test is off.
-
-    Note ACP-152: More than 50 bad edges disable the check.
     """
     nadir_max_radius: int
     """Nadir Max Radius: bits 240 to 247, 0 to 255, in deg.

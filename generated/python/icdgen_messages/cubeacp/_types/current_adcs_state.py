@@ -268,26 +268,15 @@ class CurrentAdcsState(_base.Message):
     )
 
     attitude_estimation_mode: EstimModeSelect
-    """Attitude Estimation Mode: bits 0 to 3, 0 to 15.
-
-    Note ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
-    """
+    """Attitude Estimation Mode: bits 0 to 3, 0 to 15."""
     control_mode: ConModeSelect
-    """Control Mode: bits 4 to 7, 0 to 15.
-
-    Note ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
-    """
+    """Control Mode: bits 4 to 7, 0 to 15."""
     adcs_run_mode: AdcsRunMode
-    """ADCS Run Mode: bits 8 to 9, 0 to 3.
-
-    Note ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
-    """
+    """ADCS Run Mode: bits 8 to 9, 0 to 3."""
     asgp4_mode: Asgp4ModeSelect
     """ASGP4 Mode: bits 10 to 11, 0 to 3.
 
     Note ACP-047: ASGP4 Mode is called an enabled state.
-
-    Note ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
     """
     cubecontrol_signal_enabled: bool
     """CubeControl Signal Enabled: bit 12."""

@@ -7,10 +7,7 @@ from ... import _enumeration
 
 
 class DetectResult(_enumeration.OpenEnum):
-    """DetectResult, table 124.
-
-    Note ACP-079: DetectResult mixes sun and nadir.
-    """
+    """DetectResult, table 124."""
 
     STARTUP = 0, "Startup"
     NO_DETECT = 1, "NoDetect"

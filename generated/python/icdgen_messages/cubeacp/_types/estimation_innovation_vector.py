@@ -59,23 +59,17 @@ class EstimationInnovationVector(_base.Message):
     """Innovation Vector X: bits 0 to 15, -32768 to 32767; see
     `innovation_vector_x_physical`.
 
-    Note ACP-073: One factor, several notations.
-
     Note ACP-074: Innovation has no unit.
     """
     innovation_vector_y: int
     """Innovation Vector Y: bits 16 to 31, -32768 to 32767; see
     `innovation_vector_y_physical`.
 
-    Note ACP-073: One factor, several notations.
-
     Note ACP-074: Innovation has no unit.
     """
     innovation_vector_z: int
     """Innovation Vector Z: bits 32 to 47, -32768 to 32767; see
     `innovation_vector_z_physical`.
-
-    Note ACP-073: One factor, several notations.
 
     Note ACP-074: Innovation has no unit.
     """

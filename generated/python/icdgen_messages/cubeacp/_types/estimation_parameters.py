@@ -219,8 +219,6 @@ class EstimationParameters(_base.Message):
     The magnetometer that estimation and control use.
 
     Note ACP-049: Magnetometer mode can be set in two places.
-
-    Note ACP-058: Enumerations have 8 bits in telecommands and fewer in frames.
     """
     raw_magnetometer_selection: MagModeVal
     """Magnetometer Selection for RAW MTM TLM: bits 232 to 233, 0 to 3.

@@ -61,20 +61,14 @@ class QuaternionErrorVector(_base.Message):
     quaternion_error_q1: int
     """Quaternion Error - Q1: bits 0 to 15, -32768 to 32767; see
     `quaternion_error_q1_physical`.
-
-    Note ACP-073: One factor, several notations.
     """
     quaternion_error_q2: int
     """Quaternion Error - Q2: bits 16 to 31, -32768 to 32767; see
     `quaternion_error_q2_physical`.
-
-    Note ACP-073: One factor, several notations.
     """
     quaternion_error_q3: int
     """Quaternion Error - Q3: bits 32 to 47, -32768 to 32767; see
     `quaternion_error_q3_physical`.
-
-    Note ACP-073: One factor, several notations.
     """
 
     def __init__(

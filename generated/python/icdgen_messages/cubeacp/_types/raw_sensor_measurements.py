@@ -33,8 +33,6 @@ class RawSensorMeasurements(_base.Message):
     Repeats `Raw Rate Sensor` from bit 224.
 
     Note ACP-038: Simulated data: Cam1 first, in telemetry Cam2 first.
-
-    Note ACP-106: Messages have the names of groups.
     """
 
     __slots__ = (

@@ -226,56 +226,38 @@ class RedundantMagnetometerConfiguration(_base.Message):
     redundant_magnetometer_sensitivity_matrix_s11: int
     """Redundant Magnetometer Sensitivity Matrix S11: bits 96 to 111, -32768 to 32767;
     see `redundant_magnetometer_sensitivity_matrix_s11_physical`.
-
-    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     redundant_magnetometer_sensitivity_matrix_s22: int
     """Redundant Magnetometer Sensitivity Matrix S22: bits 112 to 127, -32768 to 32767;
     see `redundant_magnetometer_sensitivity_matrix_s22_physical`.
-
-    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     redundant_magnetometer_sensitivity_matrix_s33: int
     """Redundant Magnetometer Sensitivity Matrix S33: bits 128 to 143, -32768 to 32767;
     see `redundant_magnetometer_sensitivity_matrix_s33_physical`.
-
-    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     redundant_magnetometer_sensitivity_matrix_s12: int
     """Redundant Magnetometer Sensitivity Matrix S12: bits 144 to 159, -32768 to 32767;
     see `redundant_magnetometer_sensitivity_matrix_s12_physical`.
-
-    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     redundant_magnetometer_sensitivity_matrix_s13: int
     """Redundant Magnetometer Sensitivity Matrix S13: bits 160 to 175, -32768 to 32767;
     see `redundant_magnetometer_sensitivity_matrix_s13_physical`.
-
-    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     redundant_magnetometer_sensitivity_matrix_s21: int
     """Redundant Magnetometer Sensitivity Matrix S21: bits 176 to 191, -32768 to 32767;
     see `redundant_magnetometer_sensitivity_matrix_s21_physical`.
-
-    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     redundant_magnetometer_sensitivity_matrix_s23: int
     """Redundant Magnetometer Sensitivity Matrix S23: bits 192 to 207, -32768 to 32767;
     see `redundant_magnetometer_sensitivity_matrix_s23_physical`.
-
-    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     redundant_magnetometer_sensitivity_matrix_s31: int
     """Redundant Magnetometer Sensitivity Matrix S31: bits 208 to 223, -32768 to 32767;
     see `redundant_magnetometer_sensitivity_matrix_s31_physical`.
-
-    Note ACP-156: Sensitivity matrix: diagonal first.
     """
     redundant_magnetometer_sensitivity_matrix_s32: int
     """Redundant Magnetometer Sensitivity Matrix S32: bits 224 to 239, -32768 to 32767;
     see `redundant_magnetometer_sensitivity_matrix_s32_physical`.
-
-    Note ACP-156: Sensitivity matrix: diagonal first.
     """
 
     def __init__(

@@ -22,7 +22,7 @@ class SdLog1Configuration(_base.Message):
 
     Which frames go into log 1, how often, and to which card.
 
-    Note ACP-185: Log1, LOG1, Log 1.
+    Note ACP-185: Log1 is LOG1 in its description.
 
     Note ACP-186: A log that is reconfigured while it runs.
     """

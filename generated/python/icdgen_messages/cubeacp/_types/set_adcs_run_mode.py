@@ -19,8 +19,6 @@ class SetAdcsRunMode(_base.Message):
     """ADCS Run Mode: telecommand 10, 1 byte, table 74.
 
     Switches the control loop and chooses how it runs.
-
-    Note ACP-018: ADCS Run Mode is a message and an enumeration.
     """
 
     __slots__ = ("enabled",)

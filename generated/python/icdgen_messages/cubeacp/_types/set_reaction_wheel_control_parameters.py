@@ -96,8 +96,6 @@ class SetReactionWheelControlParameters(_base.Message):
 
     Note ACP-126: AxisSelect is used where Not Used is no answer.
 
-    Note ACP-166: Facets have 7 bits and 8 bits.
-
     Note ACP-177: Sun-pointing facet and special control selection.
     """
     control_transition_on_wheel_error: bool

@@ -91,8 +91,6 @@ class StarPerformance1(_base.Message):
 
     Note ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     value.
-
-    Note ACP-094: Star image noise has no scale.
     """
     invalid_stars: int
     """Invalid Stars: bits 16 to 23, 0 to 255, in Invalid stars.
@@ -117,8 +115,6 @@ class StarPerformance1(_base.Message):
 
     Note ACP-093: Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     value.
-
-    Note ACP-095: Image dark value is the mean of a centre line.
     """
 
     def __init__(

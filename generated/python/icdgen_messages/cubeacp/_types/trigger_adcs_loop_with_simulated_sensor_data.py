@@ -227,8 +227,6 @@ class TriggerAdcsLoopWithSimulatedSensorData(_base.Message):
     """Unix Time: bits 0 to 31, 0 to 4294967295, in s.
 
     For this iteration.
-
-    Note ACP-039: Simulated data: whole seconds only.
     """
     css_raw_1: int
     """Css Raw 1: bits 32 to 47, 0 to 65535.

@@ -22,8 +22,6 @@ class DeploymentStatus(_base.Message):
 
     Only for the CubeMag of type Deploy.
 
-    Note MAG-005: Ids 188, 190, 193 and 197 are other frames elsewhere.
-
     Note MAG-011: Deployment Status: how to tell the type, and what other types answer.
 
     Note MAG-015: Deployment Status and measurements end in unexplained bits.

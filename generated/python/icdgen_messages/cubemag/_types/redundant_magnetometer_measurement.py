@@ -18,8 +18,6 @@ _BYTES_0 = _codec.Inverse(_BITS_0)
 class RedundantMagnetometerMeasurement(_base.Message):
     """Redundant Magnetometer Measurement: telemetry 193, 13 bytes, table 64.
 
-    Note MAG-005: Ids 188, 190, 193 and 197 are other frames elsewhere.
-
     Note MAG-015: Deployment Status and measurements end in unexplained bits.
     """
 
@@ -67,10 +65,7 @@ class RedundantMagnetometerMeasurement(_base.Message):
     Note MAG-018: nT here, uT there.
     """
     data_valid: bool
-    """Data Valid: bit 96.
-
-    Note MAG-019: Measurements carry no time.
-    """
+    """Data Valid: bit 96."""
 
     def __init__(
         self,

@@ -23,10 +23,6 @@ class State(_base.Message):
     States of all services.
 
     Note MAG-004: Number 57 is used twice in the addendum.
-
-    Note MAG-005: Ids 188, 190, 193 and 197 are other frames elsewhere.
-
-    Note MAG-006: State is described as all service states.
     """
 
     __slots__ = ("mag_svc_state", "primary_mag_state", "red_mag_state")

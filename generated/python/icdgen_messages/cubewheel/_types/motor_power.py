@@ -22,8 +22,6 @@ class MotorPower(_base.Message):
 
     Note WHL-005: Table numbers collide with those of the manual and of CubeMag.
 
-    Note WHL-006: Ids 188, 196 and 197 are other frames elsewhere.
-
     Note WHL-015: Motor Power is described as a telecommand, with a doubled word.
 
     Note WHL-016: Motor Power: seven bits are not described.

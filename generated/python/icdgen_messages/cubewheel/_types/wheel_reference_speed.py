@@ -20,8 +20,6 @@ class WheelReferenceSpeed(_base.Message):
 
     Note WHL-005: Table numbers collide with those of the manual and of CubeMag.
 
-    Note WHL-006: Ids 188, 196 and 197 are other frames elsewhere.
-
     Note WHL-012: Wheel Reference Speed is described as a telecommand.
 
     Note WHL-013: Momentum wheel in one place, wheel in the others.

@@ -19,8 +19,6 @@ class WheelSpeed(_base.Message):
     """Wheel Speed: telemetry 188, 5 bytes, table 47.
 
     Note WHL-005: Table numbers collide with those of the manual and of CubeMag.
-
-    Note WHL-006: Ids 188, 196 and 197 are other frames elsewhere.
     """
 
     __slots__ = ("wheel_speed", "wheel_error_state")
@@ -49,7 +47,7 @@ class WheelSpeed(_base.Message):
 
     Erratum WHL-007: RPM is rpm.
 
-    Note WHL-008: Wheel speed: float here, integer in the control program.
+    Note WHL-008: Wheel speed: the positive direction is not given.
 
     Note WHL-009: FLOAT is not defined.
     """
