@@ -6,8 +6,7 @@ import os
 
 import pytest
 
-from icdgen import __main__, cache, fingerprints, model_cache
-from icdgen.icd import load as loading
+from icdgen import __main__, cache, fingerprints, loading, model_cache
 from tests.conftest import DEMO
 
 
