@@ -236,7 +236,7 @@ class Builder:
 
     def head(self, band: Band, texts: list[str]) -> list[Row]:
         """A band above the headings: one row, or where that labels more, one for each line."""
-        whole = Row(texts, band.page)
+        whole = Row(texts, band.page, edges=tuple(band.edges))
         single = [Row([line.text], band.page) for line in lines(band.words)]
         return single if len(single) > 1 and self.labelled(single) > self.labelled([whole]) else [whole]
 
