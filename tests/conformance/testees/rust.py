@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from icdgen import __version__
 from icdgen.backends import Identifier
+from icdgen.backends.origin import origin
 from icdgen.backends.rust import CRATE, constants, message_rows, names, wire
 from icdgen.backends.rust.messages import FieldRow, MessageRow
 from icdgen.backends.rust.names import Enums
@@ -140,7 +141,7 @@ class RustTesteeBackend:
 
     def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
         """A package with one binary, ``testee``."""
-        common = {"version": __version__, "crate": self.crate}
+        common = {"origin": origin(), "version": __version__, "crate": self.crate}
         enums = Enums(icd)
         rows = {node.name: message_rows(icd, node, enums) for node in icd.nodes}
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)

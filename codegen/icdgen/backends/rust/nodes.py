@@ -53,7 +53,6 @@ class NodeRow:
 
     def __init__(self, icd: Icd, node: Node, rows: dict[str, list[MessageRow]]) -> None:
         self.name = node.name
-        self.digest = node.digest[:16]
         about = sentence(prose(node.summary)) if node.summary else ""
         printed = ", ".join(f"{prose(key)} {prose(value)}" for key, value in node.document)
         included = ", ".join(f"[`{one.name}`](crate::{one.name})" for one in icd.included(node))
