@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
 
 from icdgen import __version__
 from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
-from icdgen.backends.python import links, messages, names, nodes, scopes
+from icdgen.backends.python import links, messages, names, nodes
+from icdgen.backends.python.declared_names import declared_names
 from icdgen.backends.python.text import prose
+from icdgen.describe import describe
 from icdgen.icd.model import Icd
+
+if TYPE_CHECKING:
+    from icdgen.render import Renderer
 
 _RUNTIME = PurePosixPath("icdgen_runtime")  # the package that what all nodes share is developed as
 
@@ -24,7 +30,7 @@ class PythonBackend:
     def __init__(self, package: str = "icdgen_messages") -> None:
         self.package = package
 
-    def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
+    def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The project's files, then the package's, then those of each node."""
         root = PurePosixPath(self.package)
         common = {
@@ -33,7 +39,8 @@ class PythonBackend:
             "version": __version__,
             "project": self.package.replace("_", "-"),
         }
-        listed = nodes.listed(icd)
+        description = describe(icd)
+        listed = nodes.listed(description)
         yield PurePosixPath("pyproject.toml"), render("pyproject.toml.j2", **common)
         yield PurePosixPath("README.md"), render("README.md.j2", **common, **listed)
         yield root / "__init__.py", render("package.py.j2", **common, **listed)
@@ -42,24 +49,25 @@ class PythonBackend:
             path = PurePosixPath(name).relative_to(_RUNTIME)
             if path != PurePosixPath("__init__.py"):
                 yield root / path, f"# {origin()}\n{render.source(name)}"
-        enums = messages.EnumNames(icd)
-        for node in icd.nodes:
+        for node in description.nodes:
             folder = root / node.name
-            first = {"origin": origin(node)}
+            first = {"origin": origin(node.node)}
             yield folder / "__init__.py", render(
-                "node.py.j2", origin=origin(node, with_digest=True), **nodes.values(icd, node)
+                "node.py.j2",
+                origin=origin(node.node, with_digest=True),
+                **nodes.values(node, description),
             )
-            if icd.protocol_of(node):
-                yield folder / "_link.py", render("link.py.j2", **first, **links.values(icd, node))
+            if node.is_linked:
+                yield folder / "_link.py", render("link.py.j2", **first, **links.values(icd, node.node))
             folder /= names.TYPES
-            yield folder / "__init__.py", render("types.py.j2", **first, title=prose(node.title))
+            yield folder / "__init__.py", render("types.py.j2", **first, title=prose(node.node.title))
             for enum in node.enums:
-                path = folder / f"{names.module_name(enum, node)}.py"
-                yield path, render("enum.py.j2", **first, **nodes.enum_values(enum, node))
+                path = folder / f"{names.module_name(enum)}.py"
+                yield path, render("enum.py.j2", **first, **nodes.enum_values(enum))
             for message in node.messages:
-                path = folder / f"{names.module_name(message, node)}.py"
-                yield path, render("message.py.j2", **first, **messages.values(message, node, enums))
+                path = folder / f"{names.module_name(message)}.py"
+                yield path, render("message.py.j2", **first, **messages.values(message))
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that ``files`` declares, for the name rules."""
-        return scopes.identifiers(icd, self.package)
+        return declared_names(describe(icd), self.package)
