@@ -121,118 +121,90 @@ impl Telecommand {
         Ok(match id {
             crate::common::Reset::ID => Self::Reset(crate::common::Reset::from_bytes(bytes)?),
             crate::common::ResetLogPointer::ID => {
-                let message = crate::common::ResetLogPointer::from_bytes(bytes)?;
-                Self::ResetLogPointer(message)
+                Self::ResetLogPointer(crate::common::ResetLogPointer::from_bytes(bytes)?)
             }
             crate::common::AdvanceLogPointer::ID => {
-                let message = crate::common::AdvanceLogPointer::from_bytes(bytes)?;
-                Self::AdvanceLogPointer(message)
+                Self::AdvanceLogPointer(crate::common::AdvanceLogPointer::from_bytes(bytes)?)
             }
             crate::common::ResetBootRegisters::ID => {
-                let message = crate::common::ResetBootRegisters::from_bytes(bytes)?;
-                Self::ResetBootRegisters(message)
+                Self::ResetBootRegisters(crate::common::ResetBootRegisters::from_bytes(bytes)?)
             }
             crate::common::FormatSdCard::ID => {
-                let message = crate::common::FormatSdCard::from_bytes(bytes)?;
-                Self::FormatSdCard(message)
+                Self::FormatSdCard(crate::common::FormatSdCard::from_bytes(bytes)?)
             }
             crate::common::EraseFile::ID => {
-                let message = crate::common::EraseFile::from_bytes(bytes)?;
-                Self::EraseFile(message)
+                Self::EraseFile(crate::common::EraseFile::from_bytes(bytes)?)
             }
             crate::common::LoadFileDownloadBlock::ID => {
-                let message = crate::common::LoadFileDownloadBlock::from_bytes(bytes)?;
-                Self::LoadFileDownloadBlock(message)
+                Self::LoadFileDownloadBlock(crate::common::LoadFileDownloadBlock::from_bytes(bytes)?)
             }
             crate::common::AdvanceFileListReadPointer::ID => {
-                let message = crate::common::AdvanceFileListReadPointer::from_bytes(bytes)?;
-                Self::AdvanceFileListReadPointer(message)
+                Self::AdvanceFileListReadPointer(crate::common::AdvanceFileListReadPointer::from_bytes(bytes)?)
             }
             crate::common::InitiateFileUpload::ID => {
-                let message = crate::common::InitiateFileUpload::from_bytes(bytes)?;
-                Self::InitiateFileUpload(message)
+                Self::InitiateFileUpload(crate::common::InitiateFileUpload::from_bytes(bytes)?)
             }
             crate::common::FileUploadPacket::ID => {
-                let message = crate::common::FileUploadPacket::from_bytes(bytes)?;
-                Self::FileUploadPacket(message)
+                Self::FileUploadPacket(crate::common::FileUploadPacket::from_bytes(bytes)?)
             }
             crate::common::FinalizeUploadBlock::ID => {
-                let message = crate::common::FinalizeUploadBlock::from_bytes(bytes)?;
-                Self::FinalizeUploadBlock(message)
+                Self::FinalizeUploadBlock(crate::common::FinalizeUploadBlock::from_bytes(bytes)?)
             }
             crate::common::ResetUploadBlock::ID => {
-                let message = crate::common::ResetUploadBlock::from_bytes(bytes)?;
-                Self::ResetUploadBlock(message)
+                Self::ResetUploadBlock(crate::common::ResetUploadBlock::from_bytes(bytes)?)
             }
             crate::common::ResetFileListReadPointer::ID => {
-                let message = crate::common::ResetFileListReadPointer::from_bytes(bytes)?;
-                Self::ResetFileListReadPointer(message)
+                Self::ResetFileListReadPointer(crate::common::ResetFileListReadPointer::from_bytes(bytes)?)
             }
             crate::common::InitiateDownloadBurst::ID => {
-                let message = crate::common::InitiateDownloadBurst::from_bytes(bytes)?;
-                Self::InitiateDownloadBurst(message)
+                Self::InitiateDownloadBurst(crate::common::InitiateDownloadBurst::from_bytes(bytes)?)
             }
             crate::common::CacheEnabledState::SET_ID => {
-                let message = crate::common::CacheEnabledState::from_bytes(bytes)?;
-                Self::CacheEnabledState(message)
+                Self::CacheEnabledState(crate::common::CacheEnabledState::from_bytes(bytes)?)
             }
             crate::common::SramScrubParameters::SET_ID => {
-                let message = crate::common::SramScrubParameters::from_bytes(bytes)?;
-                Self::SramScrubParameters(message)
+                Self::SramScrubParameters(crate::common::SramScrubParameters::from_bytes(bytes)?)
             }
             crate::common::CurrentUnixTime::SET_ID => {
-                let message = crate::common::CurrentUnixTime::from_bytes(bytes)?;
-                Self::CurrentUnixTime(message)
+                Self::CurrentUnixTime(crate::common::CurrentUnixTime::from_bytes(bytes)?)
             }
             crate::common::UnixTimeSaveToFlash::SET_ID => {
-                let message = crate::common::UnixTimeSaveToFlash::from_bytes(bytes)?;
-                Self::UnixTimeSaveToFlash(message)
+                Self::UnixTimeSaveToFlash(crate::common::UnixTimeSaveToFlash::from_bytes(bytes)?)
             }
             crate::common::HoleMap1::SET_ID => {
-                let message = crate::common::HoleMap1::from_bytes(bytes)?;
-                Self::HoleMap1(message)
+                Self::HoleMap1(crate::common::HoleMap1::from_bytes(bytes)?)
             }
             crate::common::HoleMap2::SET_ID => {
-                let message = crate::common::HoleMap2::from_bytes(bytes)?;
-                Self::HoleMap2(message)
+                Self::HoleMap2(crate::common::HoleMap2::from_bytes(bytes)?)
             }
             crate::common::HoleMap3::SET_ID => {
-                let message = crate::common::HoleMap3::from_bytes(bytes)?;
-                Self::HoleMap3(message)
+                Self::HoleMap3(crate::common::HoleMap3::from_bytes(bytes)?)
             }
             crate::common::HoleMap4::SET_ID => {
-                let message = crate::common::HoleMap4::from_bytes(bytes)?;
-                Self::HoleMap4(message)
+                Self::HoleMap4(crate::common::HoleMap4::from_bytes(bytes)?)
             }
             crate::common::HoleMap5::SET_ID => {
-                let message = crate::common::HoleMap5::from_bytes(bytes)?;
-                Self::HoleMap5(message)
+                Self::HoleMap5(crate::common::HoleMap5::from_bytes(bytes)?)
             }
             crate::common::HoleMap6::SET_ID => {
-                let message = crate::common::HoleMap6::from_bytes(bytes)?;
-                Self::HoleMap6(message)
+                Self::HoleMap6(crate::common::HoleMap6::from_bytes(bytes)?)
             }
             crate::common::HoleMap7::SET_ID => {
-                let message = crate::common::HoleMap7::from_bytes(bytes)?;
-                Self::HoleMap7(message)
+                Self::HoleMap7(crate::common::HoleMap7::from_bytes(bytes)?)
             }
             crate::common::HoleMap8::SET_ID => {
-                let message = crate::common::HoleMap8::from_bytes(bytes)?;
-                Self::HoleMap8(message)
+                Self::HoleMap8(crate::common::HoleMap8::from_bytes(bytes)?)
             }
             ClearErrorFlags::ID => Self::ClearErrorFlags(ClearErrorFlags::from_bytes(bytes)?),
             SetBootIndex::ID => Self::SetBootIndex(SetBootIndex::from_bytes(bytes)?),
             RunSelectedProgram::ID => {
-                let message = RunSelectedProgram::from_bytes(bytes)?;
-                Self::RunSelectedProgram(message)
+                Self::RunSelectedProgram(RunSelectedProgram::from_bytes(bytes)?)
             }
             ReadProgramInformation::ID => {
-                let message = ReadProgramInformation::from_bytes(bytes)?;
-                Self::ReadProgramInformation(message)
+                Self::ReadProgramInformation(ReadProgramInformation::from_bytes(bytes)?)
             }
             CopyProgramToInternalFlash::ID => {
-                let message = CopyProgramToInternalFlash::from_bytes(bytes)?;
-                Self::CopyProgramToInternalFlash(message)
+                Self::CopyProgramToInternalFlash(CopyProgramToInternalFlash::from_bytes(bytes)?)
             }
             _ => return Err(Error::UnknownId { id: u16::from(id) }),
         })
@@ -472,121 +444,92 @@ impl Telemetry {
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
             crate::common::Identification::ID => {
-                let message = crate::common::Identification::from_bytes(bytes)?;
-                Self::Identification(message)
+                Self::Identification(crate::common::Identification::from_bytes(bytes)?)
             }
             crate::common::BootAndRunningProgramStatus::ID => {
-                let message = crate::common::BootAndRunningProgramStatus::from_bytes(bytes)?;
-                Self::BootAndRunningProgramStatus(message)
+                Self::BootAndRunningProgramStatus(crate::common::BootAndRunningProgramStatus::from_bytes(bytes)?)
             }
             crate::common::BootIndexAndStatus::ID => {
-                let message = crate::common::BootIndexAndStatus::from_bytes(bytes)?;
-                Self::BootIndexAndStatus(message)
+                Self::BootIndexAndStatus(crate::common::BootIndexAndStatus::from_bytes(bytes)?)
             }
             crate::common::LastLoggedEvent::ID => {
-                let message = crate::common::LastLoggedEvent::from_bytes(bytes)?;
-                Self::LastLoggedEvent(message)
+                Self::LastLoggedEvent(crate::common::LastLoggedEvent::from_bytes(bytes)?)
             }
             crate::common::SramLatchupCounters::ID => {
-                let message = crate::common::SramLatchupCounters::from_bytes(bytes)?;
-                Self::SramLatchupCounters(message)
+                Self::SramLatchupCounters(crate::common::SramLatchupCounters::from_bytes(bytes)?)
             }
             crate::common::EdacErrorCounters::ID => {
-                let message = crate::common::EdacErrorCounters::from_bytes(bytes)?;
-                Self::EdacErrorCounters(message)
+                Self::EdacErrorCounters(crate::common::EdacErrorCounters::from_bytes(bytes)?)
             }
             crate::common::CommunicationStatus::ID => {
-                let message = crate::common::CommunicationStatus::from_bytes(bytes)?;
-                Self::CommunicationStatus(message)
+                Self::CommunicationStatus(crate::common::CommunicationStatus::from_bytes(bytes)?)
             }
             crate::common::SdCardFormatEraseProgress::ID => {
-                let message = crate::common::SdCardFormatEraseProgress::from_bytes(bytes)?;
-                Self::SdCardFormatEraseProgress(message)
+                Self::SdCardFormatEraseProgress(crate::common::SdCardFormatEraseProgress::from_bytes(bytes)?)
             }
             crate::common::TelecommandAcknowledge::ID => {
-                let message = crate::common::TelecommandAcknowledge::from_bytes(bytes)?;
-                Self::TelecommandAcknowledge(message)
+                Self::TelecommandAcknowledge(crate::common::TelecommandAcknowledge::from_bytes(bytes)?)
             }
             crate::common::FileDownloadBufferWithFileContents::ID => {
-                let message = crate::common::FileDownloadBufferWithFileContents::from_bytes(bytes)?;
-                Self::FileDownloadBufferWithFileContents(message)
+                Self::FileDownloadBufferWithFileContents(crate::common::FileDownloadBufferWithFileContents::from_bytes(bytes)?)
             }
             crate::common::DownloadBlockReady::ID => {
-                let message = crate::common::DownloadBlockReady::from_bytes(bytes)?;
-                Self::DownloadBlockReady(message)
+                Self::DownloadBlockReady(crate::common::DownloadBlockReady::from_bytes(bytes)?)
             }
             crate::common::FileInformation::ID => {
-                let message = crate::common::FileInformation::from_bytes(bytes)?;
-                Self::FileInformation(message)
+                Self::FileInformation(crate::common::FileInformation::from_bytes(bytes)?)
             }
             crate::common::InitializeUploadComplete::ID => {
-                let message = crate::common::InitializeUploadComplete::from_bytes(bytes)?;
-                Self::InitializeUploadComplete(message)
+                Self::InitializeUploadComplete(crate::common::InitializeUploadComplete::from_bytes(bytes)?)
             }
             crate::common::UploadBlockComplete::ID => {
-                let message = crate::common::UploadBlockComplete::from_bytes(bytes)?;
-                Self::UploadBlockComplete(message)
+                Self::UploadBlockComplete(crate::common::UploadBlockComplete::from_bytes(bytes)?)
             }
             crate::common::BlockChecksum::ID => {
-                let message = crate::common::BlockChecksum::from_bytes(bytes)?;
-                Self::BlockChecksum(message)
+                Self::BlockChecksum(crate::common::BlockChecksum::from_bytes(bytes)?)
             }
             crate::common::CacheEnabledState::GET_ID => {
-                let message = crate::common::CacheEnabledState::from_bytes(bytes)?;
-                Self::CacheEnabledState(message)
+                Self::CacheEnabledState(crate::common::CacheEnabledState::from_bytes(bytes)?)
             }
             crate::common::SramScrubParameters::GET_ID => {
-                let message = crate::common::SramScrubParameters::from_bytes(bytes)?;
-                Self::SramScrubParameters(message)
+                Self::SramScrubParameters(crate::common::SramScrubParameters::from_bytes(bytes)?)
             }
             crate::common::CurrentUnixTime::GET_ID => {
-                let message = crate::common::CurrentUnixTime::from_bytes(bytes)?;
-                Self::CurrentUnixTime(message)
+                Self::CurrentUnixTime(crate::common::CurrentUnixTime::from_bytes(bytes)?)
             }
             crate::common::UnixTimeSaveToFlash::GET_ID => {
-                let message = crate::common::UnixTimeSaveToFlash::from_bytes(bytes)?;
-                Self::UnixTimeSaveToFlash(message)
+                Self::UnixTimeSaveToFlash(crate::common::UnixTimeSaveToFlash::from_bytes(bytes)?)
             }
             crate::common::HoleMap1::GET_ID => {
-                let message = crate::common::HoleMap1::from_bytes(bytes)?;
-                Self::HoleMap1(message)
+                Self::HoleMap1(crate::common::HoleMap1::from_bytes(bytes)?)
             }
             crate::common::HoleMap2::GET_ID => {
-                let message = crate::common::HoleMap2::from_bytes(bytes)?;
-                Self::HoleMap2(message)
+                Self::HoleMap2(crate::common::HoleMap2::from_bytes(bytes)?)
             }
             crate::common::HoleMap3::GET_ID => {
-                let message = crate::common::HoleMap3::from_bytes(bytes)?;
-                Self::HoleMap3(message)
+                Self::HoleMap3(crate::common::HoleMap3::from_bytes(bytes)?)
             }
             crate::common::HoleMap4::GET_ID => {
-                let message = crate::common::HoleMap4::from_bytes(bytes)?;
-                Self::HoleMap4(message)
+                Self::HoleMap4(crate::common::HoleMap4::from_bytes(bytes)?)
             }
             crate::common::HoleMap5::GET_ID => {
-                let message = crate::common::HoleMap5::from_bytes(bytes)?;
-                Self::HoleMap5(message)
+                Self::HoleMap5(crate::common::HoleMap5::from_bytes(bytes)?)
             }
             crate::common::HoleMap6::GET_ID => {
-                let message = crate::common::HoleMap6::from_bytes(bytes)?;
-                Self::HoleMap6(message)
+                Self::HoleMap6(crate::common::HoleMap6::from_bytes(bytes)?)
             }
             crate::common::HoleMap7::GET_ID => {
-                let message = crate::common::HoleMap7::from_bytes(bytes)?;
-                Self::HoleMap7(message)
+                Self::HoleMap7(crate::common::HoleMap7::from_bytes(bytes)?)
             }
             crate::common::HoleMap8::GET_ID => {
-                let message = crate::common::HoleMap8::from_bytes(bytes)?;
-                Self::HoleMap8(message)
+                Self::HoleMap8(crate::common::HoleMap8::from_bytes(bytes)?)
             }
             BootloaderState::ID => Self::BootloaderState(BootloaderState::from_bytes(bytes)?),
             ProgramInformation::ID => {
-                let message = ProgramInformation::from_bytes(bytes)?;
-                Self::ProgramInformation(message)
+                Self::ProgramInformation(ProgramInformation::from_bytes(bytes)?)
             }
             CopyToInternalFlashProgress::ID => {
-                let message = CopyToInternalFlashProgress::from_bytes(bytes)?;
-                Self::CopyToInternalFlashProgress(message)
+                Self::CopyToInternalFlashProgress(CopyToInternalFlashProgress::from_bytes(bytes)?)
             }
             _ => return Err(Error::UnknownId { id: u16::from(id) }),
         })
@@ -601,8 +544,7 @@ impl Telemetry {
         match self {
             Self::Identification(message) => write_to(buffer, &message.to_bytes()),
             Self::BootAndRunningProgramStatus(message) => {
-                let bytes = message.try_to_bytes()?;
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.try_to_bytes()?)
             }
             Self::BootIndexAndStatus(message) => write_to(buffer, &message.to_bytes()),
             Self::LastLoggedEvent(message) => write_to(buffer, &message.to_bytes()),
@@ -612,8 +554,7 @@ impl Telemetry {
             Self::SdCardFormatEraseProgress(message) => write_to(buffer, &message.to_bytes()),
             Self::TelecommandAcknowledge(message) => write_to(buffer, &message.to_bytes()),
             Self::FileDownloadBufferWithFileContents(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::DownloadBlockReady(message) => write_to(buffer, &message.to_bytes()),
             Self::FileInformation(message) => write_to(buffer, &message.try_to_bytes()?),

@@ -204,49 +204,39 @@ impl Telecommand {
             ResetLogPointer::ID => Self::ResetLogPointer(ResetLogPointer::from_bytes(bytes)?),
             AdvanceLogPointer::ID => Self::AdvanceLogPointer(AdvanceLogPointer::from_bytes(bytes)?),
             ResetBootRegisters::ID => {
-                let message = ResetBootRegisters::from_bytes(bytes)?;
-                Self::ResetBootRegisters(message)
+                Self::ResetBootRegisters(ResetBootRegisters::from_bytes(bytes)?)
             }
             FormatSdCard::ID => Self::FormatSdCard(FormatSdCard::from_bytes(bytes)?),
             EraseFile::ID => Self::EraseFile(EraseFile::from_bytes(bytes)?),
             LoadFileDownloadBlock::ID => {
-                let message = LoadFileDownloadBlock::from_bytes(bytes)?;
-                Self::LoadFileDownloadBlock(message)
+                Self::LoadFileDownloadBlock(LoadFileDownloadBlock::from_bytes(bytes)?)
             }
             AdvanceFileListReadPointer::ID => {
-                let message = AdvanceFileListReadPointer::from_bytes(bytes)?;
-                Self::AdvanceFileListReadPointer(message)
+                Self::AdvanceFileListReadPointer(AdvanceFileListReadPointer::from_bytes(bytes)?)
             }
             InitiateFileUpload::ID => {
-                let message = InitiateFileUpload::from_bytes(bytes)?;
-                Self::InitiateFileUpload(message)
+                Self::InitiateFileUpload(InitiateFileUpload::from_bytes(bytes)?)
             }
             FileUploadPacket::ID => Self::FileUploadPacket(FileUploadPacket::from_bytes(bytes)?),
             FinalizeUploadBlock::ID => {
-                let message = FinalizeUploadBlock::from_bytes(bytes)?;
-                Self::FinalizeUploadBlock(message)
+                Self::FinalizeUploadBlock(FinalizeUploadBlock::from_bytes(bytes)?)
             }
             ResetUploadBlock::ID => Self::ResetUploadBlock(ResetUploadBlock::from_bytes(bytes)?),
             ResetFileListReadPointer::ID => {
-                let message = ResetFileListReadPointer::from_bytes(bytes)?;
-                Self::ResetFileListReadPointer(message)
+                Self::ResetFileListReadPointer(ResetFileListReadPointer::from_bytes(bytes)?)
             }
             InitiateDownloadBurst::ID => {
-                let message = InitiateDownloadBurst::from_bytes(bytes)?;
-                Self::InitiateDownloadBurst(message)
+                Self::InitiateDownloadBurst(InitiateDownloadBurst::from_bytes(bytes)?)
             }
             CacheEnabledState::SET_ID => {
-                let message = CacheEnabledState::from_bytes(bytes)?;
-                Self::CacheEnabledState(message)
+                Self::CacheEnabledState(CacheEnabledState::from_bytes(bytes)?)
             }
             SramScrubParameters::SET_ID => {
-                let message = SramScrubParameters::from_bytes(bytes)?;
-                Self::SramScrubParameters(message)
+                Self::SramScrubParameters(SramScrubParameters::from_bytes(bytes)?)
             }
             CurrentUnixTime::SET_ID => Self::CurrentUnixTime(CurrentUnixTime::from_bytes(bytes)?),
             UnixTimeSaveToFlash::SET_ID => {
-                let message = UnixTimeSaveToFlash::from_bytes(bytes)?;
-                Self::UnixTimeSaveToFlash(message)
+                Self::UnixTimeSaveToFlash(UnixTimeSaveToFlash::from_bytes(bytes)?)
             }
             HoleMap1::SET_ID => Self::HoleMap1(HoleMap1::from_bytes(bytes)?),
             HoleMap2::SET_ID => Self::HoleMap2(HoleMap2::from_bytes(bytes)?),
@@ -467,61 +457,48 @@ impl Telemetry {
         Ok(match id {
             Identification::ID => Self::Identification(Identification::from_bytes(bytes)?),
             BootAndRunningProgramStatus::ID => {
-                let message = BootAndRunningProgramStatus::from_bytes(bytes)?;
-                Self::BootAndRunningProgramStatus(message)
+                Self::BootAndRunningProgramStatus(BootAndRunningProgramStatus::from_bytes(bytes)?)
             }
             BootIndexAndStatus::ID => {
-                let message = BootIndexAndStatus::from_bytes(bytes)?;
-                Self::BootIndexAndStatus(message)
+                Self::BootIndexAndStatus(BootIndexAndStatus::from_bytes(bytes)?)
             }
             LastLoggedEvent::ID => Self::LastLoggedEvent(LastLoggedEvent::from_bytes(bytes)?),
             SramLatchupCounters::ID => {
-                let message = SramLatchupCounters::from_bytes(bytes)?;
-                Self::SramLatchupCounters(message)
+                Self::SramLatchupCounters(SramLatchupCounters::from_bytes(bytes)?)
             }
             EdacErrorCounters::ID => Self::EdacErrorCounters(EdacErrorCounters::from_bytes(bytes)?),
             CommunicationStatus::ID => {
-                let message = CommunicationStatus::from_bytes(bytes)?;
-                Self::CommunicationStatus(message)
+                Self::CommunicationStatus(CommunicationStatus::from_bytes(bytes)?)
             }
             SdCardFormatEraseProgress::ID => {
-                let message = SdCardFormatEraseProgress::from_bytes(bytes)?;
-                Self::SdCardFormatEraseProgress(message)
+                Self::SdCardFormatEraseProgress(SdCardFormatEraseProgress::from_bytes(bytes)?)
             }
             TelecommandAcknowledge::ID => {
-                let message = TelecommandAcknowledge::from_bytes(bytes)?;
-                Self::TelecommandAcknowledge(message)
+                Self::TelecommandAcknowledge(TelecommandAcknowledge::from_bytes(bytes)?)
             }
             FileDownloadBufferWithFileContents::ID => {
-                let message = FileDownloadBufferWithFileContents::from_bytes(bytes)?;
-                Self::FileDownloadBufferWithFileContents(message)
+                Self::FileDownloadBufferWithFileContents(FileDownloadBufferWithFileContents::from_bytes(bytes)?)
             }
             DownloadBlockReady::ID => {
-                let message = DownloadBlockReady::from_bytes(bytes)?;
-                Self::DownloadBlockReady(message)
+                Self::DownloadBlockReady(DownloadBlockReady::from_bytes(bytes)?)
             }
             FileInformation::ID => Self::FileInformation(FileInformation::from_bytes(bytes)?),
             InitializeUploadComplete::ID => {
-                let message = InitializeUploadComplete::from_bytes(bytes)?;
-                Self::InitializeUploadComplete(message)
+                Self::InitializeUploadComplete(InitializeUploadComplete::from_bytes(bytes)?)
             }
             UploadBlockComplete::ID => {
-                let message = UploadBlockComplete::from_bytes(bytes)?;
-                Self::UploadBlockComplete(message)
+                Self::UploadBlockComplete(UploadBlockComplete::from_bytes(bytes)?)
             }
             BlockChecksum::ID => Self::BlockChecksum(BlockChecksum::from_bytes(bytes)?),
             CacheEnabledState::GET_ID => {
-                let message = CacheEnabledState::from_bytes(bytes)?;
-                Self::CacheEnabledState(message)
+                Self::CacheEnabledState(CacheEnabledState::from_bytes(bytes)?)
             }
             SramScrubParameters::GET_ID => {
-                let message = SramScrubParameters::from_bytes(bytes)?;
-                Self::SramScrubParameters(message)
+                Self::SramScrubParameters(SramScrubParameters::from_bytes(bytes)?)
             }
             CurrentUnixTime::GET_ID => Self::CurrentUnixTime(CurrentUnixTime::from_bytes(bytes)?),
             UnixTimeSaveToFlash::GET_ID => {
-                let message = UnixTimeSaveToFlash::from_bytes(bytes)?;
-                Self::UnixTimeSaveToFlash(message)
+                Self::UnixTimeSaveToFlash(UnixTimeSaveToFlash::from_bytes(bytes)?)
             }
             HoleMap1::GET_ID => Self::HoleMap1(HoleMap1::from_bytes(bytes)?),
             HoleMap2::GET_ID => Self::HoleMap2(HoleMap2::from_bytes(bytes)?),
@@ -544,8 +521,7 @@ impl Telemetry {
         match self {
             Self::Identification(message) => write_to(buffer, &message.to_bytes()),
             Self::BootAndRunningProgramStatus(message) => {
-                let bytes = message.try_to_bytes()?;
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.try_to_bytes()?)
             }
             Self::BootIndexAndStatus(message) => write_to(buffer, &message.to_bytes()),
             Self::LastLoggedEvent(message) => write_to(buffer, &message.to_bytes()),
@@ -555,8 +531,7 @@ impl Telemetry {
             Self::SdCardFormatEraseProgress(message) => write_to(buffer, &message.to_bytes()),
             Self::TelecommandAcknowledge(message) => write_to(buffer, &message.to_bytes()),
             Self::FileDownloadBufferWithFileContents(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::DownloadBlockReady(message) => write_to(buffer, &message.to_bytes()),
             Self::FileInformation(message) => write_to(buffer, &message.try_to_bytes()?),

@@ -515,245 +515,187 @@ impl Telecommand {
         Ok(match id {
             crate::common::Reset::ID => Self::Reset(crate::common::Reset::from_bytes(bytes)?),
             crate::common::ResetLogPointer::ID => {
-                let message = crate::common::ResetLogPointer::from_bytes(bytes)?;
-                Self::ResetLogPointer(message)
+                Self::ResetLogPointer(crate::common::ResetLogPointer::from_bytes(bytes)?)
             }
             crate::common::AdvanceLogPointer::ID => {
-                let message = crate::common::AdvanceLogPointer::from_bytes(bytes)?;
-                Self::AdvanceLogPointer(message)
+                Self::AdvanceLogPointer(crate::common::AdvanceLogPointer::from_bytes(bytes)?)
             }
             crate::common::ResetBootRegisters::ID => {
-                let message = crate::common::ResetBootRegisters::from_bytes(bytes)?;
-                Self::ResetBootRegisters(message)
+                Self::ResetBootRegisters(crate::common::ResetBootRegisters::from_bytes(bytes)?)
             }
             crate::common::FormatSdCard::ID => {
-                let message = crate::common::FormatSdCard::from_bytes(bytes)?;
-                Self::FormatSdCard(message)
+                Self::FormatSdCard(crate::common::FormatSdCard::from_bytes(bytes)?)
             }
             crate::common::EraseFile::ID => {
-                let message = crate::common::EraseFile::from_bytes(bytes)?;
-                Self::EraseFile(message)
+                Self::EraseFile(crate::common::EraseFile::from_bytes(bytes)?)
             }
             crate::common::LoadFileDownloadBlock::ID => {
-                let message = crate::common::LoadFileDownloadBlock::from_bytes(bytes)?;
-                Self::LoadFileDownloadBlock(message)
+                Self::LoadFileDownloadBlock(crate::common::LoadFileDownloadBlock::from_bytes(bytes)?)
             }
             crate::common::AdvanceFileListReadPointer::ID => {
-                let message = crate::common::AdvanceFileListReadPointer::from_bytes(bytes)?;
-                Self::AdvanceFileListReadPointer(message)
+                Self::AdvanceFileListReadPointer(crate::common::AdvanceFileListReadPointer::from_bytes(bytes)?)
             }
             crate::common::InitiateFileUpload::ID => {
-                let message = crate::common::InitiateFileUpload::from_bytes(bytes)?;
-                Self::InitiateFileUpload(message)
+                Self::InitiateFileUpload(crate::common::InitiateFileUpload::from_bytes(bytes)?)
             }
             crate::common::FileUploadPacket::ID => {
-                let message = crate::common::FileUploadPacket::from_bytes(bytes)?;
-                Self::FileUploadPacket(message)
+                Self::FileUploadPacket(crate::common::FileUploadPacket::from_bytes(bytes)?)
             }
             crate::common::FinalizeUploadBlock::ID => {
-                let message = crate::common::FinalizeUploadBlock::from_bytes(bytes)?;
-                Self::FinalizeUploadBlock(message)
+                Self::FinalizeUploadBlock(crate::common::FinalizeUploadBlock::from_bytes(bytes)?)
             }
             crate::common::ResetUploadBlock::ID => {
-                let message = crate::common::ResetUploadBlock::from_bytes(bytes)?;
-                Self::ResetUploadBlock(message)
+                Self::ResetUploadBlock(crate::common::ResetUploadBlock::from_bytes(bytes)?)
             }
             crate::common::ResetFileListReadPointer::ID => {
-                let message = crate::common::ResetFileListReadPointer::from_bytes(bytes)?;
-                Self::ResetFileListReadPointer(message)
+                Self::ResetFileListReadPointer(crate::common::ResetFileListReadPointer::from_bytes(bytes)?)
             }
             crate::common::InitiateDownloadBurst::ID => {
-                let message = crate::common::InitiateDownloadBurst::from_bytes(bytes)?;
-                Self::InitiateDownloadBurst(message)
+                Self::InitiateDownloadBurst(crate::common::InitiateDownloadBurst::from_bytes(bytes)?)
             }
             crate::common::CacheEnabledState::SET_ID => {
-                let message = crate::common::CacheEnabledState::from_bytes(bytes)?;
-                Self::CacheEnabledState(message)
+                Self::CacheEnabledState(crate::common::CacheEnabledState::from_bytes(bytes)?)
             }
             crate::common::SramScrubParameters::SET_ID => {
-                let message = crate::common::SramScrubParameters::from_bytes(bytes)?;
-                Self::SramScrubParameters(message)
+                Self::SramScrubParameters(crate::common::SramScrubParameters::from_bytes(bytes)?)
             }
             crate::common::CurrentUnixTime::SET_ID => {
-                let message = crate::common::CurrentUnixTime::from_bytes(bytes)?;
-                Self::CurrentUnixTime(message)
+                Self::CurrentUnixTime(crate::common::CurrentUnixTime::from_bytes(bytes)?)
             }
             crate::common::UnixTimeSaveToFlash::SET_ID => {
-                let message = crate::common::UnixTimeSaveToFlash::from_bytes(bytes)?;
-                Self::UnixTimeSaveToFlash(message)
+                Self::UnixTimeSaveToFlash(crate::common::UnixTimeSaveToFlash::from_bytes(bytes)?)
             }
             crate::common::HoleMap1::SET_ID => {
-                let message = crate::common::HoleMap1::from_bytes(bytes)?;
-                Self::HoleMap1(message)
+                Self::HoleMap1(crate::common::HoleMap1::from_bytes(bytes)?)
             }
             crate::common::HoleMap2::SET_ID => {
-                let message = crate::common::HoleMap2::from_bytes(bytes)?;
-                Self::HoleMap2(message)
+                Self::HoleMap2(crate::common::HoleMap2::from_bytes(bytes)?)
             }
             crate::common::HoleMap3::SET_ID => {
-                let message = crate::common::HoleMap3::from_bytes(bytes)?;
-                Self::HoleMap3(message)
+                Self::HoleMap3(crate::common::HoleMap3::from_bytes(bytes)?)
             }
             crate::common::HoleMap4::SET_ID => {
-                let message = crate::common::HoleMap4::from_bytes(bytes)?;
-                Self::HoleMap4(message)
+                Self::HoleMap4(crate::common::HoleMap4::from_bytes(bytes)?)
             }
             crate::common::HoleMap5::SET_ID => {
-                let message = crate::common::HoleMap5::from_bytes(bytes)?;
-                Self::HoleMap5(message)
+                Self::HoleMap5(crate::common::HoleMap5::from_bytes(bytes)?)
             }
             crate::common::HoleMap6::SET_ID => {
-                let message = crate::common::HoleMap6::from_bytes(bytes)?;
-                Self::HoleMap6(message)
+                Self::HoleMap6(crate::common::HoleMap6::from_bytes(bytes)?)
             }
             crate::common::HoleMap7::SET_ID => {
-                let message = crate::common::HoleMap7::from_bytes(bytes)?;
-                Self::HoleMap7(message)
+                Self::HoleMap7(crate::common::HoleMap7::from_bytes(bytes)?)
             }
             crate::common::HoleMap8::SET_ID => {
-                let message = crate::common::HoleMap8::from_bytes(bytes)?;
-                Self::HoleMap8(message)
+                Self::HoleMap8(crate::common::HoleMap8::from_bytes(bytes)?)
             }
             DeployMagnetometerBoom::ID => {
-                let message = DeployMagnetometerBoom::from_bytes(bytes)?;
-                Self::DeployMagnetometerBoom(message)
+                Self::DeployMagnetometerBoom(DeployMagnetometerBoom::from_bytes(bytes)?)
             }
             SetAdcsRunMode::ID => Self::SetAdcsRunMode(SetAdcsRunMode::from_bytes(bytes)?),
             ClearErrors::ID => Self::ClearErrors(ClearErrors::from_bytes(bytes)?),
             SetAttitudeControlMode::ID => {
-                let message = SetAttitudeControlMode::from_bytes(bytes)?;
-                Self::SetAttitudeControlMode(message)
+                Self::SetAttitudeControlMode(SetAttitudeControlMode::from_bytes(bytes)?)
             }
             SetAttitudeEstimationMode::ID => {
-                let message = SetAttitudeEstimationMode::from_bytes(bytes)?;
-                Self::SetAttitudeEstimationMode(message)
+                Self::SetAttitudeEstimationMode(SetAttitudeEstimationMode::from_bytes(bytes)?)
             }
             SetMagnetorquerOutput::ID => {
-                let message = SetMagnetorquerOutput::from_bytes(bytes)?;
-                Self::SetMagnetorquerOutput(message)
+                Self::SetMagnetorquerOutput(SetMagnetorquerOutput::from_bytes(bytes)?)
             }
             SetWheelSpeed::ID => Self::SetWheelSpeed(SetWheelSpeed::from_bytes(bytes)?),
             TriggerAdcsLoop::ID => Self::TriggerAdcsLoop(TriggerAdcsLoop::from_bytes(bytes)?),
             TriggerAdcsLoopWithSimulatedSensorData::ID => {
-                let message = TriggerAdcsLoopWithSimulatedSensorData::from_bytes(bytes)?;
-                Self::TriggerAdcsLoopWithSimulatedSensorData(message)
+                Self::TriggerAdcsLoopWithSimulatedSensorData(TriggerAdcsLoopWithSimulatedSensorData::from_bytes(bytes)?)
             }
             Asgp4RunMode::ID => Self::Asgp4RunMode(Asgp4RunMode::from_bytes(bytes)?),
             Asgp4Trigger::ID => Self::Asgp4Trigger(Asgp4Trigger::from_bytes(bytes)?),
             SetModeOfMagnetometerOperation::ID => {
-                let message = SetModeOfMagnetometerOperation::from_bytes(bytes)?;
-                Self::SetModeOfMagnetometerOperation(message)
+                Self::SetModeOfMagnetometerOperation(SetModeOfMagnetometerOperation::from_bytes(bytes)?)
             }
             ConvertToJpgFile::ID => Self::ConvertToJpgFile(ConvertToJpgFile::from_bytes(bytes)?),
             SaveConfiguration::ID => Self::SaveConfiguration(SaveConfiguration::from_bytes(bytes)?),
             SaveOrbitParameters::ID => {
-                let message = SaveOrbitParameters::from_bytes(bytes)?;
-                Self::SaveOrbitParameters(message)
+                Self::SaveOrbitParameters(SaveOrbitParameters::from_bytes(bytes)?)
             }
             SaveImage::ID => Self::SaveImage(SaveImage::from_bytes(bytes)?),
             SetMagnetorquerConfiguration::SET_ID => {
-                let message = SetMagnetorquerConfiguration::from_bytes(bytes)?;
-                Self::SetMagnetorquerConfiguration(message)
+                Self::SetMagnetorquerConfiguration(SetMagnetorquerConfiguration::from_bytes(bytes)?)
             }
             SetWheelConfiguration::SET_ID => {
-                let message = SetWheelConfiguration::from_bytes(bytes)?;
-                Self::SetWheelConfiguration(message)
+                Self::SetWheelConfiguration(SetWheelConfiguration::from_bytes(bytes)?)
             }
             SetRateGyroConfiguration::SET_ID => {
-                let message = SetRateGyroConfiguration::from_bytes(bytes)?;
-                Self::SetRateGyroConfiguration(message)
+                Self::SetRateGyroConfiguration(SetRateGyroConfiguration::from_bytes(bytes)?)
             }
             CssConfiguration::SET_ID => {
-                let message = CssConfiguration::from_bytes(bytes)?;
-                Self::CssConfiguration(message)
+                Self::CssConfiguration(CssConfiguration::from_bytes(bytes)?)
             }
             AdcsPowerControl::SET_ID => {
-                let message = AdcsPowerControl::from_bytes(bytes)?;
-                Self::AdcsPowerControl(message)
+                Self::AdcsPowerControl(AdcsPowerControl::from_bytes(bytes)?)
             }
             CommandedAttitudeAngles::SET_ID => {
-                let message = CommandedAttitudeAngles::from_bytes(bytes)?;
-                Self::CommandedAttitudeAngles(message)
+                Self::CommandedAttitudeAngles(CommandedAttitudeAngles::from_bytes(bytes)?)
             }
             TrackingControllerTargetReference::SET_ID => {
-                let message = TrackingControllerTargetReference::from_bytes(bytes)?;
-                Self::TrackingControllerTargetReference(message)
+                Self::TrackingControllerTargetReference(TrackingControllerTargetReference::from_bytes(bytes)?)
             }
             SetStarTrackerConfiguration::SET_ID => {
-                let message = SetStarTrackerConfiguration::from_bytes(bytes)?;
-                Self::SetStarTrackerConfiguration(message)
+                Self::SetStarTrackerConfiguration(SetStarTrackerConfiguration::from_bytes(bytes)?)
             }
             CubesenseConfiguration::SET_ID => {
-                let message = CubesenseConfiguration::from_bytes(bytes)?;
-                Self::CubesenseConfiguration(message)
+                Self::CubesenseConfiguration(CubesenseConfiguration::from_bytes(bytes)?)
             }
             MagnetometerConfiguration::SET_ID => {
-                let message = MagnetometerConfiguration::from_bytes(bytes)?;
-                Self::MagnetometerConfiguration(message)
+                Self::MagnetometerConfiguration(MagnetometerConfiguration::from_bytes(bytes)?)
             }
             RedundantMagnetometerConfiguration::SET_ID => {
-                let message = RedundantMagnetometerConfiguration::from_bytes(bytes)?;
-                Self::RedundantMagnetometerConfiguration(message)
+                Self::RedundantMagnetometerConfiguration(RedundantMagnetometerConfiguration::from_bytes(bytes)?)
             }
             AdcsConfiguration::SET_ID => {
-                let message = AdcsConfiguration::from_bytes(bytes)?;
-                Self::AdcsConfiguration(message)
+                Self::AdcsConfiguration(AdcsConfiguration::from_bytes(bytes)?)
             }
             Sgp4OrbitParameters::SET_ID => {
-                let message = Sgp4OrbitParameters::from_bytes(bytes)?;
-                Self::Sgp4OrbitParameters(message)
+                Self::Sgp4OrbitParameters(Sgp4OrbitParameters::from_bytes(bytes)?)
             }
             SetDetumblingControlParameters::SET_ID => {
-                let message = SetDetumblingControlParameters::from_bytes(bytes)?;
-                Self::SetDetumblingControlParameters(message)
+                Self::SetDetumblingControlParameters(SetDetumblingControlParameters::from_bytes(bytes)?)
             }
             SetYWheelControlParameters::SET_ID => {
-                let message = SetYWheelControlParameters::from_bytes(bytes)?;
-                Self::SetYWheelControlParameters(message)
+                Self::SetYWheelControlParameters(SetYWheelControlParameters::from_bytes(bytes)?)
             }
             SetReactionWheelControlParameters::SET_ID => {
-                let message = SetReactionWheelControlParameters::from_bytes(bytes)?;
-                Self::SetReactionWheelControlParameters(message)
+                Self::SetReactionWheelControlParameters(SetReactionWheelControlParameters::from_bytes(bytes)?)
             }
             SetTrackingControllerGainParameters::SET_ID => {
-                let message = SetTrackingControllerGainParameters::from_bytes(bytes)?;
-                Self::SetTrackingControllerGainParameters(message)
+                Self::SetTrackingControllerGainParameters(SetTrackingControllerGainParameters::from_bytes(bytes)?)
             }
             MomentOfInertiaMatrix::SET_ID => {
-                let message = MomentOfInertiaMatrix::from_bytes(bytes)?;
-                Self::MomentOfInertiaMatrix(message)
+                Self::MomentOfInertiaMatrix(MomentOfInertiaMatrix::from_bytes(bytes)?)
             }
             EstimationParameters::SET_ID => {
-                let message = EstimationParameters::from_bytes(bytes)?;
-                Self::EstimationParameters(message)
+                Self::EstimationParameters(EstimationParameters::from_bytes(bytes)?)
             }
             AdcsSystemConfiguration::SET_ID => {
-                let message = AdcsSystemConfiguration::from_bytes(bytes)?;
-                Self::AdcsSystemConfiguration(message)
+                Self::AdcsSystemConfiguration(AdcsSystemConfiguration::from_bytes(bytes)?)
             }
             UserCodedControllerAndEstimatorParameters::SET_ID => {
-                let message = UserCodedControllerAndEstimatorParameters::from_bytes(bytes)?;
-                Self::UserCodedControllerAndEstimatorParameters(message)
+                Self::UserCodedControllerAndEstimatorParameters(UserCodedControllerAndEstimatorParameters::from_bytes(bytes)?)
             }
             AugmentedSgp4Parameters::SET_ID => {
-                let message = AugmentedSgp4Parameters::from_bytes(bytes)?;
-                Self::AugmentedSgp4Parameters(message)
+                Self::AugmentedSgp4Parameters(AugmentedSgp4Parameters::from_bytes(bytes)?)
             }
             SdLog1Configuration::SET_ID => {
-                let message = SdLog1Configuration::from_bytes(bytes)?;
-                Self::SdLog1Configuration(message)
+                Self::SdLog1Configuration(SdLog1Configuration::from_bytes(bytes)?)
             }
             SdLog2Configuration::SET_ID => {
-                let message = SdLog2Configuration::from_bytes(bytes)?;
-                Self::SdLog2Configuration(message)
+                Self::SdLog2Configuration(SdLog2Configuration::from_bytes(bytes)?)
             }
             UartLogConfiguration::SET_ID => {
-                let message = UartLogConfiguration::from_bytes(bytes)?;
-                Self::UartLogConfiguration(message)
+                Self::UartLogConfiguration(UartLogConfiguration::from_bytes(bytes)?)
             }
             InertialPointingReferenceVector::SET_ID => {
-                let message = InertialPointingReferenceVector::from_bytes(bytes)?;
-                Self::InertialPointingReferenceVector(message)
+                Self::InertialPointingReferenceVector(InertialPointingReferenceVector::from_bytes(bytes)?)
             }
             _ => return Err(Error::UnknownId { id: u16::from(id) }),
         })
@@ -801,8 +743,7 @@ impl Telecommand {
             Self::SetWheelSpeed(message) => write_to(buffer, &message.to_bytes()),
             Self::TriggerAdcsLoop(message) => write_to(buffer, &message.to_bytes()),
             Self::TriggerAdcsLoopWithSimulatedSensorData(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::Asgp4RunMode(message) => write_to(buffer, &message.to_bytes()),
             Self::Asgp4Trigger(message) => write_to(buffer, &message.to_bytes()),
@@ -818,34 +759,29 @@ impl Telecommand {
             Self::AdcsPowerControl(message) => write_to(buffer, &message.try_to_bytes()?),
             Self::CommandedAttitudeAngles(message) => write_to(buffer, &message.to_bytes()),
             Self::TrackingControllerTargetReference(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::SetStarTrackerConfiguration(message) => write_to(buffer, &message.to_bytes()),
             Self::CubesenseConfiguration(message) => write_to(buffer, &message.to_bytes()),
             Self::MagnetometerConfiguration(message) => write_to(buffer, &message.to_bytes()),
             Self::RedundantMagnetometerConfiguration(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::AdcsConfiguration(message) => write_to(buffer, &message.try_to_bytes()?),
             Self::Sgp4OrbitParameters(message) => write_to(buffer, &message.to_bytes()),
             Self::SetDetumblingControlParameters(message) => write_to(buffer, &message.to_bytes()),
             Self::SetYWheelControlParameters(message) => write_to(buffer, &message.to_bytes()),
             Self::SetReactionWheelControlParameters(message) => {
-                let bytes = message.try_to_bytes()?;
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.try_to_bytes()?)
             }
             Self::SetTrackingControllerGainParameters(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::MomentOfInertiaMatrix(message) => write_to(buffer, &message.to_bytes()),
             Self::EstimationParameters(message) => write_to(buffer, &message.try_to_bytes()?),
             Self::AdcsSystemConfiguration(message) => write_to(buffer, &message.try_to_bytes()?),
             Self::UserCodedControllerAndEstimatorParameters(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::AugmentedSgp4Parameters(message) => write_to(buffer, &message.to_bytes()),
             Self::SdLog1Configuration(message) => write_to(buffer, &message.to_bytes()),
@@ -1373,142 +1309,108 @@ impl Telemetry {
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
             crate::common::Identification::ID => {
-                let message = crate::common::Identification::from_bytes(bytes)?;
-                Self::Identification(message)
+                Self::Identification(crate::common::Identification::from_bytes(bytes)?)
             }
             crate::common::BootAndRunningProgramStatus::ID => {
-                let message = crate::common::BootAndRunningProgramStatus::from_bytes(bytes)?;
-                Self::BootAndRunningProgramStatus(message)
+                Self::BootAndRunningProgramStatus(crate::common::BootAndRunningProgramStatus::from_bytes(bytes)?)
             }
             crate::common::BootIndexAndStatus::ID => {
-                let message = crate::common::BootIndexAndStatus::from_bytes(bytes)?;
-                Self::BootIndexAndStatus(message)
+                Self::BootIndexAndStatus(crate::common::BootIndexAndStatus::from_bytes(bytes)?)
             }
             crate::common::LastLoggedEvent::ID => {
-                let message = crate::common::LastLoggedEvent::from_bytes(bytes)?;
-                Self::LastLoggedEvent(message)
+                Self::LastLoggedEvent(crate::common::LastLoggedEvent::from_bytes(bytes)?)
             }
             crate::common::SramLatchupCounters::ID => {
-                let message = crate::common::SramLatchupCounters::from_bytes(bytes)?;
-                Self::SramLatchupCounters(message)
+                Self::SramLatchupCounters(crate::common::SramLatchupCounters::from_bytes(bytes)?)
             }
             crate::common::EdacErrorCounters::ID => {
-                let message = crate::common::EdacErrorCounters::from_bytes(bytes)?;
-                Self::EdacErrorCounters(message)
+                Self::EdacErrorCounters(crate::common::EdacErrorCounters::from_bytes(bytes)?)
             }
             crate::common::CommunicationStatus::ID => {
-                let message = crate::common::CommunicationStatus::from_bytes(bytes)?;
-                Self::CommunicationStatus(message)
+                Self::CommunicationStatus(crate::common::CommunicationStatus::from_bytes(bytes)?)
             }
             crate::common::SdCardFormatEraseProgress::ID => {
-                let message = crate::common::SdCardFormatEraseProgress::from_bytes(bytes)?;
-                Self::SdCardFormatEraseProgress(message)
+                Self::SdCardFormatEraseProgress(crate::common::SdCardFormatEraseProgress::from_bytes(bytes)?)
             }
             crate::common::TelecommandAcknowledge::ID => {
-                let message = crate::common::TelecommandAcknowledge::from_bytes(bytes)?;
-                Self::TelecommandAcknowledge(message)
+                Self::TelecommandAcknowledge(crate::common::TelecommandAcknowledge::from_bytes(bytes)?)
             }
             crate::common::FileDownloadBufferWithFileContents::ID => {
-                let message = crate::common::FileDownloadBufferWithFileContents::from_bytes(bytes)?;
-                Self::FileDownloadBufferWithFileContents(message)
+                Self::FileDownloadBufferWithFileContents(crate::common::FileDownloadBufferWithFileContents::from_bytes(bytes)?)
             }
             crate::common::DownloadBlockReady::ID => {
-                let message = crate::common::DownloadBlockReady::from_bytes(bytes)?;
-                Self::DownloadBlockReady(message)
+                Self::DownloadBlockReady(crate::common::DownloadBlockReady::from_bytes(bytes)?)
             }
             crate::common::FileInformation::ID => {
-                let message = crate::common::FileInformation::from_bytes(bytes)?;
-                Self::FileInformation(message)
+                Self::FileInformation(crate::common::FileInformation::from_bytes(bytes)?)
             }
             crate::common::InitializeUploadComplete::ID => {
-                let message = crate::common::InitializeUploadComplete::from_bytes(bytes)?;
-                Self::InitializeUploadComplete(message)
+                Self::InitializeUploadComplete(crate::common::InitializeUploadComplete::from_bytes(bytes)?)
             }
             crate::common::UploadBlockComplete::ID => {
-                let message = crate::common::UploadBlockComplete::from_bytes(bytes)?;
-                Self::UploadBlockComplete(message)
+                Self::UploadBlockComplete(crate::common::UploadBlockComplete::from_bytes(bytes)?)
             }
             crate::common::BlockChecksum::ID => {
-                let message = crate::common::BlockChecksum::from_bytes(bytes)?;
-                Self::BlockChecksum(message)
+                Self::BlockChecksum(crate::common::BlockChecksum::from_bytes(bytes)?)
             }
             crate::common::CacheEnabledState::GET_ID => {
-                let message = crate::common::CacheEnabledState::from_bytes(bytes)?;
-                Self::CacheEnabledState(message)
+                Self::CacheEnabledState(crate::common::CacheEnabledState::from_bytes(bytes)?)
             }
             crate::common::SramScrubParameters::GET_ID => {
-                let message = crate::common::SramScrubParameters::from_bytes(bytes)?;
-                Self::SramScrubParameters(message)
+                Self::SramScrubParameters(crate::common::SramScrubParameters::from_bytes(bytes)?)
             }
             crate::common::CurrentUnixTime::GET_ID => {
-                let message = crate::common::CurrentUnixTime::from_bytes(bytes)?;
-                Self::CurrentUnixTime(message)
+                Self::CurrentUnixTime(crate::common::CurrentUnixTime::from_bytes(bytes)?)
             }
             crate::common::UnixTimeSaveToFlash::GET_ID => {
-                let message = crate::common::UnixTimeSaveToFlash::from_bytes(bytes)?;
-                Self::UnixTimeSaveToFlash(message)
+                Self::UnixTimeSaveToFlash(crate::common::UnixTimeSaveToFlash::from_bytes(bytes)?)
             }
             crate::common::HoleMap1::GET_ID => {
-                let message = crate::common::HoleMap1::from_bytes(bytes)?;
-                Self::HoleMap1(message)
+                Self::HoleMap1(crate::common::HoleMap1::from_bytes(bytes)?)
             }
             crate::common::HoleMap2::GET_ID => {
-                let message = crate::common::HoleMap2::from_bytes(bytes)?;
-                Self::HoleMap2(message)
+                Self::HoleMap2(crate::common::HoleMap2::from_bytes(bytes)?)
             }
             crate::common::HoleMap3::GET_ID => {
-                let message = crate::common::HoleMap3::from_bytes(bytes)?;
-                Self::HoleMap3(message)
+                Self::HoleMap3(crate::common::HoleMap3::from_bytes(bytes)?)
             }
             crate::common::HoleMap4::GET_ID => {
-                let message = crate::common::HoleMap4::from_bytes(bytes)?;
-                Self::HoleMap4(message)
+                Self::HoleMap4(crate::common::HoleMap4::from_bytes(bytes)?)
             }
             crate::common::HoleMap5::GET_ID => {
-                let message = crate::common::HoleMap5::from_bytes(bytes)?;
-                Self::HoleMap5(message)
+                Self::HoleMap5(crate::common::HoleMap5::from_bytes(bytes)?)
             }
             crate::common::HoleMap6::GET_ID => {
-                let message = crate::common::HoleMap6::from_bytes(bytes)?;
-                Self::HoleMap6(message)
+                Self::HoleMap6(crate::common::HoleMap6::from_bytes(bytes)?)
             }
             crate::common::HoleMap7::GET_ID => {
-                let message = crate::common::HoleMap7::from_bytes(bytes)?;
-                Self::HoleMap7(message)
+                Self::HoleMap7(crate::common::HoleMap7::from_bytes(bytes)?)
             }
             crate::common::HoleMap8::GET_ID => {
-                let message = crate::common::HoleMap8::from_bytes(bytes)?;
-                Self::HoleMap8(message)
+                Self::HoleMap8(crate::common::HoleMap8::from_bytes(bytes)?)
             }
             CurrentAdcsState::ID => Self::CurrentAdcsState(CurrentAdcsState::from_bytes(bytes)?),
             JpgConversionProgress::ID => {
-                let message = JpgConversionProgress::from_bytes(bytes)?;
-                Self::JpgConversionProgress(message)
+                Self::JpgConversionProgress(JpgConversionProgress::from_bytes(bytes)?)
             }
             CubeacpState::ID => Self::CubeacpState(CubeacpState::from_bytes(bytes)?),
             EstimatedAttitudeAngles::ID => {
-                let message = EstimatedAttitudeAngles::from_bytes(bytes)?;
-                Self::EstimatedAttitudeAngles(message)
+                Self::EstimatedAttitudeAngles(EstimatedAttitudeAngles::from_bytes(bytes)?)
             }
             EstimatedAngularRates::ID => {
-                let message = EstimatedAngularRates::from_bytes(bytes)?;
-                Self::EstimatedAngularRates(message)
+                Self::EstimatedAngularRates(EstimatedAngularRates::from_bytes(bytes)?)
             }
             SatellitePositionEci::ID => {
-                let message = SatellitePositionEci::from_bytes(bytes)?;
-                Self::SatellitePositionEci(message)
+                Self::SatellitePositionEci(SatellitePositionEci::from_bytes(bytes)?)
             }
             SatelliteVelocityEci::ID => {
-                let message = SatelliteVelocityEci::from_bytes(bytes)?;
-                Self::SatelliteVelocityEci(message)
+                Self::SatelliteVelocityEci(SatelliteVelocityEci::from_bytes(bytes)?)
             }
             SatellitePositionLlh::ID => {
-                let message = SatellitePositionLlh::from_bytes(bytes)?;
-                Self::SatellitePositionLlh(message)
+                Self::SatellitePositionLlh(SatellitePositionLlh::from_bytes(bytes)?)
             }
             MagneticFieldVector::ID => {
-                let message = MagneticFieldVector::from_bytes(bytes)?;
-                Self::MagneticFieldVector(message)
+                Self::MagneticFieldVector(MagneticFieldVector::from_bytes(bytes)?)
             }
             CoarseSunVector::ID => Self::CoarseSunVector(CoarseSunVector::from_bytes(bytes)?),
             FineSunVector::ID => Self::FineSunVector(FineSunVector::from_bytes(bytes)?),
@@ -1516,34 +1418,27 @@ impl Telemetry {
             RateSensorRates::ID => Self::RateSensorRates(RateSensorRates::from_bytes(bytes)?),
             WheelSpeed::ID => Self::WheelSpeed(WheelSpeed::from_bytes(bytes)?),
             MagnetorquerCommand::ID => {
-                let message = MagnetorquerCommand::from_bytes(bytes)?;
-                Self::MagnetorquerCommand(message)
+                Self::MagnetorquerCommand(MagnetorquerCommand::from_bytes(bytes)?)
             }
             WheelSpeedCommands::ID => {
-                let message = WheelSpeedCommands::from_bytes(bytes)?;
-                Self::WheelSpeedCommands(message)
+                Self::WheelSpeedCommands(WheelSpeedCommands::from_bytes(bytes)?)
             }
             IgrfModelledMagneticFieldVector::ID => {
-                let message = IgrfModelledMagneticFieldVector::from_bytes(bytes)?;
-                Self::IgrfModelledMagneticFieldVector(message)
+                Self::IgrfModelledMagneticFieldVector(IgrfModelledMagneticFieldVector::from_bytes(bytes)?)
             }
             ModelledSunVector::ID => Self::ModelledSunVector(ModelledSunVector::from_bytes(bytes)?),
             EstimatedGyroBias::ID => Self::EstimatedGyroBias(EstimatedGyroBias::from_bytes(bytes)?),
             EstimationInnovationVector::ID => {
-                let message = EstimationInnovationVector::from_bytes(bytes)?;
-                Self::EstimationInnovationVector(message)
+                Self::EstimationInnovationVector(EstimationInnovationVector::from_bytes(bytes)?)
             }
             QuaternionErrorVector::ID => {
-                let message = QuaternionErrorVector::from_bytes(bytes)?;
-                Self::QuaternionErrorVector(message)
+                Self::QuaternionErrorVector(QuaternionErrorVector::from_bytes(bytes)?)
             }
             QuaternionCovariance::ID => {
-                let message = QuaternionCovariance::from_bytes(bytes)?;
-                Self::QuaternionCovariance(message)
+                Self::QuaternionCovariance(QuaternionCovariance::from_bytes(bytes)?)
             }
             AngularRateCovariance::ID => {
-                let message = AngularRateCovariance::from_bytes(bytes)?;
-                Self::AngularRateCovariance(message)
+                Self::AngularRateCovariance(AngularRateCovariance::from_bytes(bytes)?)
             }
             RawCam2Sensor::ID => Self::RawCam2Sensor(RawCam2Sensor::from_bytes(bytes)?),
             RawCam1Sensor::ID => Self::RawCam1Sensor(RawCam1Sensor::from_bytes(bytes)?),
@@ -1551,18 +1446,15 @@ impl Telemetry {
             RawCss7To10::ID => Self::RawCss7To10(RawCss7To10::from_bytes(bytes)?),
             RawMagnetometer::ID => Self::RawMagnetometer(RawMagnetometer::from_bytes(bytes)?),
             Cubesense1CurrentMeasurements::ID => {
-                let message = Cubesense1CurrentMeasurements::from_bytes(bytes)?;
-                Self::Cubesense1CurrentMeasurements(message)
+                Self::Cubesense1CurrentMeasurements(Cubesense1CurrentMeasurements::from_bytes(bytes)?)
             }
             CubecontrolCurrentMeasurements::ID => {
-                let message = CubecontrolCurrentMeasurements::from_bytes(bytes)?;
-                Self::CubecontrolCurrentMeasurements(message)
+                Self::CubecontrolCurrentMeasurements(CubecontrolCurrentMeasurements::from_bytes(bytes)?)
             }
             WheelCurrents::ID => Self::WheelCurrents(WheelCurrents::from_bytes(bytes)?),
             AdcsTemperatures::ID => Self::AdcsTemperatures(AdcsTemperatures::from_bytes(bytes)?),
             RateSensorTemperatures::ID => {
-                let message = RateSensorTemperatures::from_bytes(bytes)?;
-                Self::RateSensorTemperatures(message)
+                Self::RateSensorTemperatures(RateSensorTemperatures::from_bytes(bytes)?)
             }
             RawGpsStatus::ID => Self::RawGpsStatus(RawGpsStatus::from_bytes(bytes)?),
             RawGpsTime::ID => Self::RawGpsTime(RawGpsTime::from_bytes(bytes)?),
@@ -1583,166 +1475,128 @@ impl Telemetry {
             ActuatorCommands::ID => Self::ActuatorCommands(ActuatorCommands::from_bytes(bytes)?),
             EstimationData::ID => Self::EstimationData(EstimationData::from_bytes(bytes)?),
             RawSensorMeasurements::ID => {
-                let message = RawSensorMeasurements::from_bytes(bytes)?;
-                Self::RawSensorMeasurements(message)
+                Self::RawSensorMeasurements(RawSensorMeasurements::from_bytes(bytes)?)
             }
             PowerAndTemperatureMeasurements::ID => {
-                let message = PowerAndTemperatureMeasurements::from_bytes(bytes)?;
-                Self::PowerAndTemperatureMeasurements(message)
+                Self::PowerAndTemperatureMeasurements(PowerAndTemperatureMeasurements::from_bytes(bytes)?)
             }
             AdcsExecutionTimes::ID => {
-                let message = AdcsExecutionTimes::from_bytes(bytes)?;
-                Self::AdcsExecutionTimes(message)
+                Self::AdcsExecutionTimes(AdcsExecutionTimes::from_bytes(bytes)?)
             }
             AdcsMiscCurrentMeasurements::ID => {
-                let message = AdcsMiscCurrentMeasurements::from_bytes(bytes)?;
-                Self::AdcsMiscCurrentMeasurements(message)
+                Self::AdcsMiscCurrentMeasurements(AdcsMiscCurrentMeasurements::from_bytes(bytes)?)
             }
             FineEstimatedAngularRates::ID => {
-                let message = FineEstimatedAngularRates::from_bytes(bytes)?;
-                Self::FineEstimatedAngularRates(message)
+                Self::FineEstimatedAngularRates(FineEstimatedAngularRates::from_bytes(bytes)?)
             }
             RawGpsMeasurements::ID => {
-                let message = RawGpsMeasurements::from_bytes(bytes)?;
-                Self::RawGpsMeasurements(message)
+                Self::RawGpsMeasurements(RawGpsMeasurements::from_bytes(bytes)?)
             }
             RawStarTracker::ID => Self::RawStarTracker(RawStarTracker::from_bytes(bytes)?),
             Star1RawData::ID => Self::Star1RawData(Star1RawData::from_bytes(bytes)?),
             Star2RawData::ID => Self::Star2RawData(Star2RawData::from_bytes(bytes)?),
             Star3RawData::ID => Self::Star3RawData(Star3RawData::from_bytes(bytes)?),
             SecondaryMagnetometerRawMeasurements::ID => {
-                let message = SecondaryMagnetometerRawMeasurements::from_bytes(bytes)?;
-                Self::SecondaryMagnetometerRawMeasurements(message)
+                Self::SecondaryMagnetometerRawMeasurements(SecondaryMagnetometerRawMeasurements::from_bytes(bytes)?)
             }
             RawRateSensor::ID => Self::RawRateSensor(RawRateSensor::from_bytes(bytes)?),
             EstimatedQuaternion::ID => {
-                let message = EstimatedQuaternion::from_bytes(bytes)?;
-                Self::EstimatedQuaternion(message)
+                Self::EstimatedQuaternion(EstimatedQuaternion::from_bytes(bytes)?)
             }
             EcefPosition::ID => Self::EcefPosition(EcefPosition::from_bytes(bytes)?),
             AcpExecutionState::ID => Self::AcpExecutionState(AcpExecutionState::from_bytes(bytes)?),
             CurrentAdcsState2::ID => Self::CurrentAdcsState2(CurrentAdcsState2::from_bytes(bytes)?),
             Asgp4Tles::ID => Self::Asgp4Tles(Asgp4Tles::from_bytes(bytes)?),
             CubestarEstimatedRates::ID => {
-                let message = CubestarEstimatedRates::from_bytes(bytes)?;
-                Self::CubestarEstimatedRates(message)
+                Self::CubestarEstimatedRates(CubestarEstimatedRates::from_bytes(bytes)?)
             }
             CubestarEstimatedQuaternion::ID => {
-                let message = CubestarEstimatedQuaternion::from_bytes(bytes)?;
-                Self::CubestarEstimatedQuaternion(message)
+                Self::CubestarEstimatedQuaternion(CubestarEstimatedQuaternion::from_bytes(bytes)?)
             }
             StarPerformance2::ID => Self::StarPerformance2(StarPerformance2::from_bytes(bytes)?),
             Cubesense2CurrentMeasurements::ID => {
-                let message = Cubesense2CurrentMeasurements::from_bytes(bytes)?;
-                Self::Cubesense2CurrentMeasurements(message)
+                Self::Cubesense2CurrentMeasurements(Cubesense2CurrentMeasurements::from_bytes(bytes)?)
             }
             StatusOfImageCaptureAndSaveOperation::ID => {
-                let message = StatusOfImageCaptureAndSaveOperation::from_bytes(bytes)?;
-                Self::StatusOfImageCaptureAndSaveOperation(message)
+                Self::StatusOfImageCaptureAndSaveOperation(StatusOfImageCaptureAndSaveOperation::from_bytes(bytes)?)
             }
             SetMagnetorquerConfiguration::GET_ID => {
-                let message = SetMagnetorquerConfiguration::from_bytes(bytes)?;
-                Self::SetMagnetorquerConfiguration(message)
+                Self::SetMagnetorquerConfiguration(SetMagnetorquerConfiguration::from_bytes(bytes)?)
             }
             SetWheelConfiguration::GET_ID => {
-                let message = SetWheelConfiguration::from_bytes(bytes)?;
-                Self::SetWheelConfiguration(message)
+                Self::SetWheelConfiguration(SetWheelConfiguration::from_bytes(bytes)?)
             }
             SetRateGyroConfiguration::GET_ID => {
-                let message = SetRateGyroConfiguration::from_bytes(bytes)?;
-                Self::SetRateGyroConfiguration(message)
+                Self::SetRateGyroConfiguration(SetRateGyroConfiguration::from_bytes(bytes)?)
             }
             CssConfiguration::GET_ID => {
-                let message = CssConfiguration::from_bytes(bytes)?;
-                Self::CssConfiguration(message)
+                Self::CssConfiguration(CssConfiguration::from_bytes(bytes)?)
             }
             AdcsPowerControl::GET_ID => {
-                let message = AdcsPowerControl::from_bytes(bytes)?;
-                Self::AdcsPowerControl(message)
+                Self::AdcsPowerControl(AdcsPowerControl::from_bytes(bytes)?)
             }
             CommandedAttitudeAngles::GET_ID => {
-                let message = CommandedAttitudeAngles::from_bytes(bytes)?;
-                Self::CommandedAttitudeAngles(message)
+                Self::CommandedAttitudeAngles(CommandedAttitudeAngles::from_bytes(bytes)?)
             }
             TrackingControllerTargetReference::GET_ID => {
-                let message = TrackingControllerTargetReference::from_bytes(bytes)?;
-                Self::TrackingControllerTargetReference(message)
+                Self::TrackingControllerTargetReference(TrackingControllerTargetReference::from_bytes(bytes)?)
             }
             SetStarTrackerConfiguration::GET_ID => {
-                let message = SetStarTrackerConfiguration::from_bytes(bytes)?;
-                Self::SetStarTrackerConfiguration(message)
+                Self::SetStarTrackerConfiguration(SetStarTrackerConfiguration::from_bytes(bytes)?)
             }
             CubesenseConfiguration::GET_ID => {
-                let message = CubesenseConfiguration::from_bytes(bytes)?;
-                Self::CubesenseConfiguration(message)
+                Self::CubesenseConfiguration(CubesenseConfiguration::from_bytes(bytes)?)
             }
             MagnetometerConfiguration::GET_ID => {
-                let message = MagnetometerConfiguration::from_bytes(bytes)?;
-                Self::MagnetometerConfiguration(message)
+                Self::MagnetometerConfiguration(MagnetometerConfiguration::from_bytes(bytes)?)
             }
             RedundantMagnetometerConfiguration::GET_ID => {
-                let message = RedundantMagnetometerConfiguration::from_bytes(bytes)?;
-                Self::RedundantMagnetometerConfiguration(message)
+                Self::RedundantMagnetometerConfiguration(RedundantMagnetometerConfiguration::from_bytes(bytes)?)
             }
             AdcsConfiguration::GET_ID => {
-                let message = AdcsConfiguration::from_bytes(bytes)?;
-                Self::AdcsConfiguration(message)
+                Self::AdcsConfiguration(AdcsConfiguration::from_bytes(bytes)?)
             }
             Sgp4OrbitParameters::GET_ID => {
-                let message = Sgp4OrbitParameters::from_bytes(bytes)?;
-                Self::Sgp4OrbitParameters(message)
+                Self::Sgp4OrbitParameters(Sgp4OrbitParameters::from_bytes(bytes)?)
             }
             SetDetumblingControlParameters::GET_ID => {
-                let message = SetDetumblingControlParameters::from_bytes(bytes)?;
-                Self::SetDetumblingControlParameters(message)
+                Self::SetDetumblingControlParameters(SetDetumblingControlParameters::from_bytes(bytes)?)
             }
             SetYWheelControlParameters::GET_ID => {
-                let message = SetYWheelControlParameters::from_bytes(bytes)?;
-                Self::SetYWheelControlParameters(message)
+                Self::SetYWheelControlParameters(SetYWheelControlParameters::from_bytes(bytes)?)
             }
             SetReactionWheelControlParameters::GET_ID => {
-                let message = SetReactionWheelControlParameters::from_bytes(bytes)?;
-                Self::SetReactionWheelControlParameters(message)
+                Self::SetReactionWheelControlParameters(SetReactionWheelControlParameters::from_bytes(bytes)?)
             }
             SetTrackingControllerGainParameters::GET_ID => {
-                let message = SetTrackingControllerGainParameters::from_bytes(bytes)?;
-                Self::SetTrackingControllerGainParameters(message)
+                Self::SetTrackingControllerGainParameters(SetTrackingControllerGainParameters::from_bytes(bytes)?)
             }
             MomentOfInertiaMatrix::GET_ID => {
-                let message = MomentOfInertiaMatrix::from_bytes(bytes)?;
-                Self::MomentOfInertiaMatrix(message)
+                Self::MomentOfInertiaMatrix(MomentOfInertiaMatrix::from_bytes(bytes)?)
             }
             EstimationParameters::GET_ID => {
-                let message = EstimationParameters::from_bytes(bytes)?;
-                Self::EstimationParameters(message)
+                Self::EstimationParameters(EstimationParameters::from_bytes(bytes)?)
             }
             AdcsSystemConfiguration::GET_ID => {
-                let message = AdcsSystemConfiguration::from_bytes(bytes)?;
-                Self::AdcsSystemConfiguration(message)
+                Self::AdcsSystemConfiguration(AdcsSystemConfiguration::from_bytes(bytes)?)
             }
             UserCodedControllerAndEstimatorParameters::GET_ID => {
-                let message = UserCodedControllerAndEstimatorParameters::from_bytes(bytes)?;
-                Self::UserCodedControllerAndEstimatorParameters(message)
+                Self::UserCodedControllerAndEstimatorParameters(UserCodedControllerAndEstimatorParameters::from_bytes(bytes)?)
             }
             AugmentedSgp4Parameters::GET_ID => {
-                let message = AugmentedSgp4Parameters::from_bytes(bytes)?;
-                Self::AugmentedSgp4Parameters(message)
+                Self::AugmentedSgp4Parameters(AugmentedSgp4Parameters::from_bytes(bytes)?)
             }
             SdLog1Configuration::GET_ID => {
-                let message = SdLog1Configuration::from_bytes(bytes)?;
-                Self::SdLog1Configuration(message)
+                Self::SdLog1Configuration(SdLog1Configuration::from_bytes(bytes)?)
             }
             SdLog2Configuration::GET_ID => {
-                let message = SdLog2Configuration::from_bytes(bytes)?;
-                Self::SdLog2Configuration(message)
+                Self::SdLog2Configuration(SdLog2Configuration::from_bytes(bytes)?)
             }
             UartLogConfiguration::GET_ID => {
-                let message = UartLogConfiguration::from_bytes(bytes)?;
-                Self::UartLogConfiguration(message)
+                Self::UartLogConfiguration(UartLogConfiguration::from_bytes(bytes)?)
             }
             InertialPointingReferenceVector::GET_ID => {
-                let message = InertialPointingReferenceVector::from_bytes(bytes)?;
-                Self::InertialPointingReferenceVector(message)
+                Self::InertialPointingReferenceVector(InertialPointingReferenceVector::from_bytes(bytes)?)
             }
             _ => return Err(Error::UnknownId { id: u16::from(id) }),
         })
@@ -1757,8 +1611,7 @@ impl Telemetry {
         match self {
             Self::Identification(message) => write_to(buffer, &message.to_bytes()),
             Self::BootAndRunningProgramStatus(message) => {
-                let bytes = message.try_to_bytes()?;
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.try_to_bytes()?)
             }
             Self::BootIndexAndStatus(message) => write_to(buffer, &message.to_bytes()),
             Self::LastLoggedEvent(message) => write_to(buffer, &message.to_bytes()),
@@ -1768,8 +1621,7 @@ impl Telemetry {
             Self::SdCardFormatEraseProgress(message) => write_to(buffer, &message.to_bytes()),
             Self::TelecommandAcknowledge(message) => write_to(buffer, &message.to_bytes()),
             Self::FileDownloadBufferWithFileContents(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::DownloadBlockReady(message) => write_to(buffer, &message.to_bytes()),
             Self::FileInformation(message) => write_to(buffer, &message.try_to_bytes()?),
@@ -1850,8 +1702,7 @@ impl Telemetry {
             Self::Star2RawData(message) => write_to(buffer, &message.to_bytes()),
             Self::Star3RawData(message) => write_to(buffer, &message.to_bytes()),
             Self::SecondaryMagnetometerRawMeasurements(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::RawRateSensor(message) => write_to(buffer, &message.to_bytes()),
             Self::EstimatedQuaternion(message) => write_to(buffer, &message.to_bytes()),
@@ -1864,8 +1715,7 @@ impl Telemetry {
             Self::StarPerformance2(message) => write_to(buffer, &message.to_bytes()),
             Self::Cubesense2CurrentMeasurements(message) => write_to(buffer, &message.to_bytes()),
             Self::StatusOfImageCaptureAndSaveOperation(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::SetMagnetorquerConfiguration(message) => write_to(buffer, &message.to_bytes()),
             Self::SetWheelConfiguration(message) => write_to(buffer, &message.to_bytes()),
@@ -1874,34 +1724,29 @@ impl Telemetry {
             Self::AdcsPowerControl(message) => write_to(buffer, &message.try_to_bytes()?),
             Self::CommandedAttitudeAngles(message) => write_to(buffer, &message.to_bytes()),
             Self::TrackingControllerTargetReference(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::SetStarTrackerConfiguration(message) => write_to(buffer, &message.to_bytes()),
             Self::CubesenseConfiguration(message) => write_to(buffer, &message.to_bytes()),
             Self::MagnetometerConfiguration(message) => write_to(buffer, &message.to_bytes()),
             Self::RedundantMagnetometerConfiguration(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::AdcsConfiguration(message) => write_to(buffer, &message.try_to_bytes()?),
             Self::Sgp4OrbitParameters(message) => write_to(buffer, &message.to_bytes()),
             Self::SetDetumblingControlParameters(message) => write_to(buffer, &message.to_bytes()),
             Self::SetYWheelControlParameters(message) => write_to(buffer, &message.to_bytes()),
             Self::SetReactionWheelControlParameters(message) => {
-                let bytes = message.try_to_bytes()?;
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.try_to_bytes()?)
             }
             Self::SetTrackingControllerGainParameters(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::MomentOfInertiaMatrix(message) => write_to(buffer, &message.to_bytes()),
             Self::EstimationParameters(message) => write_to(buffer, &message.try_to_bytes()?),
             Self::AdcsSystemConfiguration(message) => write_to(buffer, &message.try_to_bytes()?),
             Self::UserCodedControllerAndEstimatorParameters(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::AugmentedSgp4Parameters(message) => write_to(buffer, &message.to_bytes()),
             Self::SdLog1Configuration(message) => write_to(buffer, &message.to_bytes()),

@@ -46,12 +46,10 @@ impl Telemetry {
             State::ID => Self::State(State::from_bytes(bytes)?),
             DeploymentStatus::ID => Self::DeploymentStatus(DeploymentStatus::from_bytes(bytes)?),
             RedundantMagnetometerMeasurement::ID => {
-                let message = RedundantMagnetometerMeasurement::from_bytes(bytes)?;
-                Self::RedundantMagnetometerMeasurement(message)
+                Self::RedundantMagnetometerMeasurement(RedundantMagnetometerMeasurement::from_bytes(bytes)?)
             }
             PrimaryMagnetometerMeasurement::ID => {
-                let message = PrimaryMagnetometerMeasurement::from_bytes(bytes)?;
-                Self::PrimaryMagnetometerMeasurement(message)
+                Self::PrimaryMagnetometerMeasurement(PrimaryMagnetometerMeasurement::from_bytes(bytes)?)
             }
             _ => return Err(Error::UnknownId { id: u16::from(id) }),
         })
@@ -67,8 +65,7 @@ impl Telemetry {
             Self::State(message) => write_to(buffer, &message.to_bytes()),
             Self::DeploymentStatus(message) => write_to(buffer, &message.to_bytes()),
             Self::RedundantMagnetometerMeasurement(message) => {
-                let bytes = message.to_bytes();
-                write_to(buffer, &bytes)
+                write_to(buffer, &message.to_bytes())
             }
             Self::PrimaryMagnetometerMeasurement(message) => write_to(buffer, &message.to_bytes()),
         }

@@ -14,19 +14,19 @@ use crate::support::{Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct State {
-    /// MagSvc State (bits 0 to 7).
+    /// MagSvc State: bits 0 to 7.
     ///
     /// Of the CubeMag service.
     ///
     /// Note MAG-007 (certain): State: names are cut short in three ways.
     pub mag_svc_state: Coded<enums::MagState>,
-    /// Primary Mag State (bits 8 to 15).
+    /// Primary Mag State: bits 8 to 15.
     ///
     /// Of the primary magnetometer.
     ///
     /// Note MAG-007 (certain): State: names are cut short in three ways.
     pub primary_mag_state: Coded<enums::MntState>,
-    /// Red Mag State (bits 16 to 23).
+    /// Red Mag State: bits 16 to 23.
     ///
     /// Of the redundant magnetometer.
     ///
@@ -39,7 +39,7 @@ impl State {
     pub const NAME: &'static str = "State";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 188;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -40,8 +40,7 @@ impl Telemetry {
         Ok(match id {
             WheelSpeed::ID => Self::WheelSpeed(WheelSpeed::from_bytes(bytes)?),
             WheelReferenceSpeed::ID => {
-                let message = WheelReferenceSpeed::from_bytes(bytes)?;
-                Self::WheelReferenceSpeed(message)
+                Self::WheelReferenceSpeed(WheelReferenceSpeed::from_bytes(bytes)?)
             }
             MotorPower::ID => Self::MotorPower(MotorPower::from_bytes(bytes)?),
             _ => return Err(Error::UnknownId { id: u16::from(id) }),

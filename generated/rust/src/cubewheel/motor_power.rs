@@ -17,7 +17,7 @@ use crate::support::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct MotorPower {
-    /// Motor Power Switch (bit 0).
+    /// Motor Power Switch: bit 0.
     ///
     /// Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
     pub motor_power_switch: bool,
@@ -28,7 +28,7 @@ impl MotorPower {
     pub const NAME: &'static str = "Motor Power";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 197;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -17,7 +17,7 @@ use crate::support::{put, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct WheelReferenceSpeed {
-    /// Reference Speed (bits 0 to 31): 32-bit float, in rpm.
+    /// Reference Speed: bits 0 to 31, 32-bit float, in rpm.
     ///
     /// Erratum WHL-007 (certain): RPM is rpm.
     ///
@@ -32,7 +32,7 @@ impl WheelReferenceSpeed {
     pub const NAME: &'static str = "Wheel Reference Speed";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 4;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 196;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
