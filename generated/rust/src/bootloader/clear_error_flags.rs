@@ -23,7 +23,7 @@ impl ClearErrorFlags {
     pub const NAME: &'static str = "Clear Error Flags";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 7;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
