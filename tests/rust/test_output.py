@@ -51,7 +51,7 @@ def test_every_file_says_where_it_comes_from_and_no_more(shipped):
 def test_comments_tell_unit_range_table_and_errata(shipped):
     text = harness.texts(shipped.icd)["src/cubeacp/estimated_attitude_angles.rs"]
     assert "telemetry 146, 6 bytes. Table 102." in text
-    assert "Estimated Roll Angle (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to" in text
+    assert "Estimated Roll Angle: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to" in text
     message = next(m for m in shipped.icd.node("cubeacp").messages if m.id == 146)
     assert message.errata
     for erratum in message.errata:

@@ -69,14 +69,19 @@ mod support;
 
 pub use support::{Coded, Enumeration, Error};
 
+#[rustfmt::skip] // It is laid out by icdgen.
 pub mod common;
 
+#[rustfmt::skip] // It is laid out by icdgen.
 pub mod bootloader;
 
+#[rustfmt::skip] // It is laid out by icdgen.
 pub mod cubeacp;
 
+#[rustfmt::skip] // It is laid out by icdgen.
 pub mod cubemag;
 
+#[rustfmt::skip] // It is laid out by icdgen.
 pub mod cubewheel;
 
 pub mod wire;

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from icdgen.backends.python import names
 from icdgen.backends.python.literals import Call, Noted, Verbatim, expression
 from icdgen.backends.python.text import prose
+from icdgen.describe import describe
 from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
 from icdgen.protocol import facts as read
 from icdgen.protocol.facts import Crc, Facts, Operation, Step
@@ -198,8 +198,7 @@ class Maker:
 
     def attributes(self, message: Message) -> dict[str, str]:
         """Attributes of a message by the names of its fields."""
-        owner = self.icd.node(message.node)
-        return {field.name: names.attribute(field, owner) for field in message.fields}
+        return {one.field.name: one.name for one in describe(self.icd).message(message).fields}
 
 
 def made(name: str, part: object, **instead: object) -> Call:

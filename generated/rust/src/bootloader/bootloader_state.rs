@@ -15,45 +15,45 @@ use crate::support::{flags, put, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct BootloaderState {
-    /// Up-time (s) (bits 0 to 15): 0 to 65535 s.
+    /// Up-time (s): bits 0 to 15, raw 0 to 65535, in s.
     ///
     /// Note BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds.
     pub uptime: u16,
-    /// SRAM1 is enabled (bit 16).
+    /// SRAM1 is enabled: bit 16.
     pub sram1_is_enabled: bool,
-    /// SRAM2 is enabled (bit 17).
+    /// SRAM2 is enabled: bit 17.
     pub sram2_is_enabled: bool,
-    /// SRAM Latch-up Error occurred and could not be recovered (bit 18).
+    /// SRAM Latch-up Error occurred and could not be recovered: bit 18.
     ///
     /// Note BOOT-017 (certain): Latch-up has three spellings.
     pub sram_latchup_error: bool,
-    /// SRAM Latch-up Occurred but recovered after power cycle (bit 19).
+    /// SRAM Latch-up Occurred but recovered after power cycle: bit 19.
     ///
     /// Note BOOT-017 (certain): Latch-up has three spellings.
     pub sram_latchup_recovered: bool,
-    /// SD card initialisation error (bit 20).
+    /// SD card initialisation error: bit 20.
     pub sd_card_initialisation_error: bool,
-    /// SD card read error (bit 21).
+    /// SD card read error: bit 21.
     pub sd_card_read_error: bool,
-    /// SD card write error (bit 22).
+    /// SD card write error: bit 22.
     pub sd_card_write_error: bool,
-    /// External Flash Error (bit 23).
+    /// External Flash Error: bit 23.
     ///
     /// Erasing or writing failed.
     pub external_flash_error: bool,
-    /// Internal Flash Error (bit 24).
+    /// Internal Flash Error: bit 24.
     ///
     /// Erasing or writing failed.
     pub internal_flash_error: bool,
-    /// EEPROM Error (bit 25).
+    /// EEPROM Error: bit 25.
     ///
     /// Writing failed.
     pub eeprom_error: bool,
-    /// Boot Register Corrupt (bit 26).
+    /// Boot Register Corrupt: bit 26.
     ///
     /// It held invalid data.
     pub boot_register_corrupt: bool,
-    /// Communications Error with Radio (bit 27).
+    /// Communications Error with Radio: bit 27.
     ///
     /// Note BOOT-016 (open): Bootloader State: a radio that the manual does not know.
     pub communications_error_with_radio: bool,
@@ -64,7 +64,7 @@ impl BootloaderState {
     pub const NAME: &'static str = "Bootloader State";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 132;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -8,6 +8,9 @@ use crate::support::Error;
 ///
 /// Clears the latched error flags of Bootloader State.
 ///
+/// Erratum BOOT-022 (certain): Clear Error Flags with a checksum deploys the magnetometer boom
+/// where CubeACP runs.
+///
 /// Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
 ///
 /// Note BOOT-005 (certain): Clear Error Flags and Clear Errors.
@@ -23,7 +26,7 @@ impl ClearErrorFlags {
     pub const NAME: &'static str = "Clear Error Flags";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 7;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -12,13 +12,15 @@ use crate::support::{Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CopyProgramToInternalFlash {
-    /// Source Program Index (bits 0 to 7).
+    /// Source Program Index: bits 0 to 7.
     ///
     /// Note BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense.
     pub source_program_index: Coded<enums::ProgramsList>,
-    /// Bootloader overwrite flag (bits 8 to 15): 0 to 255.
+    /// Bootloader overwrite flag: bits 8 to 15, raw 0 to 255.
     ///
-    /// To be used with great caution. 90: overwrite the boot segment.
+    /// To be used with great caution.
+    ///
+    /// 90 (0x5A): overwrite the boot segment.
     ///
     /// Note BOOT-012 (likely): Bootloader overwrite flag is a magic number.
     pub bootloader_overwrite_flag: u8,
@@ -29,7 +31,7 @@ impl CopyProgramToInternalFlash {
     pub const NAME: &'static str = "Copy Program to Internal Flash";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 103;
     /// Bootloader overwrite flag: overwrite the boot segment.
     pub const BOOTLOADER_OVERWRITE_FLAG_OVERWRITE_THE_BOOT_SEGMENT: u8 = 90;

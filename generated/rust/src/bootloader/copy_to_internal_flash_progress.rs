@@ -13,9 +13,9 @@ use crate::support::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CopyToInternalFlashProgress {
-    /// Busy (bit 0).
+    /// Busy: bit 0.
     pub busy: bool,
-    /// Error (bit 1).
+    /// Error: bit 1.
     pub error: bool,
 }
 
@@ -24,7 +24,7 @@ impl CopyToInternalFlashProgress {
     pub const NAME: &'static str = "Copy To Internal Flash Progress";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 233;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

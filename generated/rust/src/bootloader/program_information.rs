@@ -14,21 +14,21 @@ use crate::support::{put, take, Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct ProgramInformation {
-    /// Program Index (bits 0 to 7).
+    /// Program Index: bits 0 to 7.
     ///
     /// Note BOOT-018 (open): Read Program Information: whether the answer belongs to the request.
     pub program_index: Coded<enums::ProgramsList>,
-    /// Busy (bit 8).
+    /// Busy: bit 8.
     ///
     /// Still reading.
     pub busy: bool,
-    /// File Size (bits 16 to 47): 0 to 4294967295 byte.
+    /// File Size: bits 16 to 47, raw 0 to 4294967295, in byte.
     ///
     /// Erratum BOOT-021 (certain): Size of a program has its unit in words only.
     ///
     /// Note BOOT-019 (open): Program Information: what the checksum covers.
     pub file_size: u32,
-    /// Checksum (bits 48 to 63): 0 to 65535.
+    /// Checksum: bits 48 to 63, raw 0 to 65535.
     ///
     /// CRC-16.
     ///
@@ -41,7 +41,7 @@ impl ProgramInformation {
     pub const NAME: &'static str = "Program Information";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 8;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 232;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

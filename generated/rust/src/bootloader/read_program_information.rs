@@ -12,7 +12,7 @@ use crate::support::{Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct ReadProgramInformation {
-    /// Program Index (bits 0 to 7).
+    /// Program Index: bits 0 to 7.
     pub program_index: Coded<enums::ProgramsList>,
 }
 
@@ -21,7 +21,7 @@ impl ReadProgramInformation {
     pub const NAME: &'static str = "Read Program Information";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 102;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

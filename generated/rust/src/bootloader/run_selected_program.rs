@@ -6,7 +6,9 @@ use crate::support::Error;
 
 /// Run Selected Program: telecommand 101, 0 bytes. Table 64.
 ///
-/// Starts the program in internal flash at once. The node restarts instead of acknowledging it.
+/// Starts the program in internal flash at once.
+///
+/// The node restarts instead of acknowledging it.
 ///
 /// Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -19,7 +21,7 @@ impl RunSelectedProgram {
     pub const NAME: &'static str = "Run Selected Program";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 101;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -12,7 +12,7 @@ use crate::support::{Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetBootIndex {
-    /// Program Index (bits 0 to 7).
+    /// Program Index: bits 0 to 7.
     ///
     /// Note BOOT-007 (certain): Set Boot Index selects among one.
     pub program_index: Coded<enums::BootSetProgramsList>,
@@ -23,7 +23,7 @@ impl SetBootIndex {
     pub const NAME: &'static str = "Set Boot Index";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 100;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

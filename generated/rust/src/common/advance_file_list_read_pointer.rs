@@ -19,7 +19,7 @@ impl AdvanceFileListReadPointer {
     pub const NAME: &'static str = "Advance File List Read Pointer";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 113;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

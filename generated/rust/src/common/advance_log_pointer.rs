@@ -21,7 +21,7 @@ impl AdvanceLogPointer {
     pub const NAME: &'static str = "Advance Log Pointer";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 5;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

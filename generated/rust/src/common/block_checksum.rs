@@ -13,7 +13,7 @@ use crate::support::{put, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct BlockChecksum {
-    /// Checksum (bits 0 to 15): 0 to 65535.
+    /// Checksum: bits 0 to 15, raw 0 to 65535.
     ///
     /// Note COM-106 (open): Checksum of an uploaded block is asked for before its length is known.
     pub checksum: u16,
@@ -24,7 +24,7 @@ impl BlockChecksum {
     pub const NAME: &'static str = "Block Checksum";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 246;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

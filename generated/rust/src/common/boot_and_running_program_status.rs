@@ -9,40 +9,38 @@ use crate::support::{put, take, Coded, Error, Scale};
 ///
 /// Causes of the last reset and reboot, and the running program.
 ///
-/// Note COM-060 (open): The running program answers more than the text says, or less.
-///
 /// Note COM-062 (certain): Capitals of the boot status frame differ in the text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct BootAndRunningProgramStatus {
-    /// Cause of MCU Reset (bits 0 to 3).
+    /// Cause of MCU Reset: bits 0 to 3.
     ///
     /// From a hardware register of the MCU.
     ///
     /// Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
     pub cause_of_mcu_reset: Coded<enums::ResetCause>,
-    /// Boot Cause (bits 4 to 7).
+    /// Boot Cause: bits 4 to 7.
     ///
     /// Why the CubeComputer last rebooted.
     ///
     /// Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
     pub boot_cause: Coded<enums::BootCause>,
-    /// Boot Counter (bits 8 to 23): 0 to 65535.
+    /// Boot Counter: bits 8 to 23, raw 0 to 65535.
     ///
     /// How often the CubeComputer has booted.
     ///
     /// Note COM-058 (certain): Reset Counter and Boot Counter are the same field.
     pub boot_counter: u16,
-    /// Boot Program Index (bits 24 to 31).
+    /// Boot Program Index: bits 24 to 31.
     ///
     /// Where the running program is stored.
     pub boot_program_index: Coded<enums::BootProgramsList>,
-    /// Firmware version (Major) (bits 32 to 39): 0 to 255.
+    /// Firmware version (Major): bits 32 to 39, raw 0 to 255.
     ///
     /// Note COM-061 (open): Firmware version stands in two frames.
     pub firmware_version_major: u8,
-    /// Firmware version (Minor) (bits 40 to 47): 0 to 255.
+    /// Firmware version (Minor): bits 40 to 47, raw 0 to 255.
     ///
     /// Note COM-061 (open): Firmware version stands in two frames.
     pub firmware_version_minor: u8,
@@ -53,7 +51,7 @@ impl BootAndRunningProgramStatus {
     pub const NAME: &'static str = "Boot And Running Program Status";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 129;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -8,17 +8,15 @@ use crate::support::{Coded, Error};
 /// Boot Index and Status: telemetry 130, 2 bytes. Table 32.
 ///
 /// Program selected for booting, and how the last attempt went.
-///
-/// Note COM-060 (open): The running program answers more than the text says, or less.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct BootIndexAndStatus {
-    /// Program Index (bits 0 to 7).
+    /// Program Index: bits 0 to 7.
     ///
     /// Note COM-069 (open): Program Index of the boot status can be the bootloader.
     pub program_index: Coded<enums::BootProgramsList>,
-    /// Boot Status (bits 8 to 15).
+    /// Boot Status: bits 8 to 15.
     pub boot_status: Coded<enums::BootStatus>,
 }
 
@@ -27,7 +25,7 @@ impl BootIndexAndStatus {
     pub const NAME: &'static str = "Boot Index and Status";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 130;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

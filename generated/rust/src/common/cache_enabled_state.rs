@@ -4,14 +4,13 @@
 
 use crate::support::Error;
 
-/// Cache enabled state: configuration, set by 3 and got by 131, 1 byte. Table 48.
-///
-/// Note COM-107 (certain): Get ids do not follow from set ids.
+/// Cache enabled state: configuration, set by telecommand 3, got by telemetry 131, 1 byte. Table
+/// 48\.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CacheEnabledState {
-    /// Enabled state (bit 0).
+    /// Enabled state: bit 0.
     ///
     /// Note COM-108 (open): Cache enabled state: which cache, and the default.
     pub enabled_state: bool,
@@ -22,9 +21,9 @@ impl CacheEnabledState {
     pub const NAME: &'static str = "Cache enabled state";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 3;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 131;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

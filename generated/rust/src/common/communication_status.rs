@@ -13,32 +13,32 @@ use crate::support::{flags, put, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CommunicationStatus {
-    /// Telecommand counter (bits 0 to 15): 0 to 65535.
+    /// Telecommand counter: bits 0 to 15, raw 0 to 65535.
     ///
     /// Telecommands received.
     ///
     /// Note COM-082 (open): Counters: served or received.
     pub telecommand_counter: u16,
-    /// Telemetry request counter (bits 16 to 31): 0 to 65535.
+    /// Telemetry request counter: bits 16 to 31, raw 0 to 65535.
     ///
     /// Requests received.
     ///
     /// Note COM-082 (open): Counters: served or received.
     pub telemetry_request_counter: u16,
-    /// Telecommand buffer overrun (bit 32).
+    /// Telecommand buffer overrun: bit 32.
     ///
     /// The buffer overflowed while a telecommand came in.
     ///
     /// Note COM-081 (open): Which telecommand clears the communication error flags.
     pub telecommand_buffer_overrun: bool,
-    /// UART protocol error (bit 33).
+    /// UART protocol error: bit 33.
     ///
     /// Note COM-078 (open): UART: what a receiver does on an invalid escape or an unfinished
     /// message.
     ///
     /// Note COM-081 (open): Which telecommand clears the communication error flags.
     pub uart_protocol_error: bool,
-    /// UART incomplete message (bit 34).
+    /// UART incomplete message: bit 34.
     ///
     /// A message began before the one before it had ended.
     ///
@@ -47,7 +47,7 @@ pub struct CommunicationStatus {
     ///
     /// Note COM-081 (open): Which telecommand clears the communication error flags.
     pub uart_incomplete_message: bool,
-    /// I2C telemetry error (bit 35).
+    /// I2C telemetry error: bit 35.
     ///
     /// More bytes were read than the frame has. Stays set until Clear Errors.
     ///
@@ -58,7 +58,7 @@ pub struct CommunicationStatus {
     ///
     /// Note COM-081 (open): Which telecommand clears the communication error flags.
     pub i2c_telemetry_error: bool,
-    /// I2C telecommand buffer error (bit 36).
+    /// I2C telecommand buffer error: bit 36.
     ///
     /// A telecommand was longer than the buffer.
     ///
@@ -66,7 +66,7 @@ pub struct CommunicationStatus {
     ///
     /// Note COM-083 (open): Two buffer errors have the same description.
     pub i2c_telecommand_buffer_error: bool,
-    /// CAN telecommand buffer error (bit 37).
+    /// CAN telecommand buffer error: bit 37.
     ///
     /// A telecommand was longer than the buffer.
     ///
@@ -81,7 +81,7 @@ impl CommunicationStatus {
     pub const NAME: &'static str = "Communication Status";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 144;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -4,20 +4,18 @@
 
 use crate::support::{put, take, Error};
 
-/// Current Unix Time: configuration, set by 2 and got by 140, 6 bytes. Table 50.
-///
-/// Note COM-107 (certain): Get ids do not follow from set ids.
+/// Current Unix Time: configuration, set by telecommand 2, got by telemetry 140, 6 bytes. Table 50.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CurrentUnixTime {
-    /// Current Unix Time (bits 0 to 31): 0 to 4294967295 s.
+    /// Current Unix Time: bits 0 to 31, raw 0 to 4294967295, in s.
     ///
     /// Since 1970-01-01 00:00.
     ///
     /// Note COM-111 (open): Unix time: time zone and leap seconds are not given.
     pub current_unix_time: u32,
-    /// Milliseconds (bits 32 to 47): 0 to 65535 ms.
+    /// Milliseconds: bits 32 to 47, raw 0 to 65535, in ms.
     ///
     /// Note COM-110 (open): Milliseconds: range is not given.
     pub milliseconds: u16,
@@ -28,9 +26,9 @@ impl CurrentUnixTime {
     pub const NAME: &'static str = "Current Unix Time";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 2;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 140;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -13,17 +13,17 @@ use crate::support::{put, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct DownloadBlockReady {
-    /// Ready (bit 0).
+    /// Ready: bit 0.
     pub ready: bool,
-    /// ParameterError (bit 1).
+    /// ParameterError: bit 1.
     ///
     /// Message length and hole map together led to invalid array lengths.
     ///
     /// Note COM-097 (open): ParameterError refers to arrays that no message has.
     pub parameter_error: bool,
-    /// Block CRC16 Checksum (bits 8 to 23): 0 to 65535.
+    /// Block CRC16 Checksum: bits 8 to 23, raw 0 to 65535.
     pub block_crc16_checksum: u16,
-    /// Block Length (bits 24 to 39): 0 to 65535 byte.
+    /// Block Length: bits 24 to 39, raw 0 to 65535, in byte.
     ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
     pub block_length: u16,
@@ -34,7 +34,7 @@ impl DownloadBlockReady {
     pub const NAME: &'static str = "Download Block Ready";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 5;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 242;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -11,17 +11,17 @@ use crate::support::{put, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct EdacErrorCounters {
-    /// Single SRAM upsets (bits 0 to 15): 0 to 65535.
+    /// Single SRAM upsets: bits 0 to 15, raw 0 to 65535.
     ///
     /// Counted per byte.
     pub single_sram_upsets: u16,
-    /// Double SRAM upsets (bits 16 to 31): 0 to 65535.
+    /// Double SRAM upsets: bits 16 to 31, raw 0 to 65535.
     ///
     /// Counted per byte.
     ///
     /// Note COM-077 (likely): EDAC: errors counted as corrected cannot all have been.
     pub double_sram_upsets: u16,
-    /// Multiple SRAM upsets (bits 32 to 47): 0 to 65535.
+    /// Multiple SRAM upsets: bits 32 to 47, raw 0 to 65535.
     ///
     /// Counted per byte.
     ///
@@ -34,7 +34,7 @@ impl EdacErrorCounters {
     pub const NAME: &'static str = "EDAC Error Counters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 143;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -677,8 +677,6 @@ pub enum TcErrorReason {
     /// Invalid TC (1).
     InvalidTc,
     /// Incorrect Length (2).
-    ///
-    /// Note COM-094 (open): What happens to a telecommand of the wrong length.
     IncorrectLength,
     /// Incorrect Parameter (3).
     IncorrectParameter,

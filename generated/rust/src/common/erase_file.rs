@@ -15,13 +15,13 @@ use crate::support::{Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct EraseFile {
-    /// File Type (bits 0 to 7).
+    /// File Type: bits 0 to 7.
     pub file_type: Coded<enums::FileType>,
-    /// File Counter (bits 8 to 15): 0 to 255.
+    /// File Counter: bits 8 to 15, raw 0 to 255.
     ///
     /// Note COM-035 (open): File counter of 8 bits.
     pub file_counter: u8,
-    /// Erase All (bit 16).
+    /// Erase All: bit 16.
     ///
     /// All files instead of this one.
     pub erase_all: bool,
@@ -32,7 +32,7 @@ impl EraseFile {
     pub const NAME: &'static str = "Erase File";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 108;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -16,13 +16,13 @@ use crate::support::{array, put, put_array, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct FileDownloadBufferWithFileContents {
-    /// Packet counter (bits 0 to 15): 0 to 65535.
+    /// Packet counter: bits 0 to 15, raw 0 to 65535.
     ///
     /// Position of the packet in the burst.
     ///
     /// Note COM-047 (likely): Packet numbers: from 0 or from 1.
     pub packet_counter: u16,
-    /// File bytes (bits 16 to 175): 20 bytes.
+    /// File bytes: bytes 2 to 21.
     ///
     /// Note COM-029 (certain): One field, several spellings.
     ///
@@ -36,7 +36,7 @@ impl FileDownloadBufferWithFileContents {
     pub const NAME: &'static str = "File Download Buffer with File Contents";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 22;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 241;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -16,17 +16,15 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct FileInformation {
-    /// File Type (bits 0 to 3).
-    ///
-    /// Note COM-098 (certain): File Type is 8 bits in telecommands and 4 bits in the frame.
+    /// File Type: bits 0 to 3.
     pub file_type: Coded<enums::FileType>,
-    /// Busy Updating (bit 4).
+    /// Busy Updating: bit 4.
     ///
     /// The other fields are valid once this is clear.
     ///
     /// Note COM-101 (certain): Busy Updating has no description.
     pub busy_updating: bool,
-    /// File Ctr (bits 8 to 15): 0 to 255.
+    /// File Ctr: bits 8 to 15, raw 0 to 255.
     ///
     /// With the type it identifies the file.
     ///
@@ -34,11 +32,11 @@ pub struct FileInformation {
     ///
     /// Note COM-035 (open): File counter of 8 bits.
     pub file_ctr: u8,
-    /// File Size (bits 16 to 47): 0 to 4294967295 byte.
+    /// File Size: bits 16 to 47, raw 0 to 4294967295, in byte.
     ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
     pub file_size: u32,
-    /// File Date and Time (bits 48 to 79): 0 to 4294967295 MS-DOS time.
+    /// File Date and Time: bits 48 to 79, raw 0 to 4294967295, in MS-DOS time.
     ///
     /// In MS-DOS format.
     ///
@@ -46,7 +44,7 @@ pub struct FileInformation {
     ///
     /// Note COM-100 (open): Time zone of file times is not given.
     pub file_date_and_time: u32,
-    /// File CRC16 Checksum (bits 80 to 95): 0 to 65535.
+    /// File CRC16 Checksum: bits 80 to 95, raw 0 to 65535.
     pub file_crc16_checksum: u16,
 }
 
@@ -55,7 +53,7 @@ impl FileInformation {
     pub const NAME: &'static str = "File Information";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 12;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 243;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -6,7 +6,9 @@ use crate::support::{array, put, put_array, take, Error};
 
 /// File Upload Packet: telecommand 115, 22 bytes. Table 21.
 ///
-/// One packet of a block. Packets may follow one another without a pause. It is not acknowledged.
+/// One packet of a block. Packets may follow one another without a pause.
+///
+/// The node does not acknowledge it.
 ///
 /// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
 ///
@@ -17,11 +19,11 @@ use crate::support::{array, put, put_array, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct FileUploadPacket {
-    /// Packet Number (bits 0 to 15): 0 to 65535.
+    /// Packet Number: bits 0 to 15, raw 0 to 65535.
     ///
     /// Note COM-047 (likely): Packet numbers: from 0 or from 1.
     pub packet_number: u16,
-    /// File Bytes (bits 16 to 175): 20 bytes.
+    /// File Bytes: bytes 2 to 21.
     ///
     /// Note COM-048 (open): Last packet of a block: fill is not defined.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
@@ -33,7 +35,7 @@ impl FileUploadPacket {
     pub const NAME: &'static str = "File Upload Packet";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 22;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 115;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

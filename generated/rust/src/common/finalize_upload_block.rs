@@ -16,15 +16,15 @@ use crate::support::{put, take, Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct FinalizeUploadBlock {
-    /// Destination (bits 0 to 7).
+    /// Destination: bits 0 to 7.
     pub destination: Coded<enums::FileUploadDestination>,
-    /// Offset (bits 8 to 39): 0 to 4294967295 byte.
+    /// Offset: bits 8 to 39, raw 0 to 4294967295, in byte.
     ///
     /// Where in the file the block belongs.
     ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
     pub offset: u32,
-    /// Block Length (bits 40 to 55): 0 to 65535 byte.
+    /// Block Length: bits 40 to 55, raw 0 to 65535, in byte.
     ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
     pub block_length: u16,
@@ -35,7 +35,7 @@ impl FinalizeUploadBlock {
     pub const NAME: &'static str = "Finalize Upload Block";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 7;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 116;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

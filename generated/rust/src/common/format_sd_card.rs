@@ -11,9 +11,11 @@ use crate::support::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct FormatSdCard {
-    /// Magic Number (bits 0 to 7): 0 to 255.
+    /// Magic Number: bits 0 to 7, raw 0 to 255.
     ///
-    /// Guards against accidental formatting. Always 90.
+    /// Guards against accidental formatting.
+    ///
+    /// Always 90 (0x5A).
     pub magic_number: u8,
 }
 
@@ -22,9 +24,9 @@ impl FormatSdCard {
     pub const NAME: &'static str = "Format SD card";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 33;
-    /// The only valid value of Magic Number.
+    /// Magic Number: the only valid raw value.
     pub const MAGIC_NUMBER_CONST: u8 = 90;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -61,7 +63,9 @@ impl FormatSdCard {
 
 impl Default for FormatSdCard {
     fn default() -> Self {
-        Self { magic_number: 90 }
+        Self {
+            magic_number: 90,
+        }
     }
 }
 

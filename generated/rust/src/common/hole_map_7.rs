@@ -4,7 +4,7 @@
 
 use crate::support::{array, put_array, Error};
 
-/// Hole Map 7: configuration, set by 126 and got by 253, 16 bytes. Table 58.
+/// Hole Map 7: configuration, set by telecommand 126, got by telemetry 253, 16 bytes. Table 58.
 ///
 /// Packets 768 to 895 of a file block.
 ///
@@ -14,14 +14,12 @@ use crate::support::{array, put_array, Error};
 ///
 /// Note COM-117 (likely): Hole map: bits beyond the last packet.
 ///
-/// Note COM-118 (likely): Hole map: order of the eight parts.
-///
 /// Note COM-124 (certain): The hole map is read with eight frames, one table is referred to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct HoleMap7 {
-    /// Hole Map (bits 0 to 127): 16 bytes.
+    /// Hole Map: bytes 0 to 15.
     ///
     /// One bit a packet, least significant bit of byte 0 first. 1: received.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
@@ -33,9 +31,9 @@ impl HoleMap7 {
     pub const NAME: &'static str = "Hole Map 7";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 16;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 126;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 253;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

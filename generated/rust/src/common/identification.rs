@@ -8,33 +8,32 @@ use crate::support::{put, take, Error};
 ///
 /// Tells which program is running. Requesting it from the bootloader keeps it from booting on.
 ///
-/// Note COM-054 (open): Waiting times before the identification request differ, and the request
-/// itself stops the boot.
+/// Note COM-054 (likely): The identification request stops the boot that it is to check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Identification {
-    /// Node type (bits 0 to 7): 0 to 255.
+    /// Node type: bits 0 to 7, raw 0 to 255.
     ///
     /// Tells the bootloader from the control program.
     pub node_type: u8,
-    /// Interface version (bits 8 to 15): 0 to 255.
+    /// Interface version: bits 8 to 15, raw 0 to 255.
     ///
     /// Erratum COM-055 (certain): Interface version should be 1.
     pub interface_version: u8,
-    /// Firmware version (Major) (bits 16 to 23): 0 to 255.
+    /// Firmware version (Major): bits 16 to 23, raw 0 to 255.
     pub firmware_version_major: u8,
-    /// Firmware version (Minor) (bits 24 to 31): 0 to 255.
+    /// Firmware version (Minor): bits 24 to 31, raw 0 to 255.
     pub firmware_version_minor: u8,
-    /// Runtime (seconds) (bits 32 to 47): 0 to 65535 s.
+    /// Runtime (seconds): bits 32 to 47, raw 0 to 65535, in s.
     ///
     /// Since the processor started.
     ///
     /// Erratum COM-057 (certain): Runtime has its unit in words only.
     ///
-    /// Note COM-056 (open): Runtime wraps after 18 hours.
+    /// Note COM-056 (open): Runtime ends after 18 hours.
     pub runtime_seconds: u16,
-    /// Runtime (milliseconds) (bits 48 to 63): 0 to 65535 ms.
+    /// Runtime (milliseconds): bits 48 to 63, raw 0 to 65535, in ms.
     ///
     /// Beyond the whole seconds.
     ///
@@ -47,7 +46,7 @@ impl Identification {
     pub const NAME: &'static str = "Identification";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 8;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 128;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -17,7 +17,7 @@ use crate::support::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct InitializeUploadComplete {
-    /// Busy (bit 0).
+    /// Busy: bit 0.
     ///
     /// Still preparing, for instance erasing flash.
     ///
@@ -30,7 +30,7 @@ impl InitializeUploadComplete {
     pub const NAME: &'static str = "Initialize Upload Complete";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 244;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

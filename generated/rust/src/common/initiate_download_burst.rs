@@ -18,11 +18,11 @@ use crate::support::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct InitiateDownloadBurst {
-    /// Message Length (bits 0 to 7): 0 to 255.
+    /// Message Length: bits 0 to 7, raw 0 to 255.
     ///
     /// Note COM-050 (open): Initiate Download Burst: Message Length is not explained.
     pub message_length: u8,
-    /// Ignore Hole Map (bit 8).
+    /// Ignore Hole Map: bit 8.
     ///
     /// Set: all packets. Clear: only those whose bit in the hole map is 0.
     pub ignore_hole_map: bool,
@@ -33,7 +33,7 @@ impl InitiateDownloadBurst {
     pub const NAME: &'static str = "Initiate Download Burst";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 119;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

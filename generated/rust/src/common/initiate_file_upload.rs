@@ -14,11 +14,11 @@ use crate::support::{Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct InitiateFileUpload {
-    /// Destination (bits 0 to 7).
+    /// Destination: bits 0 to 7.
     ///
     /// Only the flash programs are supported.
     pub destination: Coded<enums::FileUploadDestination>,
-    /// BlockSize (bits 8 to 15): 0 to 255.
+    /// BlockSize: bits 8 to 15, raw 0 to 255.
     ///
     /// Ignored, may be 0.
     ///
@@ -31,7 +31,7 @@ impl InitiateFileUpload {
     pub const NAME: &'static str = "Initiate File Upload";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 114;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

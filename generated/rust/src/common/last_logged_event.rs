@@ -13,15 +13,15 @@ use crate::support::{put, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct LastLoggedEvent {
-    /// Time of Event (bits 0 to 31): 0 to 4294967295.
+    /// Time of Event: bits 0 to 31, raw 0 to 4294967295.
     ///
     /// Note COM-074 (open): Time of Event has no description.
     pub time_of_event: u32,
-    /// Event ID (bits 32 to 39): 0 to 255.
+    /// Event ID: bits 32 to 39, raw 0 to 255.
     ///
     /// Note COM-075 (open): Events are not listed.
     pub event_id: u8,
-    /// Event Parameter (bits 40 to 47): 0 to 255.
+    /// Event Parameter: bits 40 to 47, raw 0 to 255.
     ///
     /// Note COM-075 (open): Events are not listed.
     pub event_parameter: u8,
@@ -32,7 +32,7 @@ impl LastLoggedEvent {
     pub const NAME: &'static str = "Last Logged Event";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 141;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

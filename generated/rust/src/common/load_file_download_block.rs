@@ -12,9 +12,9 @@ use crate::support::{put, take, Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct LoadFileDownloadBlock {
-    /// File Type (bits 0 to 7).
+    /// File Type: bits 0 to 7.
     pub file_type: Coded<enums::FileType>,
-    /// Counter (bits 8 to 15): 0 to 255.
+    /// Counter: bits 8 to 15, raw 0 to 255.
     ///
     /// Of the file: with the type it identifies the file.
     ///
@@ -22,15 +22,17 @@ pub struct LoadFileDownloadBlock {
     ///
     /// Note COM-035 (open): File counter of 8 bits.
     pub counter: u8,
-    /// Offset (bits 16 to 47): 0 to 4294967295 byte.
+    /// Offset: bits 16 to 47, raw 0 to 4294967295, in byte.
     ///
     /// Where in the file the block begins.
     ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
     pub offset: u32,
-    /// BlockLength (bits 48 to 63): 0 to 65535 byte.
+    /// BlockLength: bits 48 to 63, raw 0 to 65535, in byte.
     ///
-    /// 20 kB at most. Must be at most 20480 byte.
+    /// 20 kB at most.
+    ///
+    /// Must be at most 20480 byte.
     ///
     /// Erratum COM-039 (likely): Offsets and lengths of files have no unit.
     ///
@@ -43,9 +45,9 @@ impl LoadFileDownloadBlock {
     pub const NAME: &'static str = "Load File Download Block";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 8;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 112;
-    /// Largest valid: BlockLength in byte.
+    /// BlockLength in byte: largest value.
     pub const BLOCK_LENGTH_MAX: u16 = 20_480;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -6,16 +6,20 @@ use crate::support::Error;
 
 /// Reset: telecommand 1, 1 byte. Table 10.
 ///
-/// Restarts the CubeComputer. The node restarts instead of acknowledging it.
+/// Restarts the CubeComputer.
+///
+/// The node restarts instead of acknowledging it.
 ///
 /// Note COM-028 (open): The Reset telecommand: acknowledged or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Reset {
-    /// Magic number (bits 0 to 7): 0 to 255.
+    /// Magic number: bits 0 to 7, raw 0 to 255.
     ///
-    /// Guards against an accidental reset. Always 90.
+    /// Guards against an accidental reset.
+    ///
+    /// Always 90 (0x5A).
     ///
     /// Note COM-029 (certain): One field, several spellings.
     pub magic_number: u8,
@@ -26,9 +30,9 @@ impl Reset {
     pub const NAME: &'static str = "Reset";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 1;
-    /// The only valid value of Magic number.
+    /// Magic number: the only valid raw value.
     pub const MAGIC_NUMBER_CONST: u8 = 90;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -65,7 +69,9 @@ impl Reset {
 
 impl Default for Reset {
     fn default() -> Self {
-        Self { magic_number: 90 }
+        Self {
+            magic_number: 90,
+        }
     }
 }
 

@@ -20,7 +20,7 @@ impl ResetBootRegisters {
     pub const NAME: &'static str = "Reset Boot Registers";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 6;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

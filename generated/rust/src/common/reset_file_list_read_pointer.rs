@@ -17,7 +17,7 @@ impl ResetFileListReadPointer {
     pub const NAME: &'static str = "Reset File List Read Pointer";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 118;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

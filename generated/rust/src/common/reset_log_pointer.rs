@@ -21,7 +21,7 @@ impl ResetLogPointer {
     pub const NAME: &'static str = "Reset Log Pointer";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 4;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

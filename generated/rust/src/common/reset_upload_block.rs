@@ -21,7 +21,7 @@ impl ResetUploadBlock {
     pub const NAME: &'static str = "Reset Upload Block";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 117;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

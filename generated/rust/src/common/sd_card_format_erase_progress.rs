@@ -13,9 +13,9 @@ use crate::support::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SdCardFormatEraseProgress {
-    /// Format Busy (bit 0).
+    /// Format Busy: bit 0.
     pub format_busy: bool,
-    /// Erase All Busy (bit 1).
+    /// Erase All Busy: bit 1.
     ///
     /// All files are being erased.
     ///
@@ -28,7 +28,7 @@ impl SdCardFormatEraseProgress {
     pub const NAME: &'static str = "SD card format/erase progress";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 234;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

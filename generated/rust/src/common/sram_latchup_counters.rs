@@ -11,9 +11,9 @@ use crate::support::{put, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SramLatchupCounters {
-    /// SRAM1 latchups (bits 0 to 15): 0 to 65535.
+    /// SRAM1 latchups: bits 0 to 15, raw 0 to 65535.
     pub sram1_latchups: u16,
-    /// SRAM2 latchups (bits 16 to 31): 0 to 65535.
+    /// SRAM2 latchups: bits 16 to 31, raw 0 to 65535.
     pub sram2_latchups: u16,
 }
 
@@ -22,7 +22,7 @@ impl SramLatchupCounters {
     pub const NAME: &'static str = "SRAM Latchup counters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 142;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -4,14 +4,13 @@
 
 use crate::support::{put, take, Error};
 
-/// SRAM Scrub Parameters: configuration, set by 8 and got by 134, 2 bytes. Table 49.
-///
-/// Note COM-107 (certain): Get ids do not follow from set ids.
+/// SRAM Scrub Parameters: configuration, set by telecommand 8, got by telemetry 134, 2 bytes. Table
+/// 49\.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SramScrubParameters {
-    /// Scrub Size (bits 0 to 15): 0 to 65535.
+    /// Scrub Size: bits 0 to 15, raw 0 to 65535.
     ///
     /// Note COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit.
     pub scrub_size: u16,
@@ -22,9 +21,9 @@ impl SramScrubParameters {
     pub const NAME: &'static str = "SRAM Scrub Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 8;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 134;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

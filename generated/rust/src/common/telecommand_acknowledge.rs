@@ -17,11 +17,11 @@ use crate::support::{Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct TelecommandAcknowledge {
-    /// Last TC ID (bits 0 to 7): 0 to 255.
+    /// Last TC ID: bits 0 to 7, raw 0 to 255.
     ///
     /// Note COM-090 (open): Last TC ID is of the last received, the error of the last processed.
     pub last_tc_id: u8,
-    /// Processed flag (bit 8).
+    /// Processed flag: bit 8.
     ///
     /// The next telecommand may be sent. Says nothing about the outcome of the last one.
     ///
@@ -29,13 +29,13 @@ pub struct TelecommandAcknowledge {
     ///
     /// Note COM-089 (open): Processed flag: processed or merely taken over.
     pub processed_flag: bool,
-    /// TC error status (bits 16 to 23).
+    /// TC error status: bits 16 to 23.
     ///
     /// Note COM-087 (certain): TC Error is called a flag and is a code.
     ///
     /// Note COM-090 (open): Last TC ID is of the last received, the error of the last processed.
     pub tc_error_status: Coded<enums::TcErrorReason>,
-    /// TC parameter error index (bits 24 to 31): 0 to 255.
+    /// TC parameter error index: bits 24 to 31, raw 0 to 255.
     ///
     /// Which parameter was wrong.
     ///
@@ -48,7 +48,7 @@ impl TelecommandAcknowledge {
     pub const NAME: &'static str = "Telecommand Acknowledge";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 4;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 240;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -4,32 +4,31 @@
 
 use crate::support::Error;
 
-/// Unix Time Save to Flash: configuration, set by 9 and got by 145, 2 bytes. Table 51.
+/// Unix Time Save to Flash: configuration, set by telecommand 9, got by telemetry 145, 2 bytes.
+/// Table 51.
 ///
 /// When the Unix time is kept in flash, so that it survives a power cycle.
-///
-/// Note COM-107 (certain): Get ids do not follow from set ids.
 ///
 /// Note COM-112 (certain): Unix Time Save to Flash is described in two spellings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct UnixTimeSaveToFlash {
-    /// Save Now (bit 0).
+    /// Save Now: bit 0.
     ///
     /// Saves once.
     ///
     /// Note COM-113 (open): Save Now is an action among settings.
     pub save_now: bool,
-    /// Save On Update (bit 1).
+    /// Save On Update: bit 1.
     ///
     /// Saves whenever the time is set.
     pub save_on_update: bool,
-    /// Save Periodic (bit 2).
+    /// Save Periodic: bit 2.
     ///
     /// Saves at the interval given by Period.
     pub save_periodic: bool,
-    /// Period (bits 8 to 15): 0 to 255 s.
+    /// Period: bits 8 to 15, raw 0 to 255, in s.
     ///
     /// Note COM-114 (open): Saving period: meaning of 0.
     pub period: u8,
@@ -40,9 +39,9 @@ impl UnixTimeSaveToFlash {
     pub const NAME: &'static str = "Unix Time Save to Flash";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 9;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 145;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

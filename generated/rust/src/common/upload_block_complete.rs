@@ -19,13 +19,13 @@ use crate::support::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct UploadBlockComplete {
-    /// Busy (bit 0).
+    /// Busy: bit 0.
     ///
     /// Still finalizing the block.
     ///
     /// Note COM-103 (certain): Frames named complete report busy.
     pub busy: bool,
-    /// Error (bit 1).
+    /// Error: bit 1.
     ///
     /// Finalizing the block failed.
     pub error: bool,
@@ -36,7 +36,7 @@ impl UploadBlockComplete {
     pub const NAME: &'static str = "Upload Block Complete";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 245;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -12,9 +12,9 @@ use crate::support::{put, take, Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct AcpExecutionState {
-    /// Time Since Iteration Start (bits 0 to 15): 0 to 65535 ms.
+    /// Time Since Iteration Start: bits 0 to 15, raw 0 to 65535, in ms.
     pub time_since_iteration_start: u16,
-    /// Current Execution Point (bits 16 to 23).
+    /// Current Execution Point: bits 16 to 23.
     ///
     /// Part of the loop that is being executed.
     pub current_execution_point: Coded<enums::ExecutionWaypoints>,
@@ -25,7 +25,7 @@ impl AcpExecutionState {
     pub const NAME: &'static str = "ACP Execution State";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 220;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -6,12 +6,12 @@ use crate::support::{put, take, Error};
 
 /// Actuator Commands: telemetry 192, 12 bytes. Table 151.
 ///
-/// Note ACP-106 (certain): Messages have the names of groups.
+/// Repeats Magnetorquer Command from byte 0. Repeats Wheel Speed Commands from byte 6.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct ActuatorCommands {
-    /// X Magnetorquer Command (bits 0 to 15): -32768 to 32767 10ms units.
+    /// X Magnetorquer Command: bits 0 to 15, raw -32768 to 32767, in 10ms units.
     ///
     /// On-time.
     ///
@@ -19,7 +19,7 @@ pub struct ActuatorCommands {
     ///
     /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
     pub x_magnetorquer_command: i16,
-    /// Y Magnetorquer Command (bits 16 to 31): -32768 to 32767 10ms units.
+    /// Y Magnetorquer Command: bits 16 to 31, raw -32768 to 32767, in 10ms units.
     ///
     /// On-time.
     ///
@@ -27,7 +27,7 @@ pub struct ActuatorCommands {
     ///
     /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
     pub y_magnetorquer_command: i16,
-    /// Z Magnetorquer Command (bits 32 to 47): -32768 to 32767 10ms units.
+    /// Z Magnetorquer Command: bits 32 to 47, raw -32768 to 32767, in 10ms units.
     ///
     /// On-time.
     ///
@@ -35,15 +35,15 @@ pub struct ActuatorCommands {
     ///
     /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
     pub z_magnetorquer_command: i16,
-    /// Commanded X Wheel Speed (bits 48 to 63): -32768 to 32767 rpm.
+    /// Commanded X Wheel Speed: bits 48 to 63, raw -32768 to 32767, in rpm.
     ///
     /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
     pub commanded_x_wheel_speed: i16,
-    /// Commanded Y Wheel Speed (bits 64 to 79): -32768 to 32767 rpm.
+    /// Commanded Y Wheel Speed: bits 64 to 79, raw -32768 to 32767, in rpm.
     ///
     /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
     pub commanded_y_wheel_speed: i16,
-    /// Commanded Z Wheel Speed (bits 80 to 95): -32768 to 32767 rpm.
+    /// Commanded Z Wheel Speed: bits 80 to 95, raw -32768 to 32767, in rpm.
     ///
     /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
     pub commanded_z_wheel_speed: i16,
@@ -54,7 +54,7 @@ impl ActuatorCommands {
     pub const NAME: &'static str = "Actuator Commands";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 12;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 192;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -5,703 +5,700 @@
 use super::enums;
 use crate::support::{array, flags, put, put_array, take, Coded, Error, Scale};
 
-/// ADCS Configuration: configuration, set by 20 and got by 206, 504 bytes. Table 192.
+/// ADCS Configuration: configuration, set by telecommand 20, got by telemetry 206, 504 bytes. Table
+/// 192\.
 ///
 /// Most configuration messages in one frame.
 ///
-/// Note ACP-020 (open): Reserved bits.
+/// Repeats Set Magnetorquer Configuration from byte 0. Repeats Set Wheel Configuration from byte 3.
+/// Repeats Set Rate Gyro Configuration from byte 7. Repeats CSS Configuration from byte 17. Repeats
+/// CubeSense Configuration from byte 38. Repeats Magnetometer Configuration from byte 150. Repeats
+/// Redundant Magnetometer Configuration from byte 180. Repeats Set Star Tracker Configuration from
+/// byte 210. Repeats Set Detumbling Control Parameters from byte 263. Repeats Set Y-Wheel Control
+/// Parameters from byte 277. Repeats Set Reaction Wheel Control Parameters from byte 297. Repeats
+/// Set Tracking Controller Gain Parameters from byte 310. Repeats Moment of Inertia Matrix from
+/// byte 323. Repeats Estimation Parameters from byte 347. Repeats Augmented-SGP4 Parameters from
+/// byte 378. Repeats User-coded Controller and Estimator Parameters from byte 408.
 ///
-/// Note ACP-158 (certain): ADCS configuration in list order, not in id order.
+/// Note ACP-020 (open): Reserved bits.
 ///
 /// Note ACP-159 (open): The current configuration is not all of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct AdcsConfiguration {
-    /// Magnetorquer 1 Configuration (bits 0 to 7).
+    /// Magnetorquer 1 Configuration: bits 0 to 7.
     pub magnetorquer_1_configuration: Coded<enums::AxisSelect>,
-    /// Magnetorquer 2 Configuration (bits 8 to 15).
+    /// Magnetorquer 2 Configuration: bits 8 to 15.
     pub magnetorquer_2_configuration: Coded<enums::AxisSelect>,
-    /// Magnetorquer 3 Configuration (bits 16 to 23).
+    /// Magnetorquer 3 Configuration: bits 16 to 23.
     pub magnetorquer_3_configuration: Coded<enums::AxisSelect>,
-    /// RW1 Configuration (bits 24 to 31).
+    /// RW1 Configuration: bits 24 to 31.
     pub rw1_configuration: Coded<enums::AxisSelect>,
-    /// RW2 Configuration (bits 32 to 39).
+    /// RW2 Configuration: bits 32 to 39.
     pub rw2_configuration: Coded<enums::AxisSelect>,
-    /// RW3 Configuration (bits 40 to 47).
+    /// RW3 Configuration: bits 40 to 47.
     pub rw3_configuration: Coded<enums::AxisSelect>,
-    /// RW4 Configuration (bits 48 to 55).
+    /// RW4 Configuration: bits 48 to 55.
     ///
     /// Wheel 4 or the momentum wheel.
     pub rw4_configuration: Coded<enums::AxisSelect>,
-    /// Gyro1 Configuration (bits 56 to 63).
+    /// Gyro1 Configuration: bits 56 to 63.
     pub gyro1_configuration: Coded<enums::AxisSelect>,
-    /// Gyro2 Configuration (bits 64 to 71).
+    /// Gyro2 Configuration: bits 64 to 71.
     pub gyro2_configuration: Coded<enums::AxisSelect>,
-    /// Gyro3 Configuration (bits 72 to 79).
+    /// Gyro3 Configuration: bits 72 to 79.
     pub gyro3_configuration: Coded<enums::AxisSelect>,
-    /// X-Rate Sensor Offset (bits 80 to 95): raw, -32768 to 32767; physical `raw*0.001`, -32.768 to
+    /// X-Rate Sensor Offset: bits 80 to 95, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     pub x_rate_sensor_offset: i16,
-    /// Y-Rate Sensor Offset (bits 96 to 111): raw, -32768 to 32767; physical `raw*0.001`, -32.768
-    /// to 32.767 deg/s.
+    /// Y-Rate Sensor Offset: bits 96 to 111, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
+    /// 32.767 deg/s.
     pub y_rate_sensor_offset: i16,
-    /// Z-Rate Sensor Offset (bits 112 to 127): raw, -32768 to 32767; physical `raw*0.001`, -32.768
-    /// to 32.767 deg/s.
+    /// Z-Rate Sensor Offset: bits 112 to 127, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
+    /// 32.767 deg/s.
     pub z_rate_sensor_offset: i16,
-    /// RateSensorMult (bits 128 to 135): 0 to 255.
+    /// RateSensorMult: bits 128 to 135, raw 0 to 255.
     ///
     /// Factor on the rate sensor measurements.
     ///
     /// Note ACP-130 (open): RateSensorMult has no scale and no blanks.
     pub rate_sensor_mult: u8,
-    /// CSS1 Configuration (bits 136 to 143).
+    /// CSS1 Configuration: bits 136 to 143.
     pub css1_configuration: Coded<enums::AxisSelect>,
-    /// CSS2 Configuration (bits 144 to 151).
+    /// CSS2 Configuration: bits 144 to 151.
     pub css2_configuration: Coded<enums::AxisSelect>,
-    /// CSS3 Configuration (bits 152 to 159).
+    /// CSS3 Configuration: bits 152 to 159.
     pub css3_configuration: Coded<enums::AxisSelect>,
-    /// CSS4 Configuration (bits 160 to 167).
+    /// CSS4 Configuration: bits 160 to 167.
     pub css4_configuration: Coded<enums::AxisSelect>,
-    /// CSS5 Configuration (bits 168 to 175).
+    /// CSS5 Configuration: bits 168 to 175.
     pub css5_configuration: Coded<enums::AxisSelect>,
-    /// CSS6 Configuration (bits 176 to 183).
+    /// CSS6 Configuration: bits 176 to 183.
     pub css6_configuration: Coded<enums::AxisSelect>,
-    /// CSS7 Configuration (bits 184 to 191).
+    /// CSS7 Configuration: bits 184 to 191.
     pub css7_configuration: Coded<enums::AxisSelect>,
-    /// CSS8 Configuration (bits 192 to 199).
+    /// CSS8 Configuration: bits 192 to 199.
     pub css8_configuration: Coded<enums::AxisSelect>,
-    /// CSS9 Configuration (bits 200 to 207).
+    /// CSS9 Configuration: bits 200 to 207.
     pub css9_configuration: Coded<enums::AxisSelect>,
-    /// CSS10 Configuration (bits 208 to 215).
+    /// CSS10 Configuration: bits 208 to 215.
     pub css10_configuration: Coded<enums::AxisSelect>,
-    /// CSS1 Relative Scale (bits 216 to 223): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS1 Relative Scale: bits 216 to 223, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css1_relative_scale: u8,
-    /// CSS2 Relative Scale (bits 224 to 231): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS2 Relative Scale: bits 224 to 231, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css2_relative_scale: u8,
-    /// CSS3 Relative Scale (bits 232 to 239): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS3 Relative Scale: bits 232 to 239, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css3_relative_scale: u8,
-    /// CSS4 Relative Scale (bits 240 to 247): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS4 Relative Scale: bits 240 to 247, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css4_relative_scale: u8,
-    /// CSS5 Relative Scale (bits 248 to 255): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS5 Relative Scale: bits 248 to 255, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css5_relative_scale: u8,
-    /// CSS6 Relative Scale (bits 256 to 263): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS6 Relative Scale: bits 256 to 263, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css6_relative_scale: u8,
-    /// CSS7 Relative Scale (bits 264 to 271): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS7 Relative Scale: bits 264 to 271, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css7_relative_scale: u8,
-    /// CSS8 Relative Scale (bits 272 to 279): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS8 Relative Scale: bits 272 to 279, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css8_relative_scale: u8,
-    /// CSS9 Relative Scale (bits 280 to 287): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS9 Relative Scale: bits 280 to 287, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css9_relative_scale: u8,
-    /// CSS10 Relative Scale (bits 288 to 295): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS10 Relative Scale: bits 288 to 295, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css10_relative_scale: u8,
-    /// CSS Threshold (bits 296 to 303): 0 to 255.
+    /// CSS Threshold: bits 296 to 303, raw 0 to 255.
     ///
     /// Note ACP-133 (open): CSS threshold has no description.
     pub css_threshold: u8,
-    /// Cam1 Sensor Mounting Transform Alpha Angle (bits 304 to 319): raw, -32768 to 32767; physical
+    /// Cam1 Sensor Mounting Transform Alpha Angle: bits 304 to 319, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     pub cam1_sensor_mounting_transform_alpha_angle: i16,
-    /// Cam1 Sensor Mounting Transform Beta Angle (bits 320 to 335): raw, -32768 to 32767; physical
+    /// Cam1 Sensor Mounting Transform Beta Angle: bits 320 to 335, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     pub cam1_sensor_mounting_transform_beta_angle: i16,
-    /// Cam1 Sensor Mounting Transform Gamma Angle (bits 336 to 351): raw, -32768 to 32767; physical
+    /// Cam1 Sensor Mounting Transform Gamma Angle: bits 336 to 351, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     pub cam1_sensor_mounting_transform_gamma_angle: i16,
-    /// Cam1 detection threshold (bits 352 to 359): 0 to 255.
+    /// Cam1 detection threshold: bits 352 to 359, raw 0 to 255.
     pub cam1_detection_threshold: u8,
-    /// Cam1 sensor auto adjust mode (bit 360).
+    /// Cam1 sensor auto adjust mode: bit 360.
     pub cam1_sensor_auto_adjust_mode: bool,
-    /// Cam1 sensor exposure time (bits 368 to 383): 0 to 65535.
+    /// Cam1 sensor exposure time: bits 368 to 383, raw 0 to 65535.
     ///
     /// Register value.
     pub cam1_sensor_exposure_time: u16,
-    /// Cam1 Boresight X (bits 384 to 399): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35
-    /// pixels.
+    /// Cam1 Boresight X: bits 384 to 399, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels.
     ///
     /// Where the boresight meets the image.
-    ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam1_boresight_x: u16,
-    /// Cam1 Boresight Y (bits 400 to 415): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35
-    /// pixels.
+    /// Cam1 Boresight Y: bits 400 to 415, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels.
     ///
     /// Where the boresight meets the image.
-    ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam1_boresight_y: u16,
-    /// Cam2 Sensor Mounting Transform Alpha Angle (bits 416 to 431): raw, -32768 to 32767; physical
+    /// Cam2 Sensor Mounting Transform Alpha Angle: bits 416 to 431, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     pub cam2_sensor_mounting_transform_alpha_angle: i16,
-    /// Cam2 Sensor Mounting Transform Beta Angle (bits 432 to 447): raw, -32768 to 32767; physical
+    /// Cam2 Sensor Mounting Transform Beta Angle: bits 432 to 447, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     pub cam2_sensor_mounting_transform_beta_angle: i16,
-    /// Cam2 Sensor Mounting Transform Gamma Angle (bits 448 to 463): raw, -32768 to 32767; physical
+    /// Cam2 Sensor Mounting Transform Gamma Angle: bits 448 to 463, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     pub cam2_sensor_mounting_transform_gamma_angle: i16,
-    /// Cam2 detection threshold (bits 464 to 471): 0 to 255.
+    /// Cam2 detection threshold: bits 464 to 471, raw 0 to 255.
     pub cam2_detection_threshold: u8,
-    /// Cam2 sensor auto adjust mode (bit 472).
+    /// Cam2 sensor auto adjust mode: bit 472.
     pub cam2_sensor_auto_adjust_mode: bool,
-    /// Cam2 sensor exposure time (bits 480 to 495): 0 to 65535.
+    /// Cam2 sensor exposure time: bits 480 to 495, raw 0 to 65535.
     ///
     /// Register value.
     pub cam2_sensor_exposure_time: u16,
-    /// Cam2 Boresight X (bits 496 to 511): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35
-    /// pixels.
+    /// Cam2 Boresight X: bits 496 to 511, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels.
     ///
     /// Where the boresight meets the image.
-    ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam2_boresight_x: u16,
-    /// Cam2 Boresight Y (bits 512 to 527): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35
-    /// pixels.
+    /// Cam2 Boresight Y: bits 512 to 527, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels.
     ///
     /// Where the boresight meets the image.
-    ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam2_boresight_y: u16,
-    /// Nadir Max Deviation Percentage (bits 528 to 535): 0 to 255 %.
+    /// Nadir Max Deviation Percentage: bits 528 to 535, raw 0 to 255, in %.
     ///
     /// Largest deviation of an edge, of the measured angular radius.
     ///
     /// Erratum ACP-151 (certain): Deviation percentage has its unit in words only.
     pub nadir_max_deviation_percentage: u8,
-    /// Nadir Max Bad Edges (bits 536 to 543): 0 to 255.
+    /// Nadir Max Bad Edges: bits 536 to 543, raw 0 to 255.
     ///
     /// Most edges that may deviate further. Above 50 the test is off.
-    ///
-    /// Note ACP-152 (open): More than 50 bad edges disable the check.
     pub nadir_max_bad_edges: u8,
-    /// Nadir Max Radius (bits 544 to 551): 0 to 255 deg.
+    /// Nadir Max Radius: bits 544 to 551, raw 0 to 255, in deg.
     ///
     /// Erratum ACP-148 (certain): Degree sign is deg.
     pub nadir_max_radius: u8,
-    /// Nadir Min Radius (bits 552 to 559): 0 to 255 deg.
+    /// Nadir Min Radius: bits 552 to 559, raw 0 to 255, in deg.
     ///
     /// Erratum ACP-148 (certain): Degree sign is deg.
     pub nadir_min_radius: u8,
-    /// Cam 1 Minimum X of area 1 (bits 560 to 575): 0 to 65535.
+    /// Cam 1 Minimum X of area 1: bits 560 to 575, raw 0 to 65535.
     pub cam_1_minimum_x_of_area_1: u16,
-    /// Cam 1 Maximum X of area 1 (bits 576 to 591): 0 to 65535.
+    /// Cam 1 Maximum X of area 1: bits 576 to 591, raw 0 to 65535.
     pub cam_1_maximum_x_of_area_1: u16,
-    /// Cam 1 Minimum Y of area 1 (bits 592 to 607): 0 to 65535.
+    /// Cam 1 Minimum Y of area 1: bits 592 to 607, raw 0 to 65535.
     pub cam_1_minimum_y_of_area_1: u16,
-    /// Cam 1 Maximum Y of area 1 (bits 608 to 623): 0 to 65535.
+    /// Cam 1 Maximum Y of area 1: bits 608 to 623, raw 0 to 65535.
     pub cam_1_maximum_y_of_area_1: u16,
-    /// Cam 1 Minimum X of area 2 (bits 624 to 639): 0 to 65535.
+    /// Cam 1 Minimum X of area 2: bits 624 to 639, raw 0 to 65535.
     pub cam_1_minimum_x_of_area_2: u16,
-    /// Cam 1 Maximum X of area 2 (bits 640 to 655): 0 to 65535.
+    /// Cam 1 Maximum X of area 2: bits 640 to 655, raw 0 to 65535.
     pub cam_1_maximum_x_of_area_2: u16,
-    /// Cam 1 Minimum Y of area 2 (bits 656 to 671): 0 to 65535.
+    /// Cam 1 Minimum Y of area 2: bits 656 to 671, raw 0 to 65535.
     pub cam_1_minimum_y_of_area_2: u16,
-    /// Cam 1 Maximum Y of area 2 (bits 672 to 687): 0 to 65535.
+    /// Cam 1 Maximum Y of area 2: bits 672 to 687, raw 0 to 65535.
     pub cam_1_maximum_y_of_area_2: u16,
-    /// Cam 1 Minimum X of area 3 (bits 688 to 703): 0 to 65535.
+    /// Cam 1 Minimum X of area 3: bits 688 to 703, raw 0 to 65535.
     pub cam_1_minimum_x_of_area_3: u16,
-    /// Cam 1 Maximum X of area 3 (bits 704 to 719): 0 to 65535.
+    /// Cam 1 Maximum X of area 3: bits 704 to 719, raw 0 to 65535.
     pub cam_1_maximum_x_of_area_3: u16,
-    /// Cam 1 Minimum Y of area 3 (bits 720 to 735): 0 to 65535.
+    /// Cam 1 Minimum Y of area 3: bits 720 to 735, raw 0 to 65535.
     pub cam_1_minimum_y_of_area_3: u16,
-    /// Cam 1 Maximum Y of area 3 (bits 736 to 751): 0 to 65535.
+    /// Cam 1 Maximum Y of area 3: bits 736 to 751, raw 0 to 65535.
     pub cam_1_maximum_y_of_area_3: u16,
-    /// Cam 1 Minimum X of area 4 (bits 752 to 767): 0 to 65535.
+    /// Cam 1 Minimum X of area 4: bits 752 to 767, raw 0 to 65535.
     pub cam_1_minimum_x_of_area_4: u16,
-    /// Cam 1 Maximum X of area 4 (bits 768 to 783): 0 to 65535.
+    /// Cam 1 Maximum X of area 4: bits 768 to 783, raw 0 to 65535.
     pub cam_1_maximum_x_of_area_4: u16,
-    /// Cam 1 Minimum Y of area 4 (bits 784 to 799): 0 to 65535.
+    /// Cam 1 Minimum Y of area 4: bits 784 to 799, raw 0 to 65535.
     pub cam_1_minimum_y_of_area_4: u16,
-    /// Cam 1 Maximum Y of area 4 (bits 800 to 815): 0 to 65535.
+    /// Cam 1 Maximum Y of area 4: bits 800 to 815, raw 0 to 65535.
     pub cam_1_maximum_y_of_area_4: u16,
-    /// Cam 1 Minimum X of area 5 (bits 816 to 831): 0 to 65535.
+    /// Cam 1 Minimum X of area 5: bits 816 to 831, raw 0 to 65535.
     pub cam_1_minimum_x_of_area_5: u16,
-    /// Cam 1 Maximum X of area 5 (bits 832 to 847): 0 to 65535.
+    /// Cam 1 Maximum X of area 5: bits 832 to 847, raw 0 to 65535.
     pub cam_1_maximum_x_of_area_5: u16,
-    /// Cam 1 Minimum Y of area 5 (bits 848 to 863): 0 to 65535.
+    /// Cam 1 Minimum Y of area 5: bits 848 to 863, raw 0 to 65535.
     pub cam_1_minimum_y_of_area_5: u16,
-    /// Cam 1 Maximum Y of area 5 (bits 864 to 879): 0 to 65535.
+    /// Cam 1 Maximum Y of area 5: bits 864 to 879, raw 0 to 65535.
     pub cam_1_maximum_y_of_area_5: u16,
-    /// Cam 2 Minimum X of area 1 (bits 880 to 895): 0 to 65535.
+    /// Cam 2 Minimum X of area 1: bits 880 to 895, raw 0 to 65535.
     pub cam_2_minimum_x_of_area_1: u16,
-    /// Cam 2 Maximum X of area 1 (bits 896 to 911): 0 to 65535.
+    /// Cam 2 Maximum X of area 1: bits 896 to 911, raw 0 to 65535.
     pub cam_2_maximum_x_of_area_1: u16,
-    /// Cam 2 Minimum Y of area 1 (bits 912 to 927): 0 to 65535.
+    /// Cam 2 Minimum Y of area 1: bits 912 to 927, raw 0 to 65535.
     pub cam_2_minimum_y_of_area_1: u16,
-    /// Cam 2 Maximum Y of area 1 (bits 928 to 943): 0 to 65535.
+    /// Cam 2 Maximum Y of area 1: bits 928 to 943, raw 0 to 65535.
     pub cam_2_maximum_y_of_area_1: u16,
-    /// Cam 2 Minimum X of area 2 (bits 944 to 959): 0 to 65535.
+    /// Cam 2 Minimum X of area 2: bits 944 to 959, raw 0 to 65535.
     pub cam_2_minimum_x_of_area_2: u16,
-    /// Cam 2 Maximum X of area 2 (bits 960 to 975): 0 to 65535.
+    /// Cam 2 Maximum X of area 2: bits 960 to 975, raw 0 to 65535.
     pub cam_2_maximum_x_of_area_2: u16,
-    /// Cam 2 Minimum Y of area 2 (bits 976 to 991): 0 to 65535.
+    /// Cam 2 Minimum Y of area 2: bits 976 to 991, raw 0 to 65535.
     pub cam_2_minimum_y_of_area_2: u16,
-    /// Cam 2 Maximum Y of area 2 (bits 992 to 1007): 0 to 65535.
+    /// Cam 2 Maximum Y of area 2: bits 992 to 1007, raw 0 to 65535.
     pub cam_2_maximum_y_of_area_2: u16,
-    /// Cam 2 Minimum X of area 3 (bits 1008 to 1023): 0 to 65535.
+    /// Cam 2 Minimum X of area 3: bits 1008 to 1023, raw 0 to 65535.
     pub cam_2_minimum_x_of_area_3: u16,
-    /// Cam 2 Maximum X of area 3 (bits 1024 to 1039): 0 to 65535.
+    /// Cam 2 Maximum X of area 3: bits 1024 to 1039, raw 0 to 65535.
     pub cam_2_maximum_x_of_area_3: u16,
-    /// Cam 2 Minimum Y of area 3 (bits 1040 to 1055): 0 to 65535.
+    /// Cam 2 Minimum Y of area 3: bits 1040 to 1055, raw 0 to 65535.
     pub cam_2_minimum_y_of_area_3: u16,
-    /// Cam 2 Maximum Y of area 3 (bits 1056 to 1071): 0 to 65535.
+    /// Cam 2 Maximum Y of area 3: bits 1056 to 1071, raw 0 to 65535.
     pub cam_2_maximum_y_of_area_3: u16,
-    /// Cam 2 Minimum X of area 4 (bits 1072 to 1087): 0 to 65535.
+    /// Cam 2 Minimum X of area 4: bits 1072 to 1087, raw 0 to 65535.
     pub cam_2_minimum_x_of_area_4: u16,
-    /// Cam 2 Maximum X of area 4 (bits 1088 to 1103): 0 to 65535.
+    /// Cam 2 Maximum X of area 4: bits 1088 to 1103, raw 0 to 65535.
     pub cam_2_maximum_x_of_area_4: u16,
-    /// Cam 2 Minimum Y of area 4 (bits 1104 to 1119): 0 to 65535.
+    /// Cam 2 Minimum Y of area 4: bits 1104 to 1119, raw 0 to 65535.
     pub cam_2_minimum_y_of_area_4: u16,
-    /// Cam 2 Maximum Y of area 4 (bits 1120 to 1135): 0 to 65535.
+    /// Cam 2 Maximum Y of area 4: bits 1120 to 1135, raw 0 to 65535.
     pub cam_2_maximum_y_of_area_4: u16,
-    /// Cam 2 Minimum X of area 5 (bits 1136 to 1151): 0 to 65535.
+    /// Cam 2 Minimum X of area 5: bits 1136 to 1151, raw 0 to 65535.
     pub cam_2_minimum_x_of_area_5: u16,
-    /// Cam 2 Maximum X of area 5 (bits 1152 to 1167): 0 to 65535.
+    /// Cam 2 Maximum X of area 5: bits 1152 to 1167, raw 0 to 65535.
     pub cam_2_maximum_x_of_area_5: u16,
-    /// Cam 2 Minimum Y of area 5 (bits 1168 to 1183): 0 to 65535.
+    /// Cam 2 Minimum Y of area 5: bits 1168 to 1183, raw 0 to 65535.
     pub cam_2_minimum_y_of_area_5: u16,
-    /// Cam 2 Maximum Y of area 5 (bits 1184 to 1199): 0 to 65535.
+    /// Cam 2 Maximum Y of area 5: bits 1184 to 1199, raw 0 to 65535.
     pub cam_2_maximum_y_of_area_5: u16,
-    /// Magnetometer Mounting Transform Alpha Angle (bits 1200 to 1215): raw, -32768 to 32767;
+    /// Magnetometer Mounting Transform Alpha Angle: bits 1200 to 1215, raw -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
     pub magnetometer_mounting_transform_alpha_angle: i16,
-    /// Magnetometer Mounting Transform Beta Angle (bits 1216 to 1231): raw, -32768 to 32767;
-    /// physical `raw*0.01`, -327.68 to 327.67 deg.
+    /// Magnetometer Mounting Transform Beta Angle: bits 1216 to 1231, raw -32768 to 32767; physical
+    /// `raw*0.01`, -327.68 to 327.67 deg.
     pub magnetometer_mounting_transform_beta_angle: i16,
-    /// Magnetometer Mounting Transform Gamma Angle (bits 1232 to 1247): raw, -32768 to 32767;
+    /// Magnetometer Mounting Transform Gamma Angle: bits 1232 to 1247, raw -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
     pub magnetometer_mounting_transform_gamma_angle: i16,
-    /// Magnetometer Channel 1 Offset (bits 1248 to 1263): raw, -32768 to 32767; physical
-    /// `raw*0.001`, -32.768 to 32.767.
+    /// Magnetometer Channel 1 Offset: bits 1248 to 1263, raw -32768 to 32767; physical `raw*0.001`,
+    /// -32.768 to 32.767.
     pub magnetometer_channel_1_offset: i16,
-    /// Magnetometer Channel 2 Offset (bits 1264 to 1279): raw, -32768 to 32767; physical
-    /// `raw*0.001`, -32.768 to 32.767.
+    /// Magnetometer Channel 2 Offset: bits 1264 to 1279, raw -32768 to 32767; physical `raw*0.001`,
+    /// -32.768 to 32.767.
     pub magnetometer_channel_2_offset: i16,
-    /// Magnetometer Channel 3 Offset (bits 1280 to 1295): raw, -32768 to 32767; physical
-    /// `raw*0.001`, -32.768 to 32.767.
+    /// Magnetometer Channel 3 Offset: bits 1280 to 1295, raw -32768 to 32767; physical `raw*0.001`,
+    /// -32.768 to 32.767.
     pub magnetometer_channel_3_offset: i16,
-    /// Magnetometer Sensitivity Matrix S11 (bits 1296 to 1311): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S11: bits 1296 to 1311, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     pub magnetometer_sensitivity_matrix_s11: i16,
-    /// Magnetometer Sensitivity Matrix S22 (bits 1312 to 1327): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S22: bits 1312 to 1327, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     pub magnetometer_sensitivity_matrix_s22: i16,
-    /// Magnetometer Sensitivity Matrix S33 (bits 1328 to 1343): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S33: bits 1328 to 1343, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     pub magnetometer_sensitivity_matrix_s33: i16,
-    /// Magnetometer Sensitivity Matrix S12 (bits 1344 to 1359): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S12: bits 1344 to 1359, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     pub magnetometer_sensitivity_matrix_s12: i16,
-    /// Magnetometer Sensitivity Matrix S13 (bits 1360 to 1375): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S13: bits 1360 to 1375, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     pub magnetometer_sensitivity_matrix_s13: i16,
-    /// Magnetometer Sensitivity Matrix S21 (bits 1376 to 1391): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S21: bits 1376 to 1391, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     pub magnetometer_sensitivity_matrix_s21: i16,
-    /// Magnetometer Sensitivity Matrix S23 (bits 1392 to 1407): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S23: bits 1392 to 1407, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     pub magnetometer_sensitivity_matrix_s23: i16,
-    /// Magnetometer Sensitivity Matrix S31 (bits 1408 to 1423): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S31: bits 1408 to 1423, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     pub magnetometer_sensitivity_matrix_s31: i16,
-    /// Magnetometer Sensitivity Matrix S32 (bits 1424 to 1439): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S32: bits 1424 to 1439, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     pub magnetometer_sensitivity_matrix_s32: i16,
-    /// Redundant Magnetometer Mounting Transform Alpha Angle (bits 1440 to 1455): raw, -32768 to
+    /// Redundant Magnetometer Mounting Transform Alpha Angle: bits 1440 to 1455, raw -32768 to
     /// 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     pub redundant_magnetometer_mounting_transform_alpha_angle: i16,
-    /// Redundant Magnetometer Mounting Transform Beta Angle (bits 1456 to 1471): raw, -32768 to
+    /// Redundant Magnetometer Mounting Transform Beta Angle: bits 1456 to 1471, raw -32768 to
     /// 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     pub redundant_magnetometer_mounting_transform_beta_angle: i16,
-    /// Redundant Magnetometer Mounting Transform Gamma Angle (bits 1472 to 1487): raw, -32768 to
+    /// Redundant Magnetometer Mounting Transform Gamma Angle: bits 1472 to 1487, raw -32768 to
     /// 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     pub redundant_magnetometer_mounting_transform_gamma_angle: i16,
-    /// Redundant Magnetometer Channel 1 Offset (bits 1488 to 1503): raw, -32768 to 32767; physical
+    /// Redundant Magnetometer Channel 1 Offset: bits 1488 to 1503, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     pub redundant_magnetometer_channel_1_offset: i16,
-    /// Redundant Magnetometer Channel 2 Offset (bits 1504 to 1519): raw, -32768 to 32767; physical
+    /// Redundant Magnetometer Channel 2 Offset: bits 1504 to 1519, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     pub redundant_magnetometer_channel_2_offset: i16,
-    /// Redundant Magnetometer Channel 3 Offset (bits 1520 to 1535): raw, -32768 to 32767; physical
+    /// Redundant Magnetometer Channel 3 Offset: bits 1520 to 1535, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     pub redundant_magnetometer_channel_3_offset: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S11 (bits 1536 to 1551): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S11: bits 1536 to 1551, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     pub redundant_magnetometer_sensitivity_matrix_s11: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S22 (bits 1552 to 1567): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S22: bits 1552 to 1567, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     pub redundant_magnetometer_sensitivity_matrix_s22: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S33 (bits 1568 to 1583): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S33: bits 1568 to 1583, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     pub redundant_magnetometer_sensitivity_matrix_s33: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S12 (bits 1584 to 1599): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S12: bits 1584 to 1599, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     pub redundant_magnetometer_sensitivity_matrix_s12: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S13 (bits 1600 to 1615): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S13: bits 1600 to 1615, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     pub redundant_magnetometer_sensitivity_matrix_s13: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S21 (bits 1616 to 1631): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S21: bits 1616 to 1631, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     pub redundant_magnetometer_sensitivity_matrix_s21: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S23 (bits 1632 to 1647): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S23: bits 1632 to 1647, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     pub redundant_magnetometer_sensitivity_matrix_s23: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S31 (bits 1648 to 1663): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S31: bits 1648 to 1663, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     pub redundant_magnetometer_sensitivity_matrix_s31: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S32 (bits 1664 to 1679): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S32: bits 1664 to 1679, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
     pub redundant_magnetometer_sensitivity_matrix_s32: i16,
-    /// StarTracker Mounting Transform Alpha Angle (bits 1680 to 1695): raw, -32768 to 32767;
-    /// physical `raw*0.01`, -327.68 to 327.67 deg.
+    /// StarTracker Mounting Transform Alpha Angle: bits 1680 to 1695, raw -32768 to 32767; physical
+    /// `raw*0.01`, -327.68 to 327.67 deg.
     pub star_tracker_mounting_transform_alpha_angle: i16,
-    /// StarTracker Mounting Transform Beta Angle (bits 1696 to 1711): raw, -32768 to 32767;
-    /// physical `raw*0.01`, -327.68 to 327.67 deg.
+    /// StarTracker Mounting Transform Beta Angle: bits 1696 to 1711, raw -32768 to 32767; physical
+    /// `raw*0.01`, -327.68 to 327.67 deg.
     pub star_tracker_mounting_transform_beta_angle: i16,
-    /// StarTracker Mounting Transform Gamma Angle (bits 1712 to 1727): raw, -32768 to 32767;
-    /// physical `raw*0.01`, -327.68 to 327.67 deg.
+    /// StarTracker Mounting Transform Gamma Angle: bits 1712 to 1727, raw -32768 to 32767; physical
+    /// `raw*0.01`, -327.68 to 327.67 deg.
     pub star_tracker_mounting_transform_gamma_angle: i16,
-    /// StarTracker exposure time (bits 1728 to 1743): 0 to 65535.
+    /// StarTracker exposure time: bits 1728 to 1743, raw 0 to 65535.
     ///
     /// Register value.
     ///
     /// Note ACP-145 (open): Exposure and gain are register values.
     pub star_tracker_exposure_time: u16,
-    /// StarTracker analog gain (bits 1744 to 1759): 0 to 65535.
+    /// StarTracker analog gain: bits 1744 to 1759, raw 0 to 65535.
     ///
     /// Register value.
     ///
     /// Note ACP-145 (open): Exposure and gain are register values.
     pub star_tracker_analog_gain: u16,
-    /// StarTracker detection threshold (bits 1760 to 1767): 0 to 255.
+    /// StarTracker detection threshold: bits 1760 to 1767, raw 0 to 255.
     ///
     /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     pub star_tracker_detection_threshold: u8,
-    /// StarTracker star threshold (bits 1768 to 1775): 0 to 255.
+    /// StarTracker star threshold: bits 1768 to 1775, raw 0 to 255.
     ///
     /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     pub star_tracker_star_threshold: u8,
-    /// Maximum Star Matched (bits 1776 to 1783): 0 to 255.
+    /// Maximum Star Matched: bits 1776 to 1783, raw 0 to 255.
     ///
     /// Most stars that are matched.
     ///
     /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     pub maximum_star_matched: u8,
-    /// Detection Timeout duration (bits 1784 to 1799): 0 to 65535.
+    /// Detection Timeout duration: bits 1784 to 1799, raw 0 to 65535.
     ///
     /// Note ACP-141 (open): Detection timeout has no unit.
     pub detection_timeout_duration: u16,
-    /// Maximum Star Pixel (bits 1800 to 1807): 0 to 255.
+    /// Maximum Star Pixel: bits 1800 to 1807, raw 0 to 255.
     ///
     /// Most pixels of a star.
     pub maximum_star_pixel: u8,
-    /// Minimum Star Pixel (bits 1808 to 1815): 0 to 255.
+    /// Minimum Star Pixel: bits 1808 to 1815, raw 0 to 255.
     ///
     /// Fewest pixels of a star.
     pub minimum_star_pixel: u8,
-    /// Star Tracker Error Margin (bits 1816 to 1823): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55
+    /// Star Tracker Error Margin: bits 1816 to 1823, raw 0 to 255; physical `raw*0.01`, 0 to 2.55
     /// %.
     ///
     /// Of the star identification.
     ///
     /// Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
     pub star_tracker_error_margin: u8,
-    /// Star Tracker Delay Time (bits 1824 to 1839): 0 to 65535 ms.
+    /// Star Tracker Delay Time: bits 1824 to 1839, raw 0 to 65535, in ms.
     ///
     /// Erratum ACP-140 (certain): milliseconds is ms.
     pub star_tracker_delay_time: u16,
-    /// Star Tracker Centroid X (bits 1840 to 1871): 32-bit float, in pixels.
+    /// Star Tracker Centroid X: bits 1840 to 1871, 32-bit float, in pixels.
     ///
     /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
     pub star_tracker_centroid_x: f32,
-    /// Star Tracker Centroid Y (bits 1872 to 1903): 32-bit float, in pixels.
+    /// Star Tracker Centroid Y: bits 1872 to 1903, 32-bit float, in pixels.
     ///
     /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
     pub star_tracker_centroid_y: f32,
-    /// Star Tracker Focal Length (bits 1904 to 1935): 32-bit float, in mm.
+    /// Star Tracker Focal Length: bits 1904 to 1935, 32-bit float, in mm.
     pub star_tracker_focal_length: f32,
-    /// K1 radial distortion coefficient (bits 1936 to 1967): 32-bit float, in gain.
+    /// K1 radial distortion coefficient: bits 1936 to 1967, 32-bit float, in gain.
     ///
     /// Note ACP-144 (certain): gain is no unit.
     pub k1_radial_distortion_coefficient: f32,
-    /// K2 radial distortion coefficient (bits 1968 to 1999): 32-bit float, in gain.
+    /// K2 radial distortion coefficient: bits 1968 to 1999, 32-bit float, in gain.
     ///
     /// Note ACP-144 (certain): gain is no unit.
     pub k2_radial_distortion_coefficient: f32,
-    /// P1 tangential distortion coefficient (bits 2000 to 2031): 32-bit float, in gain.
+    /// P1 tangential distortion coefficient: bits 2000 to 2031, 32-bit float, in gain.
     ///
     /// Note ACP-144 (certain): gain is no unit.
     pub p1_tangential_distortion_coefficient: f32,
-    /// P2 tangential distortion coefficient (bits 2032 to 2063): 32-bit float, in gain.
+    /// P2 tangential distortion coefficient: bits 2032 to 2063, 32-bit float, in gain.
     ///
     /// Note ACP-144 (certain): gain is no unit.
     pub p2_tangential_distortion_coefficient: f32,
-    /// Star tracking window width (bits 2064 to 2071): 0 to 255.
+    /// Star tracking window width: bits 2064 to 2071, raw 0 to 255.
     ///
     /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     pub star_tracking_window_width: u8,
-    /// Star Tracking Margin (bits 2072 to 2079): raw, 0 to 255; physical `raw/100.0`, 0 to 2.55.
+    /// Star Tracking Margin: bits 2072 to 2079, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
     ///
     /// Note ACP-143 (open): Margins and search width have no unit.
     pub star_tracking_margin: u8,
-    /// Star Validation Margin (bits 2080 to 2087): raw, 0 to 255; physical `raw/100.0`, 0 to 2.55.
+    /// Star Validation Margin: bits 2080 to 2087, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
     ///
     /// Note ACP-143 (open): Margins and search width have no unit.
     pub star_validation_margin: u8,
-    /// Star Tracking Module Enable (bit 2088).
+    /// Star Tracking Module Enable: bit 2088.
     pub star_tracking_module_enable: bool,
-    /// Star Tracking Location Prediction Enable (bit 2089).
+    /// Star Tracking Location Prediction Enable: bit 2089.
     pub star_tracking_location_prediction_enable: bool,
-    /// Star Tracking Search Width (bits 2096 to 2103): raw, 0 to 255; physical `raw/5.0`, 0 to 51.
+    /// Star Tracking Search Width: bits 2096 to 2103, raw 0 to 255; physical `raw/5.0`, 0 to 51.
     ///
     /// Note ACP-143 (open): Margins and search width have no unit.
     pub star_tracking_search_width: u8,
-    /// Detumbling Spin Gain (bits 2104 to 2135): 32-bit float.
+    /// Detumbling Spin Gain: bits 2104 to 2135, 32-bit float.
     ///
     /// Ks.
     pub detumbling_spin_gain: f32,
-    /// Detumbling Damping Gain (bits 2136 to 2167): 32-bit float.
+    /// Detumbling Damping Gain: bits 2136 to 2167, 32-bit float.
     ///
     /// Kd.
     pub detumbling_damping_gain: f32,
-    /// Reference spin rate (bits 2168 to 2183): raw, -32768 to 32767; physical `raw*0.001`, -32.768
+    /// Reference spin rate: bits 2168 to 2183, raw -32768 to 32767; physical `raw*0.001`, -32.768
     /// to 32.767 deg/s.
     ///
-    /// wy-ref. Must be below 0 deg/s.
+    /// wy-ref.
+    ///
+    /// Must be below 0 deg/s.
     ///
     /// Note ACP-162 (certain): Limits of a sign in words only.
     pub reference_spin_rate: i16,
-    /// Fast BDot Detumbling Gain (bits 2184 to 2215): 32-bit float.
+    /// Fast BDot Detumbling Gain: bits 2184 to 2215, 32-bit float.
     ///
     /// Kdf.
     pub fast_bdot_detumbling_gain: f32,
-    /// Y-Momentum Control Gain (bits 2216 to 2247): 32-bit float.
+    /// Y-Momentum Control Gain: bits 2216 to 2247, 32-bit float.
     ///
     /// Kh.
     pub y_momentum_control_gain: f32,
-    /// Y-momentum Nutation Damping Gain (bits 2248 to 2279): 32-bit float.
+    /// Y-momentum Nutation Damping Gain: bits 2248 to 2279, 32-bit float.
     ///
     /// Kn.
     pub y_momentum_nutation_damping_gain: f32,
-    /// Y-momentum Proportional Gain (bits 2280 to 2311): 32-bit float.
+    /// Y-momentum Proportional Gain: bits 2280 to 2311, 32-bit float.
     ///
     /// Kp1.
     pub y_momentum_proportional_gain: f32,
-    /// Y-momentum Derivative Gain (bits 2312 to 2343): 32-bit float.
+    /// Y-momentum Derivative Gain: bits 2312 to 2343, 32-bit float.
     ///
     /// Kd1.
     pub y_momentum_derivative_gain: f32,
-    /// Reference Wheel Momentum (bits 2344 to 2375): 32-bit float, in Nms.
+    /// Reference Wheel Momentum: bits 2344 to 2375, 32-bit float, in Nms.
     ///
-    /// H-ref. Must be below 0 Nms.
+    /// H-ref.
+    ///
+    /// Must be below 0 Nms.
     ///
     /// Note ACP-162 (certain): Limits of a sign in words only.
     pub reference_wheel_momentum: f32,
-    /// RWheel Proportional Gain (bits 2376 to 2407): 32-bit float.
+    /// RWheel Proportional Gain: bits 2376 to 2407, 32-bit float.
     ///
     /// Kp2.
     pub rwheel_proportional_gain: f32,
-    /// RWheel Derivative Gain (bits 2408 to 2439): 32-bit float.
+    /// RWheel Derivative Gain: bits 2408 to 2439, 32-bit float.
     ///
     /// Kd2.
     pub rwheel_derivative_gain: f32,
-    /// Y-Wheel Bias Momentum (bits 2440 to 2471): 32-bit float, in Nms.
+    /// Y-Wheel Bias Momentum: bits 2440 to 2471, 32-bit float, in Nms.
     ///
     /// H-bias.
     pub y_wheel_bias_momentum: f32,
-    /// Sun-pointing Facet (bits 2472 to 2478).
+    /// Sun-pointing Facet: bits 2472 to 2478.
     ///
     /// Body axis that is turned towards the sun.
-    ///
-    /// Note ACP-166 (certain): Facets have 7 bits and 8 bits.
     pub sun_pointing_facet: Coded<enums::AxisSelect>,
-    /// Automatic Control Transition due to Wheel Errors (bit 2479).
+    /// Automatic Control Transition due to Wheel Errors: bit 2479.
     ///
     /// From the wheel modes to Y-Thomson on a wheel error.
     pub control_transition_on_wheel_error: bool,
-    /// Tracking Proportional Gain (bits 2480 to 2511): 32-bit float.
+    /// Tracking Proportional Gain: bits 2480 to 2511, 32-bit float.
     ///
     /// Kp3.
     pub tracking_proportional_gain: f32,
-    /// Tracking Derivative Gain (bits 2512 to 2543): 32-bit float.
+    /// Tracking Derivative Gain: bits 2512 to 2543, 32-bit float.
     ///
     /// Kd3.
     pub tracking_derivative_gain: f32,
-    /// Tracking Integral Gain (bits 2544 to 2575): 32-bit float.
+    /// Tracking Integral Gain: bits 2544 to 2575, 32-bit float.
     ///
     /// Ki3.
     pub tracking_integral_gain: f32,
-    /// Target-tracking Facet (bits 2576 to 2583).
+    /// Target-tracking Facet: bits 2576 to 2583.
     ///
     /// Body axis that is pointed at the target.
     pub target_tracking_facet: Coded<enums::AxisSelect>,
-    /// Moment Of Inertia - Ixx (bits 2584 to 2615): 32-bit float, in kg.m^2.
+    /// Moment Of Inertia - Ixx: bits 2584 to 2615, 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     pub moment_of_inertia_ixx: f32,
-    /// Moment Of Inertia - Iyy (bits 2616 to 2647): 32-bit float, in kg.m^2.
+    /// Moment Of Inertia - Iyy: bits 2616 to 2647, 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     pub moment_of_inertia_iyy: f32,
-    /// Moment Of Inertia - Izz (bits 2648 to 2679): 32-bit float, in kg.m^2.
+    /// Moment Of Inertia - Izz: bits 2648 to 2679, 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     pub moment_of_inertia_izz: f32,
-    /// Product Of Inertia - Ixy (bits 2680 to 2711): 32-bit float, in kg.m^2.
+    /// Product Of Inertia - Ixy: bits 2680 to 2711, 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     ///
     /// Note ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_ixy: f32,
-    /// Product Of Inertia - Ixz (bits 2712 to 2743): 32-bit float, in kg.m^2.
+    /// Product Of Inertia - Ixz: bits 2712 to 2743, 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     ///
     /// Note ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_ixz: f32,
-    /// Product Of Inertia - Iyz (bits 2744 to 2775): 32-bit float, in kg.m^2.
+    /// Product Of Inertia - Iyz: bits 2744 to 2775, 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     ///
     /// Note ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_iyz: f32,
-    /// Magnetometer Rate Filter System Noise (bits 2776 to 2807): 32-bit float.
+    /// Magnetometer Rate Filter System Noise: bits 2776 to 2807, 32-bit float.
     pub magnetometer_rate_filter_system_noise: f32,
-    /// EKF System Noise (bits 2808 to 2839): 32-bit float.
+    /// EKF System Noise: bits 2808 to 2839, 32-bit float.
     pub ekf_system_noise: f32,
-    /// CSS Measurement Noise (bits 2840 to 2871): 32-bit float.
+    /// CSS Measurement Noise: bits 2840 to 2871, 32-bit float.
     pub css_measurement_noise: f32,
-    /// Sun Sensor Measurement Noise (bits 2872 to 2903): 32-bit float.
+    /// Sun Sensor Measurement Noise: bits 2872 to 2903, 32-bit float.
     pub sun_sensor_measurement_noise: f32,
-    /// Nadir Sensor Measurement Noise (bits 2904 to 2935): 32-bit float.
+    /// Nadir Sensor Measurement Noise: bits 2904 to 2935, 32-bit float.
     pub nadir_sensor_measurement_noise: f32,
-    /// Magnetometer Measurement Noise (bits 2936 to 2967): 32-bit float.
+    /// Magnetometer Measurement Noise: bits 2936 to 2967, 32-bit float.
     pub magnetometer_measurement_noise: f32,
-    /// Star Tracker Measurement Noise (bits 2968 to 2999): 32-bit float.
+    /// Star Tracker Measurement Noise: bits 2968 to 2999, 32-bit float.
     pub star_tracker_measurement_noise: f32,
-    /// Use Sun Sensor (bit 3000).
+    /// Use Sun Sensor: bit 3000.
     ///
     /// In the EKF.
     pub use_sun_sensor: bool,
-    /// Use Nadir Sensor (bit 3001).
+    /// Use Nadir Sensor: bit 3001.
     ///
     /// In the EKF.
     pub use_nadir_sensor: bool,
-    /// Use CSS (bit 3002).
+    /// Use CSS: bit 3002.
     ///
     /// In the EKF.
     pub use_css: bool,
-    /// Use Star Tracker (bit 3003).
+    /// Use Star Tracker: bit 3003.
     ///
     /// In the EKF.
     pub use_star_tracker: bool,
-    /// Nadir sensor terminator test (bit 3004).
+    /// Nadir sensor terminator test: bit 3004.
     ///
     /// Ignores the nadir sensor while the terminator is in view.
     pub nadir_sensor_terminator_test: bool,
-    /// Automatic Magnetometer Recovery (bit 3005).
+    /// Automatic Magnetometer Recovery: bit 3005.
     ///
     /// Switches to the redundant magnetometer on a failure.
     pub automatic_magnetometer_recovery: bool,
-    /// Magnetometer Mode (bits 3006 to 3007).
+    /// Magnetometer Mode: bits 3006 to 3007.
     ///
     /// The magnetometer that estimation and control use.
     ///
     /// Note ACP-049 (open): Magnetometer mode can be set in two places.
     pub magnetometer_mode: Coded<enums::MagModeVal>,
-    /// Magnetometer Selection for RAW MTM TLM (bits 3008 to 3009).
+    /// Magnetometer Selection for RAW MTM TLM: bits 3008 to 3009.
     ///
     /// Magnetometer and sampling path for the second raw magnetometer frame.
     pub raw_magnetometer_selection: Coded<enums::MagModeVal>,
-    /// Automatic Estimation Transition due to Rate Sensor Errors (bit 3010).
+    /// Automatic Estimation Transition due to Rate Sensor Errors: bit 3010.
     ///
     /// From MEMS rate estimation to RKF on a rate sensor error.
     pub estimation_transition_on_rate_sensor_error: bool,
-    /// Cam1 period (bits 3016 to 3019): 0 to 15 s.
+    /// Cam1 period: bits 3016 to 3019, raw 0 to 15, in s.
     ///
     /// Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
     /// camera.
     ///
     /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
     pub cam1_period: u8,
-    /// Cam2 period (bits 3020 to 3023): 0 to 15 s.
+    /// Cam2 period: bits 3020 to 3023, raw 0 to 15, in s.
     ///
     /// Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
     /// camera.
     ///
     /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
     pub cam2_period: u8,
-    /// Incl. coefficient (bits 3024 to 3039): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
+    /// Incl. coefficient: bits 3024 to 3039, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the inclination.
     pub incl_coefficient: u16,
-    /// Raan coefficient (bits 3040 to 3055): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
+    /// Raan coefficient: bits 3040 to 3055, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the RAAN.
     pub raan_coefficient: u16,
-    /// Ecc coefficient (bits 3056 to 3071): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
+    /// Ecc coefficient: bits 3056 to 3071, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the eccentricity.
     pub ecc_coefficient: u16,
-    /// Aop coefficient (bits 3072 to 3087): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
+    /// Aop coefficient: bits 3072 to 3087, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the argument of perigee.
     pub aop_coefficient: u16,
-    /// Time coefficient (bits 3088 to 3103): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
+    /// Time coefficient: bits 3088 to 3103, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the time.
     pub time_coefficient: u16,
-    /// Pos coefficient (bits 3104 to 3119): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
+    /// Pos coefficient: bits 3104 to 3119, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the position.
     pub pos_coefficient: u16,
-    /// Maximum position error (bits 3120 to 3127): raw, 0 to 255; physical `raw*0.1`, 0 to 25.5.
+    /// Maximum position error: bits 3120 to 3127, raw 0 to 255; physical `raw*0.1`, 0 to 25.5.
     ///
     /// ASGP4 stops working beyond it.
     pub maximum_position_error: u8,
-    /// ASGP4 filter (bits 3128 to 3135).
+    /// ASGP4 filter: bits 3128 to 3135.
     pub asgp4_filter: Coded<enums::AsgpFilter>,
-    /// xp coefficient (bits 3136 to 3167): raw, -2147483648 to 2147483647; physical
-    /// `raw*0.0000001`, -214.7483648 to 214.7483647.
+    /// xp coefficient: bits 3136 to 3167, raw -2147483648 to 2147483647; physical `raw*0.0000001`,
+    /// -214.7483648 to 214.7483647.
     ///
     /// Polar coefficient.
     pub xp_coefficient: i32,
-    /// yp coefficient (bits 3168 to 3199): raw, -2147483648 to 2147483647; physical
-    /// `raw*0.0000001`, -214.7483648 to 214.7483647.
+    /// yp coefficient: bits 3168 to 3199, raw -2147483648 to 2147483647; physical `raw*0.0000001`,
+    /// -214.7483648 to 214.7483647.
     ///
     /// Polar coefficient.
     pub yp_coefficient: i32,
-    /// GPS roll over (bits 3200 to 3207): 0 to 255.
+    /// GPS roll over: bits 3200 to 3207, raw 0 to 255.
     pub gps_roll_over: u8,
-    /// Position sd (bits 3208 to 3215): raw, 0 to 255; physical `raw*0.1`, 0 to 25.5.
+    /// Position sd: bits 3208 to 3215, raw 0 to 255; physical `raw*0.1`, 0 to 25.5.
     ///
     /// Largest standard deviation with which ASGP4 works.
     pub position_sd: u8,
-    /// Velocity sd (bits 3216 to 3223): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// Velocity sd: bits 3216 to 3223, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Largest standard deviation with which ASGP4 works.
     pub velocity_sd: u8,
-    /// Min. satellites (bits 3224 to 3231): 0 to 255.
+    /// Min. satellites: bits 3224 to 3231, raw 0 to 255.
     ///
     /// Fewest satellites with which ASGP4 works.
     pub min_satellites: u8,
-    /// Time gain (bits 3232 to 3239): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// Time gain: bits 3232 to 3239, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Of the compensation of the time offset.
     pub time_gain: u8,
-    /// Max. lag (bits 3240 to 3247): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// Max. lag: bits 3240 to 3247, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Largest lag of the time stamps that are still used.
     pub max_lag: u8,
-    /// Min. samples (bits 3248 to 3263): 0 to 65535.
+    /// Min. samples: bits 3248 to 3263, raw 0 to 65535.
     ///
     /// Fewest samples for an ASGP4 run.
     pub min_samples: u16,
-    /// User Coded Controller Settings (bits 3264 to 3647): 48 bytes.
+    /// User Coded Controller Settings: bytes 408 to 455.
     ///
     /// Note ACP-178 (open): User coded settings: content of the arrays.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub user_coded_controller_settings: [u8; 48],
-    /// User Coded Estimator Settings (bits 3648 to 4031): 48 bytes.
+    /// User Coded Estimator Settings: bytes 456 to 503.
     ///
     /// Note ACP-178 (open): User coded settings: content of the arrays.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
@@ -713,13 +710,13 @@ impl AdcsConfiguration {
     pub const NAME: &'static str = "ADCS Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 504;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 20;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 206;
-    /// Must be below this: Reference spin rate in deg/s.
+    /// Reference spin rate in deg/s: must be below this.
     pub const REFERENCE_SPIN_RATE_DEG_PER_S_BELOW: f64 = 0.0;
-    /// Must be below this: Reference Wheel Momentum in Nms.
+    /// Reference Wheel Momentum in Nms: must be below this.
     pub const REFERENCE_WHEEL_MOMENTUM_BELOW: f64 = 0.0;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -740,9 +737,6 @@ impl AdcsConfiguration {
     #[must_use]
     pub fn from_array(bytes: &[u8; 504]) -> Self {
         let flags_375 = flags(bytes[375]);
-        let value_110 = i16::from_le_bytes(take!(bytes[180; 2]));
-        let value_111 = i16::from_le_bytes(take!(bytes[182; 2]));
-        let value_112 = i16::from_le_bytes(take!(bytes[184; 2]));
         Self {
             magnetorquer_1_configuration: Coded::from_raw(bytes[0]),
             magnetorquer_2_configuration: Coded::from_raw(bytes[1]),
@@ -854,9 +848,9 @@ impl AdcsConfiguration {
             magnetometer_sensitivity_matrix_s23: i16::from_le_bytes(take!(bytes[174; 2])),
             magnetometer_sensitivity_matrix_s31: i16::from_le_bytes(take!(bytes[176; 2])),
             magnetometer_sensitivity_matrix_s32: i16::from_le_bytes(take!(bytes[178; 2])),
-            redundant_magnetometer_mounting_transform_alpha_angle: value_110,
-            redundant_magnetometer_mounting_transform_beta_angle: value_111,
-            redundant_magnetometer_mounting_transform_gamma_angle: value_112,
+            redundant_magnetometer_mounting_transform_alpha_angle: i16::from_le_bytes(take!(bytes[180; 2])),
+            redundant_magnetometer_mounting_transform_beta_angle: i16::from_le_bytes(take!(bytes[182; 2])),
+            redundant_magnetometer_mounting_transform_gamma_angle: i16::from_le_bytes(take!(bytes[184; 2])),
             redundant_magnetometer_channel_1_offset: i16::from_le_bytes(take!(bytes[186; 2])),
             redundant_magnetometer_channel_2_offset: i16::from_le_bytes(take!(bytes[188; 2])),
             redundant_magnetometer_channel_3_offset: i16::from_le_bytes(take!(bytes[190; 2])),
@@ -1001,23 +995,17 @@ impl AdcsConfiguration {
         bytes[35] = self.css9_relative_scale;
         bytes[36] = self.css10_relative_scale;
         bytes[37] = self.css_threshold;
-        let value = self.cam1_sensor_mounting_transform_alpha_angle;
-        put!(value.to_le_bytes() => bytes[38; 2]);
-        let value = self.cam1_sensor_mounting_transform_beta_angle;
-        put!(value.to_le_bytes() => bytes[40; 2]);
-        let value = self.cam1_sensor_mounting_transform_gamma_angle;
-        put!(value.to_le_bytes() => bytes[42; 2]);
+        put!(self.cam1_sensor_mounting_transform_alpha_angle.to_le_bytes() => bytes[38; 2]);
+        put!(self.cam1_sensor_mounting_transform_beta_angle.to_le_bytes() => bytes[40; 2]);
+        put!(self.cam1_sensor_mounting_transform_gamma_angle.to_le_bytes() => bytes[42; 2]);
         bytes[44] = self.cam1_detection_threshold;
         bytes[45] |= u8::from(self.cam1_sensor_auto_adjust_mode);
         put!(self.cam1_sensor_exposure_time.to_le_bytes() => bytes[46; 2]);
         put!(self.cam1_boresight_x.to_le_bytes() => bytes[48; 2]);
         put!(self.cam1_boresight_y.to_le_bytes() => bytes[50; 2]);
-        let value = self.cam2_sensor_mounting_transform_alpha_angle;
-        put!(value.to_le_bytes() => bytes[52; 2]);
-        let value = self.cam2_sensor_mounting_transform_beta_angle;
-        put!(value.to_le_bytes() => bytes[54; 2]);
-        let value = self.cam2_sensor_mounting_transform_gamma_angle;
-        put!(value.to_le_bytes() => bytes[56; 2]);
+        put!(self.cam2_sensor_mounting_transform_alpha_angle.to_le_bytes() => bytes[52; 2]);
+        put!(self.cam2_sensor_mounting_transform_beta_angle.to_le_bytes() => bytes[54; 2]);
+        put!(self.cam2_sensor_mounting_transform_gamma_angle.to_le_bytes() => bytes[56; 2]);
         bytes[58] = self.cam2_detection_threshold;
         bytes[59] |= u8::from(self.cam2_sensor_auto_adjust_mode);
         put!(self.cam2_sensor_exposure_time.to_le_bytes() => bytes[60; 2]);
@@ -1067,12 +1055,9 @@ impl AdcsConfiguration {
         put!(self.cam_2_maximum_x_of_area_5.to_le_bytes() => bytes[144; 2]);
         put!(self.cam_2_minimum_y_of_area_5.to_le_bytes() => bytes[146; 2]);
         put!(self.cam_2_maximum_y_of_area_5.to_le_bytes() => bytes[148; 2]);
-        let value = self.magnetometer_mounting_transform_alpha_angle;
-        put!(value.to_le_bytes() => bytes[150; 2]);
-        let value = self.magnetometer_mounting_transform_beta_angle;
-        put!(value.to_le_bytes() => bytes[152; 2]);
-        let value = self.magnetometer_mounting_transform_gamma_angle;
-        put!(value.to_le_bytes() => bytes[154; 2]);
+        put!(self.magnetometer_mounting_transform_alpha_angle.to_le_bytes() => bytes[150; 2]);
+        put!(self.magnetometer_mounting_transform_beta_angle.to_le_bytes() => bytes[152; 2]);
+        put!(self.magnetometer_mounting_transform_gamma_angle.to_le_bytes() => bytes[154; 2]);
         put!(self.magnetometer_channel_1_offset.to_le_bytes() => bytes[156; 2]);
         put!(self.magnetometer_channel_2_offset.to_le_bytes() => bytes[158; 2]);
         put!(self.magnetometer_channel_3_offset.to_le_bytes() => bytes[160; 2]);
@@ -1085,42 +1070,24 @@ impl AdcsConfiguration {
         put!(self.magnetometer_sensitivity_matrix_s23.to_le_bytes() => bytes[174; 2]);
         put!(self.magnetometer_sensitivity_matrix_s31.to_le_bytes() => bytes[176; 2]);
         put!(self.magnetometer_sensitivity_matrix_s32.to_le_bytes() => bytes[178; 2]);
-        let value = self.redundant_magnetometer_mounting_transform_alpha_angle;
-        put!(value.to_le_bytes() => bytes[180; 2]);
-        let value = self.redundant_magnetometer_mounting_transform_beta_angle;
-        put!(value.to_le_bytes() => bytes[182; 2]);
-        let value = self.redundant_magnetometer_mounting_transform_gamma_angle;
-        put!(value.to_le_bytes() => bytes[184; 2]);
-        let value = self.redundant_magnetometer_channel_1_offset;
-        put!(value.to_le_bytes() => bytes[186; 2]);
-        let value = self.redundant_magnetometer_channel_2_offset;
-        put!(value.to_le_bytes() => bytes[188; 2]);
-        let value = self.redundant_magnetometer_channel_3_offset;
-        put!(value.to_le_bytes() => bytes[190; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s11;
-        put!(value.to_le_bytes() => bytes[192; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s22;
-        put!(value.to_le_bytes() => bytes[194; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s33;
-        put!(value.to_le_bytes() => bytes[196; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s12;
-        put!(value.to_le_bytes() => bytes[198; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s13;
-        put!(value.to_le_bytes() => bytes[200; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s21;
-        put!(value.to_le_bytes() => bytes[202; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s23;
-        put!(value.to_le_bytes() => bytes[204; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s31;
-        put!(value.to_le_bytes() => bytes[206; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s32;
-        put!(value.to_le_bytes() => bytes[208; 2]);
-        let value = self.star_tracker_mounting_transform_alpha_angle;
-        put!(value.to_le_bytes() => bytes[210; 2]);
-        let value = self.star_tracker_mounting_transform_beta_angle;
-        put!(value.to_le_bytes() => bytes[212; 2]);
-        let value = self.star_tracker_mounting_transform_gamma_angle;
-        put!(value.to_le_bytes() => bytes[214; 2]);
+        put!(self.redundant_magnetometer_mounting_transform_alpha_angle.to_le_bytes() => bytes[180; 2]);
+        put!(self.redundant_magnetometer_mounting_transform_beta_angle.to_le_bytes() => bytes[182; 2]);
+        put!(self.redundant_magnetometer_mounting_transform_gamma_angle.to_le_bytes() => bytes[184; 2]);
+        put!(self.redundant_magnetometer_channel_1_offset.to_le_bytes() => bytes[186; 2]);
+        put!(self.redundant_magnetometer_channel_2_offset.to_le_bytes() => bytes[188; 2]);
+        put!(self.redundant_magnetometer_channel_3_offset.to_le_bytes() => bytes[190; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s11.to_le_bytes() => bytes[192; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s22.to_le_bytes() => bytes[194; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s33.to_le_bytes() => bytes[196; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s12.to_le_bytes() => bytes[198; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s13.to_le_bytes() => bytes[200; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s21.to_le_bytes() => bytes[202; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s23.to_le_bytes() => bytes[204; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s31.to_le_bytes() => bytes[206; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s32.to_le_bytes() => bytes[208; 2]);
+        put!(self.star_tracker_mounting_transform_alpha_angle.to_le_bytes() => bytes[210; 2]);
+        put!(self.star_tracker_mounting_transform_beta_angle.to_le_bytes() => bytes[212; 2]);
+        put!(self.star_tracker_mounting_transform_gamma_angle.to_le_bytes() => bytes[214; 2]);
         put!(self.star_tracker_exposure_time.to_le_bytes() => bytes[216; 2]);
         put!(self.star_tracker_analog_gain.to_le_bytes() => bytes[218; 2]);
         bytes[220] = self.star_tracker_detection_threshold;
@@ -1142,8 +1109,7 @@ impl AdcsConfiguration {
         bytes[259] = self.star_tracking_margin;
         bytes[260] = self.star_validation_margin;
         bytes[261] |= u8::from(self.star_tracking_module_enable);
-        let value = self.star_tracking_location_prediction_enable;
-        bytes[261] |= u8::from(value) << 1;
+        bytes[261] |= u8::from(self.star_tracking_location_prediction_enable) << 1;
         bytes[262] = self.star_tracking_search_width;
         put!(self.detumbling_spin_gain.to_le_bytes() => bytes[263; 4]);
         put!(self.detumbling_damping_gain.to_le_bytes() => bytes[267; 4]);
@@ -1169,8 +1135,7 @@ impl AdcsConfiguration {
         put!(self.product_of_inertia_ixy.to_le_bytes() => bytes[335; 4]);
         put!(self.product_of_inertia_ixz.to_le_bytes() => bytes[339; 4]);
         put!(self.product_of_inertia_iyz.to_le_bytes() => bytes[343; 4]);
-        let value = self.magnetometer_rate_filter_system_noise;
-        put!(value.to_le_bytes() => bytes[347; 4]);
+        put!(self.magnetometer_rate_filter_system_noise.to_le_bytes() => bytes[347; 4]);
         put!(self.ekf_system_noise.to_le_bytes() => bytes[351; 4]);
         put!(self.css_measurement_noise.to_le_bytes() => bytes[355; 4]);
         put!(self.sun_sensor_measurement_noise.to_le_bytes() => bytes[359; 4]);
@@ -1185,8 +1150,7 @@ impl AdcsConfiguration {
         bytes[375] |= u8::from(self.automatic_magnetometer_recovery) << 5;
         bytes[375] |= self.magnetometer_mode.raw() << 6;
         bytes[376] |= self.raw_magnetometer_selection.raw() & 0x03;
-        let value = self.estimation_transition_on_rate_sensor_error;
-        bytes[376] |= u8::from(value) << 2;
+        bytes[376] |= u8::from(self.estimation_transition_on_rate_sensor_error) << 2;
         bytes[377] |= self.cam1_period & 0x0f;
         bytes[377] |= self.cam2_period << 4;
         put!(self.incl_coefficient.to_le_bytes() => bytes[378; 2]);
@@ -1220,8 +1184,7 @@ impl AdcsConfiguration {
     pub fn try_to_bytes(&self) -> Result<[u8; 504], Error> {
         SUN_POINTING_FACET.fit(self.sun_pointing_facet.raw())?;
         MAGNETOMETER_MODE.fit(self.magnetometer_mode.raw())?;
-        let value = self.raw_magnetometer_selection.raw();
-        RAW_MAGNETOMETER_SELECTION.fit(value)?;
+        RAW_MAGNETOMETER_SELECTION.fit(self.raw_magnetometer_selection.raw())?;
         CAM1_PERIOD.fit(self.cam1_period)?;
         CAM2_PERIOD.fit(self.cam2_period)?;
         Ok(self.to_bytes())
@@ -1438,8 +1401,7 @@ impl AdcsConfiguration {
     /// Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn cam1_sensor_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        let raw = self.cam1_sensor_mounting_transform_alpha_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.cam1_sensor_mounting_transform_alpha_angle) / 100.0
     }
 
     /// Sets Cam1 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -1452,16 +1414,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = CAM1_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
-        self.cam1_sensor_mounting_transform_alpha_angle = raw;
+        self.cam1_sensor_mounting_transform_alpha_angle =
+            CAM1_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn cam1_sensor_mounting_transform_beta_angle_deg(&self) -> f64 {
-        let raw = self.cam1_sensor_mounting_transform_beta_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.cam1_sensor_mounting_transform_beta_angle) / 100.0
     }
 
     /// Sets Cam1 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -1474,16 +1435,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = CAM1_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
-        self.cam1_sensor_mounting_transform_beta_angle = raw;
+        self.cam1_sensor_mounting_transform_beta_angle =
+            CAM1_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn cam1_sensor_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        let raw = self.cam1_sensor_mounting_transform_gamma_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.cam1_sensor_mounting_transform_gamma_angle) / 100.0
     }
 
     /// Sets Cam1 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -1496,8 +1456,8 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = CAM1_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
-        self.cam1_sensor_mounting_transform_gamma_angle = raw;
+        self.cam1_sensor_mounting_transform_gamma_angle =
+            CAM1_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
         Ok(())
     }
 
@@ -1536,8 +1496,7 @@ impl AdcsConfiguration {
     /// Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn cam2_sensor_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        let raw = self.cam2_sensor_mounting_transform_alpha_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.cam2_sensor_mounting_transform_alpha_angle) / 100.0
     }
 
     /// Sets Cam2 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -1550,16 +1509,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = CAM2_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
-        self.cam2_sensor_mounting_transform_alpha_angle = raw;
+        self.cam2_sensor_mounting_transform_alpha_angle =
+            CAM2_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn cam2_sensor_mounting_transform_beta_angle_deg(&self) -> f64 {
-        let raw = self.cam2_sensor_mounting_transform_beta_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.cam2_sensor_mounting_transform_beta_angle) / 100.0
     }
 
     /// Sets Cam2 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -1572,16 +1530,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = CAM2_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
-        self.cam2_sensor_mounting_transform_beta_angle = raw;
+        self.cam2_sensor_mounting_transform_beta_angle =
+            CAM2_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn cam2_sensor_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        let raw = self.cam2_sensor_mounting_transform_gamma_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.cam2_sensor_mounting_transform_gamma_angle) / 100.0
     }
 
     /// Sets Cam2 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -1594,8 +1551,8 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = CAM2_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
-        self.cam2_sensor_mounting_transform_gamma_angle = raw;
+        self.cam2_sensor_mounting_transform_gamma_angle =
+            CAM2_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
         Ok(())
     }
 
@@ -1634,8 +1591,7 @@ impl AdcsConfiguration {
     /// Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn magnetometer_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        let raw = self.magnetometer_mounting_transform_alpha_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.magnetometer_mounting_transform_alpha_angle) / 100.0
     }
 
     /// Sets Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -1648,16 +1604,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
-        self.magnetometer_mounting_transform_alpha_angle = raw;
+        self.magnetometer_mounting_transform_alpha_angle =
+            MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn magnetometer_mounting_transform_beta_angle_deg(&self) -> f64 {
-        let raw = self.magnetometer_mounting_transform_beta_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.magnetometer_mounting_transform_beta_angle) / 100.0
     }
 
     /// Sets Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -1670,16 +1625,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
-        self.magnetometer_mounting_transform_beta_angle = raw;
+        self.magnetometer_mounting_transform_beta_angle =
+            MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn magnetometer_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        let raw = self.magnetometer_mounting_transform_gamma_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.magnetometer_mounting_transform_gamma_angle) / 100.0
     }
 
     /// Sets Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -1692,8 +1646,8 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
-        self.magnetometer_mounting_transform_gamma_angle = raw;
+        self.magnetometer_mounting_transform_gamma_angle =
+            MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
         Ok(())
     }
 
@@ -1764,8 +1718,7 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S11.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s11 = raw;
+        self.magnetometer_sensitivity_matrix_s11 = MAGNETOMETER_SENSITIVITY_MATRIX_S11.raw(value)?;
         Ok(())
     }
 
@@ -1785,8 +1738,7 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S22.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s22 = raw;
+        self.magnetometer_sensitivity_matrix_s22 = MAGNETOMETER_SENSITIVITY_MATRIX_S22.raw(value)?;
         Ok(())
     }
 
@@ -1806,8 +1758,7 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S33.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s33 = raw;
+        self.magnetometer_sensitivity_matrix_s33 = MAGNETOMETER_SENSITIVITY_MATRIX_S33.raw(value)?;
         Ok(())
     }
 
@@ -1827,8 +1778,7 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S12.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s12 = raw;
+        self.magnetometer_sensitivity_matrix_s12 = MAGNETOMETER_SENSITIVITY_MATRIX_S12.raw(value)?;
         Ok(())
     }
 
@@ -1848,8 +1798,7 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S13.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s13 = raw;
+        self.magnetometer_sensitivity_matrix_s13 = MAGNETOMETER_SENSITIVITY_MATRIX_S13.raw(value)?;
         Ok(())
     }
 
@@ -1869,8 +1818,7 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S21.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s21 = raw;
+        self.magnetometer_sensitivity_matrix_s21 = MAGNETOMETER_SENSITIVITY_MATRIX_S21.raw(value)?;
         Ok(())
     }
 
@@ -1890,8 +1838,7 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S23.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s23 = raw;
+        self.magnetometer_sensitivity_matrix_s23 = MAGNETOMETER_SENSITIVITY_MATRIX_S23.raw(value)?;
         Ok(())
     }
 
@@ -1911,8 +1858,7 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S31.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s31 = raw;
+        self.magnetometer_sensitivity_matrix_s31 = MAGNETOMETER_SENSITIVITY_MATRIX_S31.raw(value)?;
         Ok(())
     }
 
@@ -1932,16 +1878,14 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S32.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s32 = raw;
+        self.magnetometer_sensitivity_matrix_s32 = MAGNETOMETER_SENSITIVITY_MATRIX_S32.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn redundant_magnetometer_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        let raw = self.redundant_magnetometer_mounting_transform_alpha_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.redundant_magnetometer_mounting_transform_alpha_angle) / 100.0
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value,
@@ -1954,16 +1898,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
-        self.redundant_magnetometer_mounting_transform_alpha_angle = raw;
+        self.redundant_magnetometer_mounting_transform_alpha_angle =
+            REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn redundant_magnetometer_mounting_transform_beta_angle_deg(&self) -> f64 {
-        let raw = self.redundant_magnetometer_mounting_transform_beta_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.redundant_magnetometer_mounting_transform_beta_angle) / 100.0
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value,
@@ -1976,16 +1919,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
-        self.redundant_magnetometer_mounting_transform_beta_angle = raw;
+        self.redundant_magnetometer_mounting_transform_beta_angle =
+            REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn redundant_magnetometer_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        let raw = self.redundant_magnetometer_mounting_transform_gamma_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.redundant_magnetometer_mounting_transform_gamma_angle) / 100.0
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value,
@@ -1998,16 +1940,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
-        self.redundant_magnetometer_mounting_transform_gamma_angle = raw;
+        self.redundant_magnetometer_mounting_transform_gamma_angle =
+            REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_channel_1_offset_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_channel_1_offset;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_channel_1_offset) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value,
@@ -2020,16 +1961,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_CHANNEL_1_OFFSET.raw(value)?;
-        self.redundant_magnetometer_channel_1_offset = raw;
+        self.redundant_magnetometer_channel_1_offset =
+            REDUNDANT_MAGNETOMETER_CHANNEL_1_OFFSET.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_channel_2_offset_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_channel_2_offset;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_channel_2_offset) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value,
@@ -2042,16 +1982,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_CHANNEL_2_OFFSET.raw(value)?;
-        self.redundant_magnetometer_channel_2_offset = raw;
+        self.redundant_magnetometer_channel_2_offset =
+            REDUNDANT_MAGNETOMETER_CHANNEL_2_OFFSET.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_channel_3_offset_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_channel_3_offset;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_channel_3_offset) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value,
@@ -2064,16 +2003,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_CHANNEL_3_OFFSET.raw(value)?;
-        self.redundant_magnetometer_channel_3_offset = raw;
+        self.redundant_magnetometer_channel_3_offset =
+            REDUNDANT_MAGNETOMETER_CHANNEL_3_OFFSET.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s11_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s11;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s11) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw
@@ -2086,16 +2024,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S11.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s11 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s11 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S11.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s22_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s22;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s22) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw
@@ -2108,16 +2045,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S22.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s22 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s22 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S22.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s33_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s33;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s33) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw
@@ -2130,16 +2066,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S33.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s33 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s33 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S33.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s12_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s12;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s12) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw
@@ -2152,16 +2087,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S12.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s12 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s12 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S12.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s13_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s13;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s13) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw
@@ -2174,16 +2108,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S13.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s13 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s13 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S13.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s21_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s21;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s21) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw
@@ -2196,16 +2129,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S21.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s21 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s21 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S21.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s23_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s23;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s23) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw
@@ -2218,16 +2150,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S23.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s23 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s23 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S23.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s31_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s31;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s31) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw
@@ -2240,16 +2171,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S31.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s31 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s31 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S31.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s32_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s32;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s32) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw
@@ -2262,16 +2192,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S32.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s32 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s32 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S32.raw(value)?;
         Ok(())
     }
 
     /// StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn star_tracker_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        let raw = self.star_tracker_mounting_transform_alpha_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.star_tracker_mounting_transform_alpha_angle) / 100.0
     }
 
     /// Sets StarTracker Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -2284,16 +2213,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = STAR_TRACKER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
-        self.star_tracker_mounting_transform_alpha_angle = raw;
+        self.star_tracker_mounting_transform_alpha_angle =
+            STAR_TRACKER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn star_tracker_mounting_transform_beta_angle_deg(&self) -> f64 {
-        let raw = self.star_tracker_mounting_transform_beta_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.star_tracker_mounting_transform_beta_angle) / 100.0
     }
 
     /// Sets StarTracker Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -2306,16 +2234,15 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = STAR_TRACKER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
-        self.star_tracker_mounting_transform_beta_angle = raw;
+        self.star_tracker_mounting_transform_beta_angle =
+            STAR_TRACKER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn star_tracker_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        let raw = self.star_tracker_mounting_transform_gamma_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.star_tracker_mounting_transform_gamma_angle) / 100.0
     }
 
     /// Sets StarTracker Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -2328,8 +2255,8 @@ impl AdcsConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = STAR_TRACKER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
-        self.star_tracker_mounting_transform_gamma_angle = raw;
+        self.star_tracker_mounting_transform_gamma_angle =
+            STAR_TRACKER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
         Ok(())
     }
 
@@ -2398,7 +2325,7 @@ impl AdcsConfiguration {
         Ok(())
     }
 
-    /// Reference spin rate in deg/s: -32.768 to 32.767.
+    /// Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s.
     #[must_use]
     pub fn reference_spin_rate_deg_per_s(&self) -> f64 {
         f64::from(self.reference_spin_rate) / 1_000.0

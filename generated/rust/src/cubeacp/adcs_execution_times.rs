@@ -13,13 +13,13 @@ use crate::support::{put, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct AdcsExecutionTimes {
-    /// Time to Perform ADCS Update (bits 0 to 15): 0 to 65535 ms.
+    /// Time to Perform ADCS Update: bits 0 to 15, raw 0 to 65535, in ms.
     pub time_to_perform_adcs_update: u16,
-    /// Time to Perform Sensor/Actuator Communications (bits 16 to 31): 0 to 65535 ms.
+    /// Time to Perform Sensor/Actuator Communications: bits 16 to 31, raw 0 to 65535, in ms.
     pub time_to_perform_sensor_actuator_communications: u16,
-    /// Time to Execute SGP4 Propagator (bits 32 to 47): 0 to 65535 ms.
+    /// Time to Execute SGP4 Propagator: bits 32 to 47, raw 0 to 65535, in ms.
     pub time_to_execute_sgp4_propagator: u16,
-    /// Time to Execute IGRF Model (bits 48 to 63): 0 to 65535 ms.
+    /// Time to Execute IGRF Model: bits 48 to 63, raw 0 to 65535, in ms.
     pub time_to_execute_igrf_model: u16,
 }
 
@@ -28,7 +28,7 @@ impl AdcsExecutionTimes {
     pub const NAME: &'static str = "Adcs Execution Times";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 8;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 196;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -62,8 +62,7 @@ impl AdcsExecutionTimes {
     pub fn to_bytes(&self) -> [u8; 8] {
         let mut bytes = [0; 8];
         put!(self.time_to_perform_adcs_update.to_le_bytes() => bytes[0; 2]);
-        let value = self.time_to_perform_sensor_actuator_communications;
-        put!(value.to_le_bytes() => bytes[2; 2]);
+        put!(self.time_to_perform_sensor_actuator_communications.to_le_bytes() => bytes[2; 2]);
         put!(self.time_to_execute_sgp4_propagator.to_le_bytes() => bytes[4; 2]);
         put!(self.time_to_execute_igrf_model.to_le_bytes() => bytes[6; 2]);
         bytes

@@ -7,124 +7,127 @@ use crate::support::{put, take, Error, Scale};
 /// ADCS Measurements: telemetry 191, 72 bytes. Table 150.
 ///
 /// Calibrated measurements of all sensors in one frame.
+///
+/// Repeats Magnetic Field Vector from byte 0. Repeats Coarse Sun Vector from byte 6. Repeats Fine
+/// Sun Vector from byte 12. Repeats Nadir Vector from byte 18. Repeats Rate Sensor Rates from byte
+/// 24\. Repeats Wheel Speed from byte 30. Repeats Star 1 Body Vector from byte 36. Repeats Star 1
+/// Orbit Vector from byte 42. Repeats Star 2 Body Vector from byte 48. Repeats Star 2 Orbit Vector
+/// from byte 54. Repeats Star 3 Body Vector from byte 60. Repeats Star 3 Orbit Vector from byte 66.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct AdcsMeasurements {
-    /// Magnetic Field X (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
-    /// 327.67 uT.
+    /// Magnetic Field X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
+    /// uT.
     pub magnetic_field_x: i16,
-    /// Magnetic Field Y (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
-    /// 327.67 uT.
+    /// Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
+    /// uT.
     pub magnetic_field_y: i16,
-    /// Magnetic Field Z (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
-    /// 327.67 uT.
+    /// Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
+    /// uT.
     pub magnetic_field_z: i16,
-    /// Coarse Sun X (bits 48 to 63): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
-    /// 3.2767.
+    /// Coarse Sun X: bits 48 to 63, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub coarse_sun_x: i16,
-    /// Coarse Sun Y (bits 64 to 79): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
-    /// 3.2767.
+    /// Coarse Sun Y: bits 64 to 79, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub coarse_sun_y: i16,
-    /// Coarse Sun Z (bits 80 to 95): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
-    /// 3.2767.
+    /// Coarse Sun Z: bits 80 to 95, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub coarse_sun_z: i16,
-    /// Sun X (bits 96 to 111): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Sun X: bits 96 to 111, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub sun_x: i16,
-    /// Sun Y (bits 112 to 127): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Sun Y: bits 112 to 127, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub sun_y: i16,
-    /// Sun Z (bits 128 to 143): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Sun Z: bits 128 to 143, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub sun_z: i16,
-    /// Nadir X (bits 144 to 159): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Nadir X: bits 144 to 159, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub nadir_x: i16,
-    /// Nadir Y (bits 160 to 175): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Nadir Y: bits 160 to 175, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub nadir_y: i16,
-    /// Nadir Z (bits 176 to 191): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Nadir Z: bits 176 to 191, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub nadir_z: i16,
-    /// X Angular Rate (bits 192 to 207): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
-    /// 327.67 deg/s.
+    /// X Angular Rate: bits 192 to 207, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
+    /// deg/s.
     pub x_angular_rate: i16,
-    /// Y Angular Rate (bits 208 to 223): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
-    /// 327.67 deg/s.
+    /// Y Angular Rate: bits 208 to 223, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
+    /// deg/s.
     pub y_angular_rate: i16,
-    /// Z Angular Rate (bits 224 to 239): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
-    /// 327.67 deg/s.
+    /// Z Angular Rate: bits 224 to 239, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
+    /// deg/s.
     pub z_angular_rate: i16,
-    /// X Wheel Speed (bits 240 to 255): -32768 to 32767 rpm.
+    /// X Wheel Speed: bits 240 to 255, raw -32768 to 32767, in rpm.
     pub x_wheel_speed: i16,
-    /// Y Wheel Speed (bits 256 to 271): -32768 to 32767 rpm.
+    /// Y Wheel Speed: bits 256 to 271, raw -32768 to 32767, in rpm.
     pub y_wheel_speed: i16,
-    /// Z Wheel Speed (bits 272 to 287): -32768 to 32767 rpm.
+    /// Z Wheel Speed: bits 272 to 287, raw -32768 to 32767, in rpm.
     pub z_wheel_speed: i16,
-    /// Star1BX (bits 288 to 303): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star1BX: bits 288 to 303, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     pub star1_body_x: i16,
-    /// Star1BY (bits 304 to 319): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star1BY: bits 304 to 319, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     pub star1_body_y: i16,
-    /// Star1BZ (bits 320 to 335): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star1BZ: bits 320 to 335, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     pub star1_body_z: i16,
-    /// Star1OX (bits 336 to 351): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star1OX: bits 336 to 351, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     pub star1_orbit_x: i16,
-    /// Star1OY (bits 352 to 367): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star1OY: bits 352 to 367, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     pub star1_orbit_y: i16,
-    /// Star1OZ (bits 368 to 383): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star1OZ: bits 368 to 383, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     pub star1_orbit_z: i16,
-    /// Star2BX (bits 384 to 399): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star2BX: bits 384 to 399, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     pub star2_body_x: i16,
-    /// Star2BY (bits 400 to 415): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star2BY: bits 400 to 415, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     pub star2_body_y: i16,
-    /// Star2BZ (bits 416 to 431): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star2BZ: bits 416 to 431, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     pub star2_body_z: i16,
-    /// Star2OX (bits 432 to 447): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star2OX: bits 432 to 447, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     pub star2_orbit_x: i16,
-    /// Star2OY (bits 448 to 463): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star2OY: bits 448 to 463, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     pub star2_orbit_y: i16,
-    /// Star2OZ (bits 464 to 479): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star2OZ: bits 464 to 479, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     pub star2_orbit_z: i16,
-    /// Star3BX (bits 480 to 495): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star3BX: bits 480 to 495, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     pub star3_body_x: i16,
-    /// Star3BY (bits 496 to 511): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star3BY: bits 496 to 511, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     pub star3_body_y: i16,
-    /// Star3BZ (bits 512 to 527): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star3BZ: bits 512 to 527, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     pub star3_body_z: i16,
-    /// Star3OX (bits 528 to 543): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star3OX: bits 528 to 543, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     pub star3_orbit_x: i16,
-    /// Star3OY (bits 544 to 559): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star3OY: bits 544 to 559, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     pub star3_orbit_y: i16,
-    /// Star3OZ (bits 560 to 575): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star3OZ: bits 560 to 575, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     pub star3_orbit_z: i16,
@@ -135,7 +138,7 @@ impl AdcsMeasurements {
     pub const NAME: &'static str = "ADCS Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 72;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 191;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

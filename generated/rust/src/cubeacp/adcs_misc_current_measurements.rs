@@ -7,18 +7,20 @@ use crate::support::{put, take, Error, Scale};
 /// ADCS Misc Current Measurements: telemetry 198, 6 bytes. Table 156.
 ///
 /// Currents of CubeStar and the magnetorquers, and the temperature of CubeStar.
+///
+/// Bit 24 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct AdcsMiscCurrentMeasurements {
-    /// CubeStarCurrent (bits 0 to 15): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
+    /// CubeStarCurrent: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
     /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub cubestar_current: u16,
-    /// Magnetorquer Current (bits 16 to 31): raw, 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
+    /// Magnetorquer Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
     pub magnetorquer_current: u16,
-    /// CubeStar MCU temperature (bits 32 to 47): raw, -32768 to 32767; physical `raw/100.0`,
-    /// -327.68 to 327.67 C.
+    /// CubeStar MCU temperature: bits 32 to 47, raw -32768 to 32767; physical `raw/100.0`, -327.68
+    /// to 327.67 C.
     ///
     /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
@@ -31,7 +33,7 @@ impl AdcsMiscCurrentMeasurements {
     pub const NAME: &'static str = "ADCS Misc Current Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 198;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

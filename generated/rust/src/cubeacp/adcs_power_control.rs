@@ -5,7 +5,8 @@
 use super::enums;
 use crate::support::{Coded, Error, Scale};
 
-/// ADCS Power Control: configuration, set by 11 and got by 197, 3 bytes. Table 184.
+/// ADCS Power Control: configuration, set by telecommand 11, got by telemetry 197, 3 bytes. Table
+/// 184\.
 ///
 /// Switches components on and off.
 ///
@@ -14,39 +15,39 @@ use crate::support::{Coded, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct AdcsPowerControl {
-    /// CubeControl Signal Power Selection (bits 0 to 1).
+    /// CubeControl Signal Power Selection: bits 0 to 1.
     ///
     /// Electronics of the signal PIC.
     ///
     /// Note ACP-136 (certain): Power control calls the controllers PIC.
     pub cubecontrol_signal_power_selection: Coded<enums::PowerSelect>,
-    /// CubeControl Motor Power Selection (bits 2 to 3).
+    /// CubeControl Motor Power Selection: bits 2 to 3.
     ///
     /// Electronics of the motor PIC.
     ///
     /// Note ACP-136 (certain): Power control calls the controllers PIC.
     pub cubecontrol_motor_power_selection: Coded<enums::PowerSelect>,
-    /// CubeSense1 Power Selection (bits 4 to 5).
+    /// CubeSense1 Power Selection: bits 4 to 5.
     pub cubesense1_power_selection: Coded<enums::PowerSelect>,
-    /// CubeSense2 Power Selection (bits 6 to 7).
+    /// CubeSense2 Power Selection: bits 6 to 7.
     pub cubesense2_power_selection: Coded<enums::PowerSelect>,
-    /// CubeStarPower Power Selection (bits 8 to 9).
+    /// CubeStarPower Power Selection: bits 8 to 9.
     ///
     /// Note ACP-134 (certain): Power is doubled in four names.
     pub cubestar_power_selection: Coded<enums::PowerSelect>,
-    /// CubeWheel1Power Power Selection (bits 10 to 11).
+    /// CubeWheel1Power Power Selection: bits 10 to 11.
     ///
     /// Note ACP-134 (certain): Power is doubled in four names.
     pub cubewheel1_power_selection: Coded<enums::PowerSelect>,
-    /// CubeWheel2Power Power Selection (bits 12 to 13).
+    /// CubeWheel2Power Power Selection: bits 12 to 13.
     ///
     /// Note ACP-134 (certain): Power is doubled in four names.
     pub cubewheel2_power_selection: Coded<enums::PowerSelect>,
-    /// CubeWheel3Power Power Selection (bits 14 to 15).
+    /// CubeWheel3Power Power Selection: bits 14 to 15.
     ///
     /// Note ACP-134 (certain): Power is doubled in four names.
     pub cubewheel3_power_selection: Coded<enums::PowerSelect>,
-    /// Motor Power (bits 16 to 17).
+    /// Motor Power: bits 16 to 17.
     ///
     /// Motor electronics.
     ///
@@ -54,7 +55,7 @@ pub struct AdcsPowerControl {
     ///
     /// Note ACP-135 (certain): Motor Power and GPS Power are not called selections.
     pub motor_power: Coded<enums::PowerSelect>,
-    /// GPS Power (bits 18 to 19).
+    /// GPS Power: bits 18 to 19.
     ///
     /// LNA of the GPS.
     ///
@@ -69,9 +70,9 @@ impl AdcsPowerControl {
     pub const NAME: &'static str = "ADCS Power Control";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 11;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 197;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -132,22 +133,14 @@ impl AdcsPowerControl {
     /// [`Error::Range`] if a value does not fit its field.
     #[inline]
     pub fn try_to_bytes(&self) -> Result<[u8; 3], Error> {
-        let value = self.cubecontrol_signal_power_selection.raw();
-        CUBECONTROL_SIGNAL_POWER_SELECTION.fit(value)?;
-        let value = self.cubecontrol_motor_power_selection.raw();
-        CUBECONTROL_MOTOR_POWER_SELECTION.fit(value)?;
-        let value = self.cubesense1_power_selection.raw();
-        CUBESENSE1_POWER_SELECTION.fit(value)?;
-        let value = self.cubesense2_power_selection.raw();
-        CUBESENSE2_POWER_SELECTION.fit(value)?;
-        let value = self.cubestar_power_selection.raw();
-        CUBESTAR_POWER_SELECTION.fit(value)?;
-        let value = self.cubewheel1_power_selection.raw();
-        CUBEWHEEL1_POWER_SELECTION.fit(value)?;
-        let value = self.cubewheel2_power_selection.raw();
-        CUBEWHEEL2_POWER_SELECTION.fit(value)?;
-        let value = self.cubewheel3_power_selection.raw();
-        CUBEWHEEL3_POWER_SELECTION.fit(value)?;
+        CUBECONTROL_SIGNAL_POWER_SELECTION.fit(self.cubecontrol_signal_power_selection.raw())?;
+        CUBECONTROL_MOTOR_POWER_SELECTION.fit(self.cubecontrol_motor_power_selection.raw())?;
+        CUBESENSE1_POWER_SELECTION.fit(self.cubesense1_power_selection.raw())?;
+        CUBESENSE2_POWER_SELECTION.fit(self.cubesense2_power_selection.raw())?;
+        CUBESTAR_POWER_SELECTION.fit(self.cubestar_power_selection.raw())?;
+        CUBEWHEEL1_POWER_SELECTION.fit(self.cubewheel1_power_selection.raw())?;
+        CUBEWHEEL2_POWER_SELECTION.fit(self.cubewheel2_power_selection.raw())?;
+        CUBEWHEEL3_POWER_SELECTION.fit(self.cubewheel3_power_selection.raw())?;
         MOTOR_POWER.fit(self.motor_power.raw())?;
         GPS_POWER.fit(self.gps_power.raw())?;
         Ok(self.to_bytes())

@@ -9,6 +9,12 @@ use crate::support::{flags, put, take, Coded, Error, Scale};
 ///
 /// State, attitude, rates and position in one frame.
 ///
+/// Repeats Current ADCS State from byte 0. Repeats Current ADCS State 2 from byte 6. Repeats
+/// Estimated Attitude Angles from byte 12. Repeats Estimated Quaternion from byte 18. Repeats
+/// Estimated Angular Rates from byte 24. Repeats Satellite Position (ECI) from byte 30. Repeats
+/// Satellite Velocity (ECI) from byte 36. Repeats Satellite Position (LLH) from byte 42. Repeats
+/// ECEF Position from byte 48.
+///
 /// Note ACP-059 (certain): Current ADCS State and ADCS State.
 ///
 /// Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles.
@@ -16,135 +22,127 @@ use crate::support::{flags, put, take, Coded, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct AdcsState {
-    /// Attitude Estimation Mode (bits 0 to 3).
-    ///
-    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// Attitude Estimation Mode: bits 0 to 3.
     pub attitude_estimation_mode: Coded<enums::EstimModeSelect>,
-    /// Control Mode (bits 4 to 7).
-    ///
-    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// Control Mode: bits 4 to 7.
     pub control_mode: Coded<enums::ConModeSelect>,
-    /// ADCS Run Mode (bits 8 to 9).
-    ///
-    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// ADCS Run Mode: bits 8 to 9.
     pub adcs_run_mode: Coded<enums::AdcsRunMode>,
-    /// ASGP4 Mode (bits 10 to 11).
+    /// ASGP4 Mode: bits 10 to 11.
     ///
     /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
-    ///
-    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub asgp4_mode: Coded<enums::Asgp4ModeSelect>,
-    /// CubeControl Signal Enabled (bit 12).
+    /// CubeControl Signal Enabled: bit 12.
     pub cubecontrol_signal_enabled: bool,
-    /// CubeControl Motor Enabled (bit 13).
+    /// CubeControl Motor Enabled: bit 13.
     pub cubecontrol_motor_enabled: bool,
-    /// CubeSense1 Enabled (bit 14).
+    /// CubeSense1 Enabled: bit 14.
     pub cubesense1_enabled: bool,
-    /// CubeSense2 Enabled (bit 15).
+    /// CubeSense2 Enabled: bit 15.
     pub cubesense2_enabled: bool,
-    /// CubeWheel1 Enabled (bit 16).
+    /// CubeWheel1 Enabled: bit 16.
     pub cubewheel1_enabled: bool,
-    /// CubeWheel2 Enabled (bit 17).
+    /// CubeWheel2 Enabled: bit 17.
     pub cubewheel2_enabled: bool,
-    /// CubeWheel3 Enabled (bit 18).
+    /// CubeWheel3 Enabled: bit 18.
     pub cubewheel3_enabled: bool,
-    /// CubeStar Enabled (bit 19).
+    /// CubeStar Enabled: bit 19.
     pub cubestar_enabled: bool,
-    /// GPS Receiver Enabled (bit 20).
+    /// GPS Receiver Enabled: bit 20.
     pub gps_receiver_enabled: bool,
-    /// GPS LNA Power Enabled (bit 21).
+    /// GPS LNA Power Enabled: bit 21.
     ///
     /// Amplifier of the GPS antenna.
     pub gps_lna_power_enabled: bool,
-    /// Motor Driver Enabled (bit 22).
+    /// Motor Driver Enabled: bit 22.
     pub motor_driver_enabled: bool,
-    /// Sun is Above Local Horizon (bit 23).
+    /// Sun is Above Local Horizon: bit 23.
     ///
     /// The elevation is above 0.
     pub sun_is_above_local_horizon: bool,
-    /// CubeSense1 Communications Error (bit 24).
+    /// CubeSense1 Communications Error: bit 24.
     pub cubesense1_communications_error: bool,
-    /// CubeSense2 Communications Error (bit 25).
+    /// CubeSense2 Communications Error: bit 25.
     pub cubesense2_communications_error: bool,
-    /// CubeControl Signal Communications Error (bit 26).
+    /// CubeControl Signal Communications Error: bit 26.
     pub cubecontrol_signal_communications_error: bool,
-    /// CubeControl Motor Communications Error (bit 27).
+    /// CubeControl Motor Communications Error: bit 27.
     pub cubecontrol_motor_communications_error: bool,
-    /// CubeWheel1 Communications Error (bit 28).
+    /// CubeWheel1 Communications Error: bit 28.
     pub cubewheel1_communications_error: bool,
-    /// CubeWheel2 Communications Error (bit 29).
+    /// CubeWheel2 Communications Error: bit 29.
     pub cubewheel2_communications_error: bool,
-    /// CubeWheel3 Communications Error (bit 30).
+    /// CubeWheel3 Communications Error: bit 30.
     pub cubewheel3_communications_error: bool,
-    /// CubeStar Communications Error (bit 31).
+    /// CubeStar Communications Error: bit 31.
     pub cubestar_communications_error: bool,
-    /// Magnetometer Range Error (bit 32).
+    /// Magnetometer Range Error: bit 32.
     ///
     /// About a measured field of 65 uT. Whether above or below is not printed.
     ///
     /// Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
     pub magnetometer_range_error: bool,
-    /// Cam1 SRAM Overcurrent Detected (bit 33).
+    /// Cam1 SRAM Overcurrent Detected: bit 33.
     pub cam1_sram_overcurrent_detected: bool,
-    /// Cam1 3V3 Overcurrent Detected (bit 34).
+    /// Cam1 3V3 Overcurrent Detected: bit 34.
     pub cam1_3v3_overcurrent_detected: bool,
-    /// Cam1 Sensor Busy Error (bit 35).
+    /// Cam1 Sensor Busy Error: bit 35.
     ///
     /// Cam1 sensor was still busy when the control loop began.
     pub cam1_sensor_busy_error: bool,
-    /// Cam1 Sensor Detection Error (bit 36).
+    /// Cam1 Sensor Detection Error: bit 36.
     ///
     /// No angles could be computed. The target may have been out of view.
     pub cam1_sensor_detection_error: bool,
-    /// Sun Sensor Range Error (bit 37).
+    /// Sun Sensor Range Error: bit 37.
     ///
     /// A detected sun angle was beyond +/-90 deg.
     ///
     /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
     pub sun_sensor_range_error: bool,
-    /// Cam2 SRAM Overcurrent Detected (bit 38).
+    /// Cam2 SRAM Overcurrent Detected: bit 38.
     pub cam2_sram_overcurrent_detected: bool,
-    /// Cam2 3V3 Overcurrent Detected (bit 39).
+    /// Cam2 3V3 Overcurrent Detected: bit 39.
     pub cam2_3v3_overcurrent_detected: bool,
-    /// Cam2 Sensor Busy Error (bit 40).
+    /// Cam2 Sensor Busy Error: bit 40.
     ///
     /// Cam2 sensor was still busy when the control loop began.
     pub cam2_sensor_busy_error: bool,
-    /// Cam2 Sensor Detection Error (bit 41).
+    /// Cam2 Sensor Detection Error: bit 41.
     ///
     /// No angles could be computed. The target may have been out of view.
     pub cam2_sensor_detection_error: bool,
-    /// Nadir Sensor Range Error (bit 42).
+    /// Nadir Sensor Range Error: bit 42.
     ///
     /// A detected nadir angle was beyond +/-60 deg.
     ///
     /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
     pub nadir_sensor_range_error: bool,
-    /// Rate Sensor Range Error (bit 43).
+    /// Rate Sensor Range Error: bit 43.
     ///
     /// A measured body rate was beyond +/-20 deg/s.
     pub rate_sensor_range_error: bool,
-    /// Wheel Speed Range Error (bit 44).
+    /// Wheel Speed Range Error: bit 44.
     ///
     /// A measured wheel speed was beyond +/-8500 rpm.
     pub wheel_speed_range_error: bool,
-    /// Coarse Sun Sensor Error (bit 45).
+    /// Coarse Sun Sensor Error: bit 45.
     ///
     /// No vector could be computed. The sun may have been out of view.
     pub coarse_sun_sensor_error: bool,
-    /// StarTracker Match Error (bit 46).
+    /// StarTracker Match Error: bit 46.
     ///
     /// Too few stars were matched.
     pub star_tracker_match_error: bool,
-    /// Star Tracker Overcurrent Detected (bit 47).
+    /// Star Tracker Overcurrent Detected: bit 47.
     pub star_tracker_overcurrent_detected: bool,
-    /// Orbit Parameters are Invalid (bit 48).
+    /// Orbit Parameters are Invalid: bit 48.
     ///
     /// A parameter is out of bounds, or the SGP4 propagator could not start from them.
     ///
     /// Note ACP-104 (open): Orbit parameter flag has two reasons.
     pub orbit_parameters_are_invalid: bool,
-    /// Configuration is Invalid (bit 49).
+    /// Configuration is Invalid: bit 49.
     ///
     /// Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at least one
     /// CSS.
@@ -153,120 +151,112 @@ pub struct AdcsState {
     ///
     /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
     pub configuration_is_invalid: bool,
-    /// Control Mode Change is not allowed (bit 50).
+    /// Control Mode Change is not allowed: bit 50.
     ///
     /// The mode asked for needs another estimator, or Y-momentum was asked for outside steady-state
     /// Y-Thomson.
     pub control_mode_change_is_not_allowed: bool,
-    /// Estimator Change is not allowed (bit 51).
+    /// Estimator Change is not allowed: bit 51.
     ///
     /// The estimation mode asked for does not suit the current control mode.
     pub estimator_change_is_not_allowed: bool,
-    /// Current Magnetometer Sampling Mode (bits 52 to 53).
+    /// Current Magnetometer Sampling Mode: bits 52 to 53.
     pub current_magnetometer_sampling_mode: Coded<enums::MagModeVal>,
-    /// Modelled and measured magnetic field differs in size (bit 54).
+    /// Modelled and measured magnetic field differs in size: bit 54.
     ///
     /// By more than 5000 nT.
     pub magnetic_field_size_mismatch: bool,
-    /// Node Recovery Error (bit 55).
+    /// Node Recovery Error: bit 55.
     ///
     /// An ADCS node could not be recovered by repeated resets.
     pub node_recovery_error: bool,
-    /// CubeSense1 Runtime Error (bit 56).
+    /// CubeSense1 Runtime Error: bit 56.
     pub cubesense1_runtime_error: bool,
-    /// CubeSense2 Runtime Error (bit 57).
+    /// CubeSense2 Runtime Error: bit 57.
     pub cubesense2_runtime_error: bool,
-    /// CubeControl Signal Runtime Error (bit 58).
+    /// CubeControl Signal Runtime Error: bit 58.
     pub cubecontrol_signal_runtime_error: bool,
-    /// CubeControl Motor Runtime Error (bit 59).
+    /// CubeControl Motor Runtime Error: bit 59.
     pub cubecontrol_motor_runtime_error: bool,
-    /// CubeWheel1 Runtime Error (bit 60).
+    /// CubeWheel1 Runtime Error: bit 60.
     pub cubewheel1_runtime_error: bool,
-    /// CubeWheel2 Runtime Error (bit 61).
+    /// CubeWheel2 Runtime Error: bit 61.
     pub cubewheel2_runtime_error: bool,
-    /// CubeWheel3 Runtime Error (bit 62).
+    /// CubeWheel3 Runtime Error: bit 62.
     pub cubewheel3_runtime_error: bool,
-    /// CubeStar Runtime Error (bit 63).
+    /// CubeStar Runtime Error: bit 63.
     pub cubestar_runtime_error: bool,
-    /// Magnetometer Error (bit 64).
+    /// Magnetometer Error: bit 64.
     ///
     /// The magnetometer failed.
     pub magnetometer_error: bool,
-    /// Rate Sensor Failure (bit 65).
+    /// Rate Sensor Failure: bit 65.
     pub rate_sensor_failure: bool,
-    /// Estimated Roll Angle (bits 96 to 111): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
+    /// Estimated Roll Angle: bits 96 to 111, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
     pub estimated_roll_angle: i16,
-    /// Estimated Pitch Angle (bits 112 to 127): raw, -32768 to 32767; physical `raw*0.01`, -327.68
-    /// to 327.67 deg.
+    /// Estimated Pitch Angle: bits 112 to 127, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
+    /// 327.67 deg.
     pub estimated_pitch_angle: i16,
-    /// Estimated Yaw Angle (bits 128 to 143): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
+    /// Estimated Yaw Angle: bits 128 to 143, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
     pub estimated_yaw_angle: i16,
-    /// Estimated q1 (bits 144 to 159): -32768 to 32767.
+    /// Estimated q1: bits 144 to 159, raw -32768 to 32767.
     ///
     /// Note ACP-100 (open): Estimated quaternion has no formula.
     pub estimated_q1: i16,
-    /// Estimated q2 (bits 160 to 175): -32768 to 32767.
+    /// Estimated q2: bits 160 to 175, raw -32768 to 32767.
     ///
     /// Note ACP-100 (open): Estimated quaternion has no formula.
     pub estimated_q2: i16,
-    /// Estimated q3 (bits 176 to 191): -32768 to 32767.
+    /// Estimated q3: bits 176 to 191, raw -32768 to 32767.
     ///
     /// Note ACP-100 (open): Estimated quaternion has no formula.
     pub estimated_q3: i16,
-    /// Estimated X Angular Rate (bits 192 to 207): raw, -32768 to 32767; physical `raw*0.01`,
-    /// -327.68 to 327.67 deg/s.
+    /// Estimated X Angular Rate: bits 192 to 207, raw -32768 to 32767; physical `raw*0.01`, -327.68
+    /// to 327.67 deg/s.
     pub estimated_x_angular_rate: i16,
-    /// Estimated Y Angular Rate (bits 208 to 223): raw, -32768 to 32767; physical `raw*0.01`,
-    /// -327.68 to 327.67 deg/s.
+    /// Estimated Y Angular Rate: bits 208 to 223, raw -32768 to 32767; physical `raw*0.01`, -327.68
+    /// to 327.67 deg/s.
     pub estimated_y_angular_rate: i16,
-    /// Estimated Z Angular Rate (bits 224 to 239): raw, -32768 to 32767; physical `raw*0.01`,
-    /// -327.68 to 327.67 deg/s.
+    /// Estimated Z Angular Rate: bits 224 to 239, raw -32768 to 32767; physical `raw*0.01`, -327.68
+    /// to 327.67 deg/s.
     pub estimated_z_angular_rate: i16,
-    /// X position (bits 240 to 255): raw, -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75
-    /// km.
+    /// X position: bits 240 to 255, raw -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 km.
     pub x_position: i16,
-    /// Y position (bits 256 to 271): raw, -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75
-    /// km.
+    /// Y position: bits 256 to 271, raw -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 km.
     pub y_position: i16,
-    /// Z position (bits 272 to 287): raw, -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75
-    /// km.
+    /// Z position: bits 272 to 287, raw -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 km.
     pub z_position: i16,
-    /// X Velocity (bits 288 to 303): raw, -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75
-    /// m/s.
+    /// X Velocity: bits 288 to 303, raw -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 m/s.
     pub x_velocity: i16,
-    /// Y Velocity (bits 304 to 319): raw, -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75
-    /// m/s.
+    /// Y Velocity: bits 304 to 319, raw -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 m/s.
     pub y_velocity: i16,
-    /// Z Velocity (bits 320 to 335): raw, -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75
-    /// m/s.
+    /// Z Velocity: bits 320 to 335, raw -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 m/s.
     pub z_velocity: i16,
-    /// Latitude (bits 336 to 351): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
-    /// deg.
+    /// Latitude: bits 336 to 351, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     pub latitude: i16,
-    /// Longitude (bits 352 to 367): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
-    /// deg.
+    /// Longitude: bits 352 to 367, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
     pub longitude: i16,
-    /// Altitude (bits 368 to 383): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
+    /// Altitude: bits 368 to 383, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
     ///
     /// Note ACP-067 (open): Position and altitude do not reach equally far.
     pub altitude: u16,
-    /// ECEF Position X (bits 384 to 399): -32768 to 32767.
+    /// ECEF Position X: bits 384 to 399, raw -32768 to 32767.
     ///
     /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
     /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_x: i16,
-    /// ECEF Position Y (bits 400 to 415): -32768 to 32767.
+    /// ECEF Position Y: bits 400 to 415, raw -32768 to 32767.
     ///
     /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
     /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_y: i16,
-    /// ECEF Position Z (bits 416 to 431): -32768 to 32767.
+    /// ECEF Position Z: bits 416 to 431, raw -32768 to 32767.
     ///
     /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
@@ -279,7 +269,7 @@ impl AdcsState {
     pub const NAME: &'static str = "ADCS State";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 54;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 190;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -413,10 +403,8 @@ impl AdcsState {
         bytes[2] |= u8::from(self.sun_is_above_local_horizon) << 7;
         bytes[3] |= u8::from(self.cubesense1_communications_error);
         bytes[3] |= u8::from(self.cubesense2_communications_error) << 1;
-        let value = self.cubecontrol_signal_communications_error;
-        bytes[3] |= u8::from(value) << 2;
-        let value = self.cubecontrol_motor_communications_error;
-        bytes[3] |= u8::from(value) << 3;
+        bytes[3] |= u8::from(self.cubecontrol_signal_communications_error) << 2;
+        bytes[3] |= u8::from(self.cubecontrol_motor_communications_error) << 3;
         bytes[3] |= u8::from(self.cubewheel1_communications_error) << 4;
         bytes[3] |= u8::from(self.cubewheel2_communications_error) << 5;
         bytes[3] |= u8::from(self.cubewheel3_communications_error) << 6;
@@ -485,13 +473,11 @@ impl AdcsState {
     /// [`Error::Range`] if a value does not fit its field.
     #[inline]
     pub fn try_to_bytes(&self) -> Result<[u8; 54], Error> {
-        let value = self.attitude_estimation_mode.raw();
-        ATTITUDE_ESTIMATION_MODE.fit(value)?;
+        ATTITUDE_ESTIMATION_MODE.fit(self.attitude_estimation_mode.raw())?;
         CONTROL_MODE.fit(self.control_mode.raw())?;
         ADCS_RUN_MODE.fit(self.adcs_run_mode.raw())?;
         ASGP4_MODE.fit(self.asgp4_mode.raw())?;
-        let value = self.current_magnetometer_sampling_mode.raw();
-        CURRENT_MAGNETOMETER_SAMPLING_MODE.fit(value)?;
+        CURRENT_MAGNETOMETER_SAMPLING_MODE.fit(self.current_magnetometer_sampling_mode.raw())?;
         Ok(self.to_bytes())
     }
 

@@ -5,7 +5,8 @@
 use super::enums;
 use crate::support::{put, take, Coded, Error, Scale};
 
-/// ADCS System Configuration: configuration, set by 30 and got by 225, 173 bytes. Table 201.
+/// ADCS System Configuration: configuration, set by telecommand 30, got by telemetry 225, 173
+/// bytes. Table 201.
 ///
 /// What is hard-coded: versions, ratings, calibration and pins.
 ///
@@ -16,237 +17,237 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct AdcsSystemConfiguration {
-    /// ACP Type (bits 0 to 3).
+    /// ACP Type: bits 0 to 3.
     pub acp_type: Coded<enums::AcpProgramType>,
-    /// Special Control Selection (bits 4 to 7).
+    /// Special Control Selection: bits 4 to 7.
     pub special_control_selection: Coded<enums::SpecialConSelect>,
-    /// CubeControl Signal Version (bits 8 to 15): 0 to 255.
+    /// CubeControl Signal Version: bits 8 to 15, raw 0 to 255.
     ///
     /// Note ACP-171 (open): Versions of the units: format of the number.
     pub cubecontrol_signal_version: u8,
-    /// CubeControl Motor Version (bits 16 to 23): 0 to 255.
+    /// CubeControl Motor Version: bits 16 to 23, raw 0 to 255.
     ///
     /// Note ACP-171 (open): Versions of the units: format of the number.
     pub cubecontrol_motor_version: u8,
-    /// CubeSense1 Version (bits 24 to 31): 0 to 255.
+    /// CubeSense1 Version: bits 24 to 31, raw 0 to 255.
     ///
     /// Note ACP-171 (open): Versions of the units: format of the number.
     pub cubesense1_version: u8,
-    /// CubeSense2 Version (bits 32 to 39): 0 to 255.
+    /// CubeSense2 Version: bits 32 to 39, raw 0 to 255.
     ///
     /// Note ACP-171 (open): Versions of the units: format of the number.
     pub cubesense2_version: u8,
-    /// CubeSense1 Camera Type (bits 40 to 43).
+    /// CubeSense1 Camera Type: bits 40 to 43.
     pub cubesense1_camera_type: Coded<enums::CsCamType>,
-    /// CubeSense2 Camera Type (bits 44 to 47).
+    /// CubeSense2 Camera Type: bits 44 to 47.
     pub cubesense2_camera_type: Coded<enums::CsCamType>,
-    /// CubeStar Version (bits 48 to 55): 0 to 255.
+    /// CubeStar Version: bits 48 to 55, raw 0 to 255.
     ///
     /// Note ACP-171 (open): Versions of the units: format of the number.
     pub cubestar_version: u8,
-    /// GPS Type (bits 56 to 59).
+    /// GPS Type: bits 56 to 59.
     pub gps_type: Coded<enums::GpsSelect>,
-    /// Redundant MTM Included (bit 60).
+    /// Redundant MTM Included: bit 60.
     pub redundant_mtm_included: bool,
-    /// Magnetorquer-X Max Dipole (bits 64 to 95): 32-bit float, in A.m^2.
+    /// Magnetorquer-X Max Dipole: bits 64 to 95, 32-bit float, in A.m^2.
     ///
     /// Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2.
     pub magnetorquer_x_max_dipole: f32,
-    /// Magnetorquer-Y Max Dipole (bits 96 to 127): 32-bit float, in A.m^2.
+    /// Magnetorquer-Y Max Dipole: bits 96 to 127, 32-bit float, in A.m^2.
     ///
     /// Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2.
     pub magnetorquer_y_max_dipole: f32,
-    /// Magnetorquer-Z Max Dipole (bits 128 to 159): 32-bit float, in A.m^2.
+    /// Magnetorquer-Z Max Dipole: bits 128 to 159, 32-bit float, in A.m^2.
     ///
     /// Erratum ACP-172 (certain): Dipoles: A.m² is A.m^2.
     pub magnetorquer_z_max_dipole: f32,
-    /// Magnetorquer On-time Resolution (bits 160 to 191): 32-bit float, in s.
+    /// Magnetorquer On-time Resolution: bits 160 to 191, 32-bit float, in s.
     pub magnetorquer_on_time_resolution: f32,
-    /// Magnetorquer Maximum On-time (bits 192 to 223): 32-bit float, in s.
+    /// Magnetorquer Maximum On-time: bits 192 to 223, 32-bit float, in s.
     pub magnetorquer_maximum_on_time: f32,
-    /// RW-X Maximum Torque (bits 224 to 255): 32-bit float, in N.m.
+    /// RW-X Maximum Torque: bits 224 to 255, 32-bit float, in N.m.
     ///
     /// Note ACP-173 (certain): N.m and Nms.
     pub rw_x_maximum_torque: f32,
-    /// RW-Y Maximum Torque (bits 256 to 287): 32-bit float, in N.m.
+    /// RW-Y Maximum Torque: bits 256 to 287, 32-bit float, in N.m.
     ///
     /// Note ACP-173 (certain): N.m and Nms.
     pub rw_y_maximum_torque: f32,
-    /// RW-Z Maximum Torque (bits 288 to 319): 32-bit float, in N.m.
+    /// RW-Z Maximum Torque: bits 288 to 319, 32-bit float, in N.m.
     ///
     /// Note ACP-173 (certain): N.m and Nms.
     pub rw_z_maximum_torque: f32,
-    /// RW-X Maximum Momentum (bits 320 to 351): 32-bit float, in Nms.
+    /// RW-X Maximum Momentum: bits 320 to 351, 32-bit float, in Nms.
     ///
     /// Note ACP-173 (certain): N.m and Nms.
     pub rw_x_maximum_momentum: f32,
-    /// RW-Y Maximum Momentum (bits 352 to 383): 32-bit float, in Nms.
+    /// RW-Y Maximum Momentum: bits 352 to 383, 32-bit float, in Nms.
     ///
     /// Note ACP-173 (certain): N.m and Nms.
     pub rw_y_maximum_momentum: f32,
-    /// RW-Z Maximum Momentum (bits 384 to 415): 32-bit float, in Nms.
+    /// RW-Z Maximum Momentum: bits 384 to 415, 32-bit float, in Nms.
     ///
     /// Note ACP-173 (certain): N.m and Nms.
     pub rw_z_maximum_momentum: f32,
-    /// RW-X Inertia (bits 416 to 447): 32-bit float, in kg.m^2.
+    /// RW-X Inertia: bits 416 to 447, 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     ///
     /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
     pub rw_x_inertia: f32,
-    /// RW-Y Inertia (bits 448 to 479): 32-bit float, in kg.m^2.
+    /// RW-Y Inertia: bits 448 to 479, 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     ///
     /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
     pub rw_y_inertia: f32,
-    /// RW-Z Inertia (bits 480 to 511): 32-bit float, in kg.m^2.
+    /// RW-Z Inertia: bits 480 to 511, 32-bit float, in kg.m^2.
     ///
     /// Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
     ///
     /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
     pub rw_z_inertia: f32,
-    /// RW Torque Increment (bits 512 to 543): 32-bit float, in N.m.
+    /// RW Torque Increment: bits 512 to 543, 32-bit float, in N.m.
     pub rw_torque_increment: f32,
-    /// Primary MTM X-Bias d1 (bits 544 to 575): 32-bit float.
+    /// Primary MTM X-Bias d1: bits 544 to 575, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_x_bias_d1: f32,
-    /// Primary MTM Y-Bias d1 (bits 576 to 607): 32-bit float.
+    /// Primary MTM Y-Bias d1: bits 576 to 607, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_y_bias_d1: f32,
-    /// Primary MTM Z-Bias d1 (bits 608 to 639): 32-bit float.
+    /// Primary MTM Z-Bias d1: bits 608 to 639, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_z_bias_d1: f32,
-    /// Primary MTM X-Bias d2 (bits 640 to 671): 32-bit float.
+    /// Primary MTM X-Bias d2: bits 640 to 671, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_x_bias_d2: f32,
-    /// Primary MTM Y-Bias d2 (bits 672 to 703): 32-bit float.
+    /// Primary MTM Y-Bias d2: bits 672 to 703, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_y_bias_d2: f32,
-    /// Primary MTM Z-Bias d2 (bits 704 to 735): 32-bit float.
+    /// Primary MTM Z-Bias d2: bits 704 to 735, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_z_bias_d2: f32,
-    /// Primary MTM X-Sens s1 (bits 736 to 767): 32-bit float.
+    /// Primary MTM X-Sens s1: bits 736 to 767, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_x_sens_s1: f32,
-    /// Primary MTM Y-Sens s1 (bits 768 to 799): 32-bit float.
+    /// Primary MTM Y-Sens s1: bits 768 to 799, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_y_sens_s1: f32,
-    /// Primary MTM Z-Sens s1 (bits 800 to 831): 32-bit float.
+    /// Primary MTM Z-Sens s1: bits 800 to 831, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_z_sens_s1: f32,
-    /// Primary MTM X-Sens s2 (bits 832 to 863): 32-bit float.
+    /// Primary MTM X-Sens s2: bits 832 to 863, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_x_sens_s2: f32,
-    /// Primary MTM Y-Sens s2 (bits 864 to 895): 32-bit float.
+    /// Primary MTM Y-Sens s2: bits 864 to 895, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_y_sens_s2: f32,
-    /// Primary MTM Z-Sens s2 (bits 896 to 927): 32-bit float.
+    /// Primary MTM Z-Sens s2: bits 896 to 927, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub primary_mtm_z_sens_s2: f32,
-    /// Redundant MTM X-Bias d1 (bits 928 to 959): 32-bit float.
+    /// Redundant MTM X-Bias d1: bits 928 to 959, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_x_bias_d1: f32,
-    /// Redundant MTM Y-Bias d1 (bits 960 to 991): 32-bit float.
+    /// Redundant MTM Y-Bias d1: bits 960 to 991, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_y_bias_d1: f32,
-    /// Redundant MTM Z-Bias d1 (bits 992 to 1023): 32-bit float.
+    /// Redundant MTM Z-Bias d1: bits 992 to 1023, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_z_bias_d1: f32,
-    /// Redundant MTM X-Bias d2 (bits 1024 to 1055): 32-bit float.
+    /// Redundant MTM X-Bias d2: bits 1024 to 1055, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_x_bias_d2: f32,
-    /// Redundant MTM Y-Bias d2 (bits 1056 to 1087): 32-bit float.
+    /// Redundant MTM Y-Bias d2: bits 1056 to 1087, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_y_bias_d2: f32,
-    /// Redundant MTM Z-Bias d2 (bits 1088 to 1119): 32-bit float.
+    /// Redundant MTM Z-Bias d2: bits 1088 to 1119, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_z_bias_d2: f32,
-    /// Redundant MTM X-Sens s1 (bits 1120 to 1151): 32-bit float.
+    /// Redundant MTM X-Sens s1: bits 1120 to 1151, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_x_sens_s1: f32,
-    /// Redundant MTM Y-Sens s1 (bits 1152 to 1183): 32-bit float.
+    /// Redundant MTM Y-Sens s1: bits 1152 to 1183, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_y_sens_s1: f32,
-    /// Redundant MTM Z-Sens s1 (bits 1184 to 1215): 32-bit float.
+    /// Redundant MTM Z-Sens s1: bits 1184 to 1215, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_z_sens_s1: f32,
-    /// Redundant MTM X-Sens s2 (bits 1216 to 1247): 32-bit float.
+    /// Redundant MTM X-Sens s2: bits 1216 to 1247, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_x_sens_s2: f32,
-    /// Redundant MTM Y-Sens s2 (bits 1248 to 1279): 32-bit float.
+    /// Redundant MTM Y-Sens s2: bits 1248 to 1279, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_y_sens_s2: f32,
-    /// Redundant MTM Z-Sens s2 (bits 1280 to 1311): 32-bit float.
+    /// Redundant MTM Z-Sens s2: bits 1280 to 1311, 32-bit float.
     ///
     /// Note ACP-174 (open): Magnetometer calibration d1, d2, s1 and s2.
     pub redundant_mtm_z_sens_s2: f32,
-    /// CC Signal Enable Port (bits 1312 to 1315).
+    /// CC Signal Enable Port: bits 1312 to 1315.
     ///
     /// Note ACP-175 (likely): CC is not explained.
     pub cc_signal_enable_port: Coded<enums::GpioPort>,
-    /// CC Signal Enable Pin (bits 1316 to 1319).
+    /// CC Signal Enable Pin: bits 1316 to 1319.
     ///
     /// Note ACP-175 (likely): CC is not explained.
     pub cc_signal_enable_pin: Coded<enums::GpioPortPin>,
-    /// CC Motor Enable Port (bits 1320 to 1323).
+    /// CC Motor Enable Port: bits 1320 to 1323.
     pub cc_motor_enable_port: Coded<enums::GpioPort>,
-    /// CC Motor Enable Pin (bits 1324 to 1327).
+    /// CC Motor Enable Pin: bits 1324 to 1327.
     pub cc_motor_enable_pin: Coded<enums::GpioPortPin>,
-    /// CC Common Enable Port (bits 1328 to 1331).
+    /// CC Common Enable Port: bits 1328 to 1331.
     ///
     /// Note ACP-175 (likely): CC is not explained.
     pub cc_common_enable_port: Coded<enums::GpioPort>,
-    /// CC Common Enable Pin (bits 1332 to 1335).
+    /// CC Common Enable Pin: bits 1332 to 1335.
     ///
     /// Note ACP-175 (likely): CC is not explained.
     pub cc_common_enable_pin: Coded<enums::GpioPortPin>,
-    /// CubeSense1 Enable Port (bits 1336 to 1339).
+    /// CubeSense1 Enable Port: bits 1336 to 1339.
     pub cubesense1_enable_port: Coded<enums::GpioPort>,
-    /// CubeSense1 Enable Pin (bits 1340 to 1343).
+    /// CubeSense1 Enable Pin: bits 1340 to 1343.
     pub cubesense1_enable_pin: Coded<enums::GpioPortPin>,
-    /// CubeSense2 Enable Port (bits 1344 to 1347).
+    /// CubeSense2 Enable Port: bits 1344 to 1347.
     pub cubesense2_enable_port: Coded<enums::GpioPort>,
-    /// CubeSense2 Enable Pin (bits 1348 to 1351).
+    /// CubeSense2 Enable Pin: bits 1348 to 1351.
     pub cubesense2_enable_pin: Coded<enums::GpioPortPin>,
-    /// CubeStar Enable Port (bits 1352 to 1355).
+    /// CubeStar Enable Port: bits 1352 to 1355.
     pub cubestar_enable_port: Coded<enums::GpioPort>,
-    /// CubeStar Enable Pin (bits 1356 to 1359).
+    /// CubeStar Enable Pin: bits 1356 to 1359.
     pub cubestar_enable_pin: Coded<enums::GpioPortPin>,
-    /// CubeWheel1 Enable Port (bits 1360 to 1363).
+    /// CubeWheel1 Enable Port: bits 1360 to 1363.
     pub cubewheel1_enable_port: Coded<enums::GpioPort>,
-    /// CubeWheel1 Enable Pin (bits 1364 to 1367).
+    /// CubeWheel1 Enable Pin: bits 1364 to 1367.
     pub cubewheel1_enable_pin: Coded<enums::GpioPortPin>,
-    /// CubeWheel2 Enable Port (bits 1368 to 1371).
+    /// CubeWheel2 Enable Port: bits 1368 to 1371.
     pub cubewheel2_enable_port: Coded<enums::GpioPort>,
-    /// CubeWheel2 Enable Pin (bits 1372 to 1375).
+    /// CubeWheel2 Enable Pin: bits 1372 to 1375.
     pub cubewheel2_enable_pin: Coded<enums::GpioPortPin>,
-    /// CubeWheel3 Enable Port (bits 1376 to 1379).
+    /// CubeWheel3 Enable Port: bits 1376 to 1379.
     pub cubewheel3_enable_port: Coded<enums::GpioPort>,
-    /// CubeWheel3 Enable Pin (bits 1380 to 1383).
+    /// CubeWheel3 Enable Pin: bits 1380 to 1383.
     pub cubewheel3_enable_pin: Coded<enums::GpioPortPin>,
 }
 
@@ -255,9 +256,9 @@ impl AdcsSystemConfiguration {
     pub const NAME: &'static str = "ADCS System Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 173;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 30;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 225;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -435,43 +436,28 @@ impl AdcsSystemConfiguration {
     #[inline]
     pub fn try_to_bytes(&self) -> Result<[u8; 173], Error> {
         ACP_TYPE.fit(self.acp_type.raw())?;
-        let value = self.special_control_selection.raw();
-        SPECIAL_CONTROL_SELECTION.fit(value)?;
-        let value = self.cubesense1_camera_type.raw();
-        CUBESENSE1_CAMERA_TYPE.fit(value)?;
-        let value = self.cubesense2_camera_type.raw();
-        CUBESENSE2_CAMERA_TYPE.fit(value)?;
+        SPECIAL_CONTROL_SELECTION.fit(self.special_control_selection.raw())?;
+        CUBESENSE1_CAMERA_TYPE.fit(self.cubesense1_camera_type.raw())?;
+        CUBESENSE2_CAMERA_TYPE.fit(self.cubesense2_camera_type.raw())?;
         GPS_TYPE.fit(self.gps_type.raw())?;
-        let value = self.cc_signal_enable_port.raw();
-        CC_SIGNAL_ENABLE_PORT.fit(value)?;
+        CC_SIGNAL_ENABLE_PORT.fit(self.cc_signal_enable_port.raw())?;
         CC_SIGNAL_ENABLE_PIN.fit(self.cc_signal_enable_pin.raw())?;
         CC_MOTOR_ENABLE_PORT.fit(self.cc_motor_enable_port.raw())?;
         CC_MOTOR_ENABLE_PIN.fit(self.cc_motor_enable_pin.raw())?;
-        let value = self.cc_common_enable_port.raw();
-        CC_COMMON_ENABLE_PORT.fit(value)?;
+        CC_COMMON_ENABLE_PORT.fit(self.cc_common_enable_port.raw())?;
         CC_COMMON_ENABLE_PIN.fit(self.cc_common_enable_pin.raw())?;
-        let value = self.cubesense1_enable_port.raw();
-        CUBESENSE1_ENABLE_PORT.fit(value)?;
-        let value = self.cubesense1_enable_pin.raw();
-        CUBESENSE1_ENABLE_PIN.fit(value)?;
-        let value = self.cubesense2_enable_port.raw();
-        CUBESENSE2_ENABLE_PORT.fit(value)?;
-        let value = self.cubesense2_enable_pin.raw();
-        CUBESENSE2_ENABLE_PIN.fit(value)?;
+        CUBESENSE1_ENABLE_PORT.fit(self.cubesense1_enable_port.raw())?;
+        CUBESENSE1_ENABLE_PIN.fit(self.cubesense1_enable_pin.raw())?;
+        CUBESENSE2_ENABLE_PORT.fit(self.cubesense2_enable_port.raw())?;
+        CUBESENSE2_ENABLE_PIN.fit(self.cubesense2_enable_pin.raw())?;
         CUBESTAR_ENABLE_PORT.fit(self.cubestar_enable_port.raw())?;
         CUBESTAR_ENABLE_PIN.fit(self.cubestar_enable_pin.raw())?;
-        let value = self.cubewheel1_enable_port.raw();
-        CUBEWHEEL1_ENABLE_PORT.fit(value)?;
-        let value = self.cubewheel1_enable_pin.raw();
-        CUBEWHEEL1_ENABLE_PIN.fit(value)?;
-        let value = self.cubewheel2_enable_port.raw();
-        CUBEWHEEL2_ENABLE_PORT.fit(value)?;
-        let value = self.cubewheel2_enable_pin.raw();
-        CUBEWHEEL2_ENABLE_PIN.fit(value)?;
-        let value = self.cubewheel3_enable_port.raw();
-        CUBEWHEEL3_ENABLE_PORT.fit(value)?;
-        let value = self.cubewheel3_enable_pin.raw();
-        CUBEWHEEL3_ENABLE_PIN.fit(value)?;
+        CUBEWHEEL1_ENABLE_PORT.fit(self.cubewheel1_enable_port.raw())?;
+        CUBEWHEEL1_ENABLE_PIN.fit(self.cubewheel1_enable_pin.raw())?;
+        CUBEWHEEL2_ENABLE_PORT.fit(self.cubewheel2_enable_port.raw())?;
+        CUBEWHEEL2_ENABLE_PIN.fit(self.cubewheel2_enable_pin.raw())?;
+        CUBEWHEEL3_ENABLE_PORT.fit(self.cubewheel3_enable_port.raw())?;
+        CUBEWHEEL3_ENABLE_PIN.fit(self.cubewheel3_enable_pin.raw())?;
         Ok(self.to_bytes())
     }
 }

@@ -7,23 +7,25 @@ use crate::support::{put, take, Error, Scale};
 /// ADCS Temperatures: telemetry 174, 6 bytes. Table 132.
 ///
 /// Of the MCU and the magnetometers.
+///
+/// Bit 25 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct AdcsTemperatures {
-    /// MCU Temperature (bits 0 to 15): -32768 to 32767 C.
+    /// MCU Temperature: bits 0 to 15, raw -32768 to 32767, in C.
     ///
     /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
     /// Note ACP-085 (open): Temperatures have three scales.
     pub mcu_temperature: i16,
-    /// Magnetometer Temperature (bits 16 to 31): raw, -32768 to 32767; physical `raw/10.0`, -3276.8
+    /// Magnetometer Temperature: bits 16 to 31, raw -32768 to 32767; physical `raw/10.0`, -3276.8
     /// to 3276.7 C.
     ///
     /// Note ACP-005 (likely): Symbol C is the coulomb.
     pub magnetometer_temperature: i16,
-    /// Redundant Magnetometer Temperature (bits 32 to 47): raw, -32768 to 32767; physical
-    /// `raw/10.0`, -3276.8 to 3276.7 C.
+    /// Redundant Magnetometer Temperature: bits 32 to 47, raw -32768 to 32767; physical `raw/10.0`,
+    /// -3276.8 to 3276.7 C.
     ///
     /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
@@ -37,7 +39,7 @@ impl AdcsTemperatures {
     pub const NAME: &'static str = "ADCS Temperatures";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 174;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -103,8 +105,7 @@ impl AdcsTemperatures {
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
     pub fn set_redundant_magnetometer_temperature_c(&mut self, value: f64) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_TEMPERATURE.raw(value)?;
-        self.redundant_magnetometer_temperature = raw;
+        self.redundant_magnetometer_temperature = REDUNDANT_MAGNETOMETER_TEMPERATURE.raw(value)?;
         Ok(())
     }
 }

@@ -5,22 +5,24 @@
 use crate::support::{put, take, Error, Scale};
 
 /// Angular Rate Covariance: telemetry 165, 6 bytes. Table 121.
+///
+/// Bit 41 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct AngularRateCovariance {
-    /// X Angular Rate Covariance (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.001`,
-    /// -32.768 to 32.767.
+    /// X Angular Rate Covariance: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`, -32.768
+    /// to 32.767.
     ///
     /// Note ACP-077 (open): Angular rate covariance: unit and sign.
     pub x_angular_rate_covariance: i16,
-    /// Y Angular Rate Covariance (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.001`,
-    /// -32.768 to 32.767.
+    /// Y Angular Rate Covariance: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`, -32.768
+    /// to 32.767.
     ///
     /// Note ACP-077 (open): Angular rate covariance: unit and sign.
     pub y_angular_rate_covariance: i16,
-    /// Z Angular Rate Covariance (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.001`,
-    /// -32.768 to 32.767.
+    /// Z Angular Rate Covariance: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`, -32.768
+    /// to 32.767.
     ///
     /// Note ACP-077 (open): Angular rate covariance: unit and sign.
     pub z_angular_rate_covariance: i16,
@@ -31,7 +33,7 @@ impl AngularRateCovariance {
     pub const NAME: &'static str = "Angular Rate Covariance";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 165;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

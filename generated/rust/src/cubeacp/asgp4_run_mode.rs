@@ -7,12 +7,12 @@ use crate::support::{Coded, Error};
 
 /// ASGP4 Run Mode: telecommand 31, 1 byte. Table 86.
 ///
-/// Note ACP-046 (likely): Telecommand 31 has the id of the escape byte.
+/// Note ACP-046 (certain): Telecommand 31 has the id of the escape byte.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Asgp4RunMode {
-    /// ASGP4 Mode (bits 0 to 7).
+    /// ASGP4 Mode: bits 0 to 7.
     ///
     /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
     pub asgp4_mode: Coded<enums::Asgp4ModeSelect>,
@@ -23,7 +23,7 @@ impl Asgp4RunMode {
     pub const NAME: &'static str = "ASGP4 Run Mode";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 31;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

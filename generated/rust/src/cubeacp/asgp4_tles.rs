@@ -12,25 +12,25 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Asgp4Tles {
-    /// ASGP4 complete (bit 0).
+    /// ASGP4 complete: bit 0.
     ///
     /// The run has finished.
     pub asgp4_complete: bool,
-    /// ASGP4 error (bits 1 to 7).
+    /// ASGP4 error: bits 1 to 7.
     pub asgp4_error: Coded<enums::AsgpError>,
-    /// ASGP4 Epoch (bits 8 to 39): 32-bit float.
+    /// ASGP4 Epoch: bits 8 to 39, 32-bit float.
     ///
     /// Note ACP-121 (open): ASGP4 elements have no units.
     ///
     /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_epoch: f32,
-    /// ASGP4 inclination (bits 40 to 71): 32-bit float.
+    /// ASGP4 inclination: bits 40 to 71, 32-bit float.
     ///
     /// Note ACP-121 (open): ASGP4 elements have no units.
     ///
     /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_inclination: f32,
-    /// ASGP4 RAAN (bits 72 to 103): 32-bit float.
+    /// ASGP4 RAAN: bits 72 to 103, 32-bit float.
     ///
     /// Right ascension of the ascending node.
     ///
@@ -38,7 +38,7 @@ pub struct Asgp4Tles {
     ///
     /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_raan: f32,
-    /// ASGP4 ECC (bits 104 to 135): 32-bit float.
+    /// ASGP4 ECC: bits 104 to 135, 32-bit float.
     ///
     /// Eccentricity.
     ///
@@ -46,7 +46,7 @@ pub struct Asgp4Tles {
     ///
     /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_ecc: f32,
-    /// ASGP4 AOP (bits 136 to 167): 32-bit float.
+    /// ASGP4 AOP: bits 136 to 167, 32-bit float.
     ///
     /// Argument of perigee.
     ///
@@ -54,7 +54,7 @@ pub struct Asgp4Tles {
     ///
     /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_aop: f32,
-    /// ASGP4 MA (bits 168 to 199): 32-bit float.
+    /// ASGP4 MA: bits 168 to 199, 32-bit float.
     ///
     /// Mean anomaly.
     ///
@@ -62,7 +62,7 @@ pub struct Asgp4Tles {
     ///
     /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_ma: f32,
-    /// ASGP4 MM (bits 200 to 231): 32-bit float.
+    /// ASGP4 MM: bits 200 to 231, 32-bit float.
     ///
     /// Mean motion.
     ///
@@ -70,7 +70,7 @@ pub struct Asgp4Tles {
     ///
     /// Note ACP-122 (certain): ASGP4 elements: 32 bits against 64, and another order.
     pub asgp4_mm: f32,
-    /// ASGP4 Bstar (bits 232 to 263): 32-bit float.
+    /// ASGP4 Bstar: bits 232 to 263, 32-bit float.
     ///
     /// Drag term.
     ///
@@ -85,7 +85,7 @@ impl Asgp4Tles {
     pub const NAME: &'static str = "ASGP4 TLEs";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 33;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 228;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -17,7 +17,7 @@ impl Asgp4Trigger {
     pub const NAME: &'static str = "ASGP4 Trigger";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 32;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

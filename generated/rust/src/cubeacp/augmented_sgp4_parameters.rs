@@ -5,14 +5,15 @@
 use super::enums;
 use crate::support::{put, take, Coded, Error, Scale};
 
-/// Augmented-SGP4 Parameters: configuration, set by 28 and got by 227, 30 bytes. Table 209.
+/// Augmented-SGP4 Parameters: configuration, set by telecommand 28, got by telemetry 227, 30 bytes.
+/// Table 209.
 ///
 /// Settings of the SGP4 that GPS measurements augment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct AugmentedSgp4Parameters {
-    /// Incl. coefficient (bits 0 to 15): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
+    /// Incl. coefficient: bits 0 to 15, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the inclination.
     ///
@@ -20,13 +21,13 @@ pub struct AugmentedSgp4Parameters {
     ///
     /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
     pub incl_coefficient: u16,
-    /// Raan coefficient (bits 16 to 31): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
+    /// Raan coefficient: bits 16 to 31, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the RAAN.
     ///
     /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
     pub raan_coefficient: u16,
-    /// Ecc coefficient (bits 32 to 47): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
+    /// Ecc coefficient: bits 32 to 47, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the eccentricity.
     ///
@@ -34,7 +35,7 @@ pub struct AugmentedSgp4Parameters {
     ///
     /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
     pub ecc_coefficient: u16,
-    /// Aop coefficient (bits 48 to 63): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
+    /// Aop coefficient: bits 48 to 63, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the argument of perigee.
     ///
@@ -42,13 +43,13 @@ pub struct AugmentedSgp4Parameters {
     ///
     /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
     pub aop_coefficient: u16,
-    /// Time coefficient (bits 64 to 79): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
+    /// Time coefficient: bits 64 to 79, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the time.
     ///
     /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
     pub time_coefficient: u16,
-    /// Pos coefficient (bits 80 to 95): raw, 0 to 65535; physical `raw*0.001`, 0 to 65.535.
+    /// Pos coefficient: bits 80 to 95, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
     /// Of the filter of the position.
     ///
@@ -56,31 +57,31 @@ pub struct AugmentedSgp4Parameters {
     ///
     /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
     pub pos_coefficient: u16,
-    /// Maximum position error (bits 96 to 103): raw, 0 to 255; physical `raw*0.1`, 0 to 25.5.
+    /// Maximum position error: bits 96 to 103, raw 0 to 255; physical `raw*0.1`, 0 to 25.5.
     ///
     /// ASGP4 stops working beyond it.
     ///
     /// Note ACP-179 (open): Augmented SGP4: limits have no units.
     pub maximum_position_error: u8,
-    /// ASGP4 filter (bits 104 to 111).
+    /// ASGP4 filter: bits 104 to 111.
     pub asgp4_filter: Coded<enums::AsgpFilter>,
-    /// xp coefficient (bits 112 to 143): raw, -2147483648 to 2147483647; physical `raw*0.0000001`,
+    /// xp coefficient: bits 112 to 143, raw -2147483648 to 2147483647; physical `raw*0.0000001`,
     /// -214.7483648 to 214.7483647.
     ///
     /// Polar coefficient.
     ///
     /// Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit.
     pub xp_coefficient: i32,
-    /// yp coefficient (bits 144 to 175): raw, -2147483648 to 2147483647; physical `raw*0.0000001`,
+    /// yp coefficient: bits 144 to 175, raw -2147483648 to 2147483647; physical `raw*0.0000001`,
     /// -214.7483648 to 214.7483647.
     ///
     /// Polar coefficient.
     ///
     /// Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit.
     pub yp_coefficient: i32,
-    /// GPS roll over (bits 176 to 183): 0 to 255.
+    /// GPS roll over: bits 176 to 183, raw 0 to 255.
     pub gps_roll_over: u8,
-    /// Position sd (bits 184 to 191): raw, 0 to 255; physical `raw*0.1`, 0 to 25.5.
+    /// Position sd: bits 184 to 191, raw 0 to 255; physical `raw*0.1`, 0 to 25.5.
     ///
     /// Largest standard deviation with which ASGP4 works.
     ///
@@ -88,25 +89,25 @@ pub struct AugmentedSgp4Parameters {
     ///
     /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
     pub position_sd: u8,
-    /// Velocity sd (bits 192 to 199): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// Velocity sd: bits 192 to 199, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Largest standard deviation with which ASGP4 works.
     ///
     /// Note ACP-179 (open): Augmented SGP4: limits have no units.
     pub velocity_sd: u8,
-    /// Min. satellites (bits 200 to 207): 0 to 255.
+    /// Min. satellites: bits 200 to 207, raw 0 to 255.
     ///
     /// Fewest satellites with which ASGP4 works.
     ///
     /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
     pub min_satellites: u8,
-    /// Time gain (bits 208 to 215): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// Time gain: bits 208 to 215, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Of the compensation of the time offset.
     ///
     /// Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
     pub time_gain: u8,
-    /// Max. lag (bits 216 to 223): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// Max. lag: bits 216 to 223, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     ///
     /// Largest lag of the time stamps that are still used.
     ///
@@ -114,7 +115,7 @@ pub struct AugmentedSgp4Parameters {
     ///
     /// Note ACP-181 (certain): Augmented SGP4: names are cut short.
     pub max_lag: u8,
-    /// Min. samples (bits 224 to 239): 0 to 65535.
+    /// Min. samples: bits 224 to 239, raw 0 to 65535.
     ///
     /// Fewest samples for an ASGP4 run.
     pub min_samples: u16,
@@ -125,9 +126,9 @@ impl AugmentedSgp4Parameters {
     pub const NAME: &'static str = "Augmented-SGP4 Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 30;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 28;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 227;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

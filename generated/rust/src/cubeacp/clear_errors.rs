@@ -13,11 +13,11 @@ use crate::support::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct ClearErrors {
-    /// ADCS Error Flags (bit 0).
+    /// ADCS Error Flags: bit 0.
     ///
     /// Note ACP-021 (open): Clear Errors: which flags.
     pub adcs_error_flags: bool,
-    /// HK Error Flags (bit 1).
+    /// HK Error Flags: bit 1.
     ///
     /// Housekeeping errors.
     ///
@@ -30,7 +30,7 @@ impl ClearErrors {
     pub const NAME: &'static str = "Clear Errors";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 12;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -8,19 +8,18 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// As measured.
 ///
+/// Bit 10 of the log mask.
+///
 /// Note ACP-069 (open): Reference frames of measured vectors are not named.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CoarseSunVector {
-    /// Coarse Sun X (bits 0 to 15): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
-    /// 3.2767.
+    /// Coarse Sun X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub coarse_sun_x: i16,
-    /// Coarse Sun Y (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
-    /// 3.2767.
+    /// Coarse Sun Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub coarse_sun_y: i16,
-    /// Coarse Sun Z (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
-    /// 3.2767.
+    /// Coarse Sun Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub coarse_sun_z: i16,
 }
 
@@ -29,7 +28,7 @@ impl CoarseSunVector {
     pub const NAME: &'static str = "Coarse Sun Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 152;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -4,20 +4,21 @@
 
 use crate::support::{put, take, Error, Scale};
 
-/// Commanded Attitude Angles: configuration, set by 15 and got by 199, 6 bytes. Table 186.
+/// Commanded Attitude Angles: configuration, set by telecommand 15, got by telemetry 199, 6 bytes.
+/// Table 186.
 ///
 /// Note ACP-066 (open): Attitude angles: order of rotation and frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CommandedAttitudeAngles {
-    /// Commanded Roll Angle (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
+    /// Commanded Roll Angle: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
     pub commanded_roll_angle: i16,
-    /// Commanded Pitch Angle (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
+    /// Commanded Pitch Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
     pub commanded_pitch_angle: i16,
-    /// Commanded Yaw Angle (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
+    /// Commanded Yaw Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
     pub commanded_yaw_angle: i16,
 }
@@ -27,9 +28,9 @@ impl CommandedAttitudeAngles {
     pub const NAME: &'static str = "Commanded Attitude Angles";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 15;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 199;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

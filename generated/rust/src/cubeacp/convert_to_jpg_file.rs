@@ -11,15 +11,15 @@ use crate::support::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct ConvertToJpgFile {
-    /// Source File Counter (bits 0 to 7): 0 to 255.
+    /// Source File Counter: bits 0 to 7, raw 0 to 255.
     ///
     /// Note ACP-052 (open): Convert to JPG: which file.
     pub source_file_counter: u8,
-    /// Quality Factor (bits 8 to 15): 0 to 255.
+    /// Quality Factor: bits 8 to 15, raw 0 to 255.
     ///
     /// Note ACP-053 (open): Convert to JPG: quality and white balance have no scale.
     pub quality_factor: u8,
-    /// White Balance (bits 16 to 23): 0 to 255.
+    /// White Balance: bits 16 to 23, raw 0 to 255.
     ///
     /// Note ACP-053 (open): Convert to JPG: quality and white balance have no scale.
     pub white_balance: u8,
@@ -30,7 +30,7 @@ impl ConvertToJpgFile {
     pub const NAME: &'static str = "Convert to JPG file";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 57;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -5,54 +5,55 @@
 use super::enums;
 use crate::support::{Coded, Error, Scale};
 
-/// CSS Configuration: configuration, set by 24 and got by 139, 21 bytes. Table 183.
+/// CSS Configuration: configuration, set by telecommand 24, got by telemetry 139, 21 bytes. Table
+/// 183\.
 ///
 /// Pointing direction and scale of each photodiode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CssConfiguration {
-    /// CSS1 Configuration (bits 0 to 7).
+    /// CSS1 Configuration: bits 0 to 7.
     pub css1_configuration: Coded<enums::AxisSelect>,
-    /// CSS2 Configuration (bits 8 to 15).
+    /// CSS2 Configuration: bits 8 to 15.
     pub css2_configuration: Coded<enums::AxisSelect>,
-    /// CSS3 Configuration (bits 16 to 23).
+    /// CSS3 Configuration: bits 16 to 23.
     pub css3_configuration: Coded<enums::AxisSelect>,
-    /// CSS4 Configuration (bits 24 to 31).
+    /// CSS4 Configuration: bits 24 to 31.
     pub css4_configuration: Coded<enums::AxisSelect>,
-    /// CSS5 Configuration (bits 32 to 39).
+    /// CSS5 Configuration: bits 32 to 39.
     pub css5_configuration: Coded<enums::AxisSelect>,
-    /// CSS6 Configuration (bits 40 to 47).
+    /// CSS6 Configuration: bits 40 to 47.
     pub css6_configuration: Coded<enums::AxisSelect>,
-    /// CSS7 Configuration (bits 48 to 55).
+    /// CSS7 Configuration: bits 48 to 55.
     pub css7_configuration: Coded<enums::AxisSelect>,
-    /// CSS8 Configuration (bits 56 to 63).
+    /// CSS8 Configuration: bits 56 to 63.
     pub css8_configuration: Coded<enums::AxisSelect>,
-    /// CSS9 Configuration (bits 64 to 71).
+    /// CSS9 Configuration: bits 64 to 71.
     pub css9_configuration: Coded<enums::AxisSelect>,
-    /// CSS10 Configuration (bits 72 to 79).
+    /// CSS10 Configuration: bits 72 to 79.
     pub css10_configuration: Coded<enums::AxisSelect>,
-    /// CSS1 Relative Scale (bits 80 to 87): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS1 Relative Scale: bits 80 to 87, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css1_relative_scale: u8,
-    /// CSS2 Relative Scale (bits 88 to 95): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS2 Relative Scale: bits 88 to 95, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css2_relative_scale: u8,
-    /// CSS3 Relative Scale (bits 96 to 103): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS3 Relative Scale: bits 96 to 103, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css3_relative_scale: u8,
-    /// CSS4 Relative Scale (bits 104 to 111): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS4 Relative Scale: bits 104 to 111, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css4_relative_scale: u8,
-    /// CSS5 Relative Scale (bits 112 to 119): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS5 Relative Scale: bits 112 to 119, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css5_relative_scale: u8,
-    /// CSS6 Relative Scale (bits 120 to 127): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS6 Relative Scale: bits 120 to 127, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css6_relative_scale: u8,
-    /// CSS7 Relative Scale (bits 128 to 135): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS7 Relative Scale: bits 128 to 135, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css7_relative_scale: u8,
-    /// CSS8 Relative Scale (bits 136 to 143): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS8 Relative Scale: bits 136 to 143, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css8_relative_scale: u8,
-    /// CSS9 Relative Scale (bits 144 to 151): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS9 Relative Scale: bits 144 to 151, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css9_relative_scale: u8,
-    /// CSS10 Relative Scale (bits 152 to 159): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55.
+    /// CSS10 Relative Scale: bits 152 to 159, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
     pub css10_relative_scale: u8,
-    /// CSS Threshold (bits 160 to 167): 0 to 255.
+    /// CSS Threshold: bits 160 to 167, raw 0 to 255.
     ///
     /// Note ACP-133 (open): CSS threshold has no description.
     pub css_threshold: u8,
@@ -63,9 +64,9 @@ impl CssConfiguration {
     pub const NAME: &'static str = "CSS Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 21;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 24;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 139;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -13,29 +13,29 @@ use crate::support::{flags, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CubeacpState {
-    /// ADCS Config Load Error (bit 0).
+    /// ADCS Config Load Error: bit 0.
     ///
     /// Reading it from flash failed.
     ///
     /// Note ACP-054 (open): Two saves for three stored sets.
     pub adcs_config_load_error: bool,
-    /// Orbit Parameter Load Error (bit 1).
+    /// Orbit Parameter Load Error: bit 1.
     ///
     /// Reading them from flash failed.
     ///
     /// Note ACP-054 (open): Two saves for three stored sets.
     pub orbit_parameter_load_error: bool,
-    /// System Configuration Load Error (bit 2).
+    /// System Configuration Load Error: bit 2.
     ///
     /// Reading it from flash failed.
     ///
     /// Note ACP-054 (open): Two saves for three stored sets.
     pub system_configuration_load_error: bool,
-    /// SD card initialisation error (bit 3).
+    /// SD card initialisation error: bit 3.
     pub sd_card_initialisation_error: bool,
-    /// SD card read error (bit 4).
+    /// SD card read error: bit 4.
     pub sd_card_read_error: bool,
-    /// SD card write error (bit 5).
+    /// SD card write error: bit 5.
     pub sd_card_write_error: bool,
 }
 
@@ -44,7 +44,7 @@ impl CubeacpState {
     pub const NAME: &'static str = "CubeACP State";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 135;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

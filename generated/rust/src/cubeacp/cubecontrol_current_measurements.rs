@@ -5,17 +5,19 @@
 use crate::support::{put, take, Error, Scale};
 
 /// CubeControl Current Measurements: telemetry 172, 6 bytes. Table 130.
+///
+/// Bit 22 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CubecontrolCurrentMeasurements {
-    /// CubeControl 3V3 Current (bits 0 to 15): raw, 0 to 65535; physical `raw*0.48828125`, 0 to
+    /// CubeControl 3V3 Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.48828125`, 0 to
     /// 31999.51171875 mA.
     pub cubecontrol_3v3_current: u16,
-    /// CubeControl 5V Current (bits 16 to 31): raw, 0 to 65535; physical `raw*0.48828125`, 0 to
+    /// CubeControl 5V Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.48828125`, 0 to
     /// 31999.51171875 mA.
     pub cubecontrol_5v_current: u16,
-    /// CubeControl Vbat Current (bits 32 to 47): raw, 0 to 65535; physical `raw*0.48828125`, 0 to
+    /// CubeControl Vbat Current: bits 32 to 47, raw 0 to 65535; physical `raw*0.48828125`, 0 to
     /// 31999.51171875 mA.
     pub cubecontrol_vbat_current: u16,
 }
@@ -25,7 +27,7 @@ impl CubecontrolCurrentMeasurements {
     pub const NAME: &'static str = "CubeControl Current Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 172;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

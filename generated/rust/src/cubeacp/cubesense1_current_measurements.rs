@@ -6,15 +6,17 @@ use crate::support::{put, take, Error, Scale};
 
 /// CubeSense1 Current Measurements: telemetry 171, 4 bytes. Table 129.
 ///
+/// Bit 21 of the log mask.
+///
 /// Note ACP-194 (open): Size of a log file follows from 6 bytes a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Cubesense1CurrentMeasurements {
-    /// CubeSense1 3V3 Current (bits 0 to 15): raw, 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
+    /// CubeSense1 3V3 Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
     pub cubesense1_3v3_current: u16,
-    /// CubeSense1 Cam SRAM Current (bits 16 to 31): raw, 0 to 65535; physical `raw*0.1`, 0 to
-    /// 6553.5 mA.
+    /// CubeSense1 Cam SRAM Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5
+    /// mA.
     pub cubesense1_cam_sram_current: u16,
 }
 
@@ -23,7 +25,7 @@ impl Cubesense1CurrentMeasurements {
     pub const NAME: &'static str = "CubeSense1 Current Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 4;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 171;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

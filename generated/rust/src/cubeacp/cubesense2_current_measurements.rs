@@ -6,6 +6,8 @@ use crate::support::{put, take, Error, Scale};
 
 /// CubeSense2 Current Measurements: telemetry 232, 4 bytes. Table 175.
 ///
+/// Bit 65 of the log mask.
+///
 /// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
 ///
 /// Note ACP-194 (open): Size of a log file follows from 6 bytes a frame.
@@ -13,10 +15,10 @@ use crate::support::{put, take, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Cubesense2CurrentMeasurements {
-    /// CubeSense2 3V3 Current (bits 0 to 15): raw, 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
+    /// CubeSense2 3V3 Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
     pub cubesense2_3v3_current: u16,
-    /// CubeSense2 Cam SRAM Current (bits 16 to 31): raw, 0 to 65535; physical `raw*0.1`, 0 to
-    /// 6553.5 mA.
+    /// CubeSense2 Cam SRAM Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5
+    /// mA.
     pub cubesense2_cam_sram_current: u16,
 }
 
@@ -25,7 +27,7 @@ impl Cubesense2CurrentMeasurements {
     pub const NAME: &'static str = "CubeSense2 Current Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 4;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 232;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -4,276 +4,265 @@
 
 use crate::support::{put, take, Error, Scale};
 
-/// CubeSense Configuration: configuration, set by 25 and got by 203, 112 bytes. Table 189.
+/// CubeSense Configuration: configuration, set by telecommand 25, got by telemetry 203, 112 bytes.
+/// Table 189.
 ///
 /// Note ACP-020 (open): Reserved bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CubesenseConfiguration {
-    /// Cam1 Sensor Mounting Transform Alpha Angle (bits 0 to 15): raw, -32768 to 32767; physical
+    /// Cam1 Sensor Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub cam1_sensor_mounting_transform_alpha_angle: i16,
-    /// Cam1 Sensor Mounting Transform Beta Angle (bits 16 to 31): raw, -32768 to 32767; physical
+    /// Cam1 Sensor Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub cam1_sensor_mounting_transform_beta_angle: i16,
-    /// Cam1 Sensor Mounting Transform Gamma Angle (bits 32 to 47): raw, -32768 to 32767; physical
+    /// Cam1 Sensor Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub cam1_sensor_mounting_transform_gamma_angle: i16,
-    /// Cam1 detection threshold (bits 48 to 55): 0 to 255.
+    /// Cam1 detection threshold: bits 48 to 55, raw 0 to 255.
     ///
     /// Note ACP-150 (certain): Cam1 detection threshold has no description in one table.
     pub cam1_detection_threshold: u8,
-    /// Cam1 sensor auto adjust mode (bit 56).
+    /// Cam1 sensor auto adjust mode: bit 56.
     pub cam1_sensor_auto_adjust_mode: bool,
-    /// Cam1 sensor exposure time (bits 64 to 79): 0 to 65535.
+    /// Cam1 sensor exposure time: bits 64 to 79, raw 0 to 65535.
     ///
     /// Register value.
     ///
     /// Note ACP-145 (open): Exposure and gain are register values.
     pub cam1_sensor_exposure_time: u16,
-    /// Cam1 Boresight X (bits 80 to 95): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels.
+    /// Cam1 Boresight X: bits 80 to 95, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels.
     ///
     /// Where the boresight meets the image.
-    ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     ///
     /// Note ACP-154 (certain): Cam1 and Cam 1.
     pub cam1_boresight_x: u16,
-    /// Cam1 Boresight Y (bits 96 to 111): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels.
+    /// Cam1 Boresight Y: bits 96 to 111, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels.
     ///
     /// Where the boresight meets the image.
-    ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam1_boresight_y: u16,
-    /// Cam2 Sensor Mounting Transform Alpha Angle (bits 112 to 127): raw, -32768 to 32767; physical
+    /// Cam2 Sensor Mounting Transform Alpha Angle: bits 112 to 127, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub cam2_sensor_mounting_transform_alpha_angle: i16,
-    /// Cam2 Sensor Mounting Transform Beta Angle (bits 128 to 143): raw, -32768 to 32767; physical
+    /// Cam2 Sensor Mounting Transform Beta Angle: bits 128 to 143, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub cam2_sensor_mounting_transform_beta_angle: i16,
-    /// Cam2 Sensor Mounting Transform Gamma Angle (bits 144 to 159): raw, -32768 to 32767; physical
+    /// Cam2 Sensor Mounting Transform Gamma Angle: bits 144 to 159, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub cam2_sensor_mounting_transform_gamma_angle: i16,
-    /// Cam2 detection threshold (bits 160 to 167): 0 to 255.
+    /// Cam2 detection threshold: bits 160 to 167, raw 0 to 255.
     pub cam2_detection_threshold: u8,
-    /// Cam2 sensor auto adjust mode (bit 168).
+    /// Cam2 sensor auto adjust mode: bit 168.
     pub cam2_sensor_auto_adjust_mode: bool,
-    /// Cam2 sensor exposure time (bits 176 to 191): 0 to 65535.
+    /// Cam2 sensor exposure time: bits 176 to 191, raw 0 to 65535.
     ///
     /// Register value.
     ///
     /// Note ACP-145 (open): Exposure and gain are register values.
     pub cam2_sensor_exposure_time: u16,
-    /// Cam2 Boresight X (bits 192 to 207): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35
-    /// pixels.
+    /// Cam2 Boresight X: bits 192 to 207, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels.
     ///
     /// Where the boresight meets the image.
-    ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     ///
     /// Note ACP-154 (certain): Cam1 and Cam 1.
     pub cam2_boresight_x: u16,
-    /// Cam2 Boresight Y (bits 208 to 223): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35
-    /// pixels.
+    /// Cam2 Boresight Y: bits 208 to 223, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels.
     ///
     /// Where the boresight meets the image.
-    ///
-    /// Note ACP-149 (open): Boresight ends at 655 pixels.
     pub cam2_boresight_y: u16,
-    /// Nadir Max Deviation Percentage (bits 224 to 231): 0 to 255 %.
+    /// Nadir Max Deviation Percentage: bits 224 to 231, raw 0 to 255, in %.
     ///
     /// Largest deviation of an edge, of the measured angular radius.
     ///
     /// Erratum ACP-151 (certain): Deviation percentage has its unit in words only.
     pub nadir_max_deviation_percentage: u8,
-    /// Nadir Max Bad Edges (bits 232 to 239): 0 to 255.
+    /// Nadir Max Bad Edges: bits 232 to 239, raw 0 to 255.
     ///
     /// Most edges that may deviate further. Above 50 the test is off.
-    ///
-    /// Note ACP-152 (open): More than 50 bad edges disable the check.
     pub nadir_max_bad_edges: u8,
-    /// Nadir Max Radius (bits 240 to 247): 0 to 255 deg.
+    /// Nadir Max Radius: bits 240 to 247, raw 0 to 255, in deg.
     ///
     /// Erratum ACP-148 (certain): Degree sign is deg.
     pub nadir_max_radius: u8,
-    /// Nadir Min Radius (bits 248 to 255): 0 to 255 deg.
+    /// Nadir Min Radius: bits 248 to 255, raw 0 to 255, in deg.
     ///
     /// Erratum ACP-148 (certain): Degree sign is deg.
     pub nadir_min_radius: u8,
-    /// Cam 1 Minimum X of area 1 (bits 256 to 271): 0 to 65535.
+    /// Cam 1 Minimum X of area 1: bits 256 to 271, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     ///
     /// Note ACP-154 (certain): Cam1 and Cam 1.
     pub cam_1_minimum_x_of_area_1: u16,
-    /// Cam 1 Maximum X of area 1 (bits 272 to 287): 0 to 65535.
+    /// Cam 1 Maximum X of area 1: bits 272 to 287, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_x_of_area_1: u16,
-    /// Cam 1 Minimum Y of area 1 (bits 288 to 303): 0 to 65535.
+    /// Cam 1 Minimum Y of area 1: bits 288 to 303, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_y_of_area_1: u16,
-    /// Cam 1 Maximum Y of area 1 (bits 304 to 319): 0 to 65535.
+    /// Cam 1 Maximum Y of area 1: bits 304 to 319, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_y_of_area_1: u16,
-    /// Cam 1 Minimum X of area 2 (bits 320 to 335): 0 to 65535.
+    /// Cam 1 Minimum X of area 2: bits 320 to 335, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_x_of_area_2: u16,
-    /// Cam 1 Maximum X of area 2 (bits 336 to 351): 0 to 65535.
+    /// Cam 1 Maximum X of area 2: bits 336 to 351, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_x_of_area_2: u16,
-    /// Cam 1 Minimum Y of area 2 (bits 352 to 367): 0 to 65535.
+    /// Cam 1 Minimum Y of area 2: bits 352 to 367, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_y_of_area_2: u16,
-    /// Cam 1 Maximum Y of area 2 (bits 368 to 383): 0 to 65535.
+    /// Cam 1 Maximum Y of area 2: bits 368 to 383, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_y_of_area_2: u16,
-    /// Cam 1 Minimum X of area 3 (bits 384 to 399): 0 to 65535.
+    /// Cam 1 Minimum X of area 3: bits 384 to 399, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_x_of_area_3: u16,
-    /// Cam 1 Maximum X of area 3 (bits 400 to 415): 0 to 65535.
+    /// Cam 1 Maximum X of area 3: bits 400 to 415, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_x_of_area_3: u16,
-    /// Cam 1 Minimum Y of area 3 (bits 416 to 431): 0 to 65535.
+    /// Cam 1 Minimum Y of area 3: bits 416 to 431, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_y_of_area_3: u16,
-    /// Cam 1 Maximum Y of area 3 (bits 432 to 447): 0 to 65535.
+    /// Cam 1 Maximum Y of area 3: bits 432 to 447, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_y_of_area_3: u16,
-    /// Cam 1 Minimum X of area 4 (bits 448 to 463): 0 to 65535.
+    /// Cam 1 Minimum X of area 4: bits 448 to 463, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_x_of_area_4: u16,
-    /// Cam 1 Maximum X of area 4 (bits 464 to 479): 0 to 65535.
+    /// Cam 1 Maximum X of area 4: bits 464 to 479, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_x_of_area_4: u16,
-    /// Cam 1 Minimum Y of area 4 (bits 480 to 495): 0 to 65535.
+    /// Cam 1 Minimum Y of area 4: bits 480 to 495, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_y_of_area_4: u16,
-    /// Cam 1 Maximum Y of area 4 (bits 496 to 511): 0 to 65535.
+    /// Cam 1 Maximum Y of area 4: bits 496 to 511, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_y_of_area_4: u16,
-    /// Cam 1 Minimum X of area 5 (bits 512 to 527): 0 to 65535.
+    /// Cam 1 Minimum X of area 5: bits 512 to 527, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_x_of_area_5: u16,
-    /// Cam 1 Maximum X of area 5 (bits 528 to 543): 0 to 65535.
+    /// Cam 1 Maximum X of area 5: bits 528 to 543, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_x_of_area_5: u16,
-    /// Cam 1 Minimum Y of area 5 (bits 544 to 559): 0 to 65535.
+    /// Cam 1 Minimum Y of area 5: bits 544 to 559, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_minimum_y_of_area_5: u16,
-    /// Cam 1 Maximum Y of area 5 (bits 560 to 575): 0 to 65535.
+    /// Cam 1 Maximum Y of area 5: bits 560 to 575, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_1_maximum_y_of_area_5: u16,
-    /// Cam 2 Minimum X of area 1 (bits 576 to 591): 0 to 65535.
+    /// Cam 2 Minimum X of area 1: bits 576 to 591, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     ///
     /// Note ACP-154 (certain): Cam1 and Cam 1.
     pub cam_2_minimum_x_of_area_1: u16,
-    /// Cam 2 Maximum X of area 1 (bits 592 to 607): 0 to 65535.
+    /// Cam 2 Maximum X of area 1: bits 592 to 607, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_x_of_area_1: u16,
-    /// Cam 2 Minimum Y of area 1 (bits 608 to 623): 0 to 65535.
+    /// Cam 2 Minimum Y of area 1: bits 608 to 623, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_y_of_area_1: u16,
-    /// Cam 2 Maximum Y of area 1 (bits 624 to 639): 0 to 65535.
+    /// Cam 2 Maximum Y of area 1: bits 624 to 639, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_y_of_area_1: u16,
-    /// Cam 2 Minimum X of area 2 (bits 640 to 655): 0 to 65535.
+    /// Cam 2 Minimum X of area 2: bits 640 to 655, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_x_of_area_2: u16,
-    /// Cam 2 Maximum X of area 2 (bits 656 to 671): 0 to 65535.
+    /// Cam 2 Maximum X of area 2: bits 656 to 671, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_x_of_area_2: u16,
-    /// Cam 2 Minimum Y of area 2 (bits 672 to 687): 0 to 65535.
+    /// Cam 2 Minimum Y of area 2: bits 672 to 687, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_y_of_area_2: u16,
-    /// Cam 2 Maximum Y of area 2 (bits 688 to 703): 0 to 65535.
+    /// Cam 2 Maximum Y of area 2: bits 688 to 703, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_y_of_area_2: u16,
-    /// Cam 2 Minimum X of area 3 (bits 704 to 719): 0 to 65535.
+    /// Cam 2 Minimum X of area 3: bits 704 to 719, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_x_of_area_3: u16,
-    /// Cam 2 Maximum X of area 3 (bits 720 to 735): 0 to 65535.
+    /// Cam 2 Maximum X of area 3: bits 720 to 735, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_x_of_area_3: u16,
-    /// Cam 2 Minimum Y of area 3 (bits 736 to 751): 0 to 65535.
+    /// Cam 2 Minimum Y of area 3: bits 736 to 751, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_y_of_area_3: u16,
-    /// Cam 2 Maximum Y of area 3 (bits 752 to 767): 0 to 65535.
+    /// Cam 2 Maximum Y of area 3: bits 752 to 767, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_y_of_area_3: u16,
-    /// Cam 2 Minimum X of area 4 (bits 768 to 783): 0 to 65535.
+    /// Cam 2 Minimum X of area 4: bits 768 to 783, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_x_of_area_4: u16,
-    /// Cam 2 Maximum X of area 4 (bits 784 to 799): 0 to 65535.
+    /// Cam 2 Maximum X of area 4: bits 784 to 799, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_x_of_area_4: u16,
-    /// Cam 2 Minimum Y of area 4 (bits 800 to 815): 0 to 65535.
+    /// Cam 2 Minimum Y of area 4: bits 800 to 815, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_y_of_area_4: u16,
-    /// Cam 2 Maximum Y of area 4 (bits 816 to 831): 0 to 65535.
+    /// Cam 2 Maximum Y of area 4: bits 816 to 831, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_y_of_area_4: u16,
-    /// Cam 2 Minimum X of area 5 (bits 832 to 847): 0 to 65535.
+    /// Cam 2 Minimum X of area 5: bits 832 to 847, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_x_of_area_5: u16,
-    /// Cam 2 Maximum X of area 5 (bits 848 to 863): 0 to 65535.
+    /// Cam 2 Maximum X of area 5: bits 848 to 863, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_x_of_area_5: u16,
-    /// Cam 2 Minimum Y of area 5 (bits 864 to 879): 0 to 65535.
+    /// Cam 2 Minimum Y of area 5: bits 864 to 879, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_minimum_y_of_area_5: u16,
-    /// Cam 2 Maximum Y of area 5 (bits 880 to 895): 0 to 65535.
+    /// Cam 2 Maximum Y of area 5: bits 880 to 895, raw 0 to 65535.
     ///
     /// Note ACP-153 (open): Masked areas: purpose, unit and an unused area.
     pub cam_2_maximum_y_of_area_5: u16,
@@ -284,9 +273,9 @@ impl CubesenseConfiguration {
     pub const NAME: &'static str = "CubeSense Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 112;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 25;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 203;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -375,23 +364,17 @@ impl CubesenseConfiguration {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; 112] {
         let mut bytes = [0; 112];
-        let value = self.cam1_sensor_mounting_transform_alpha_angle;
-        put!(value.to_le_bytes() => bytes[0; 2]);
-        let value = self.cam1_sensor_mounting_transform_beta_angle;
-        put!(value.to_le_bytes() => bytes[2; 2]);
-        let value = self.cam1_sensor_mounting_transform_gamma_angle;
-        put!(value.to_le_bytes() => bytes[4; 2]);
+        put!(self.cam1_sensor_mounting_transform_alpha_angle.to_le_bytes() => bytes[0; 2]);
+        put!(self.cam1_sensor_mounting_transform_beta_angle.to_le_bytes() => bytes[2; 2]);
+        put!(self.cam1_sensor_mounting_transform_gamma_angle.to_le_bytes() => bytes[4; 2]);
         bytes[6] = self.cam1_detection_threshold;
         bytes[7] |= u8::from(self.cam1_sensor_auto_adjust_mode);
         put!(self.cam1_sensor_exposure_time.to_le_bytes() => bytes[8; 2]);
         put!(self.cam1_boresight_x.to_le_bytes() => bytes[10; 2]);
         put!(self.cam1_boresight_y.to_le_bytes() => bytes[12; 2]);
-        let value = self.cam2_sensor_mounting_transform_alpha_angle;
-        put!(value.to_le_bytes() => bytes[14; 2]);
-        let value = self.cam2_sensor_mounting_transform_beta_angle;
-        put!(value.to_le_bytes() => bytes[16; 2]);
-        let value = self.cam2_sensor_mounting_transform_gamma_angle;
-        put!(value.to_le_bytes() => bytes[18; 2]);
+        put!(self.cam2_sensor_mounting_transform_alpha_angle.to_le_bytes() => bytes[14; 2]);
+        put!(self.cam2_sensor_mounting_transform_beta_angle.to_le_bytes() => bytes[16; 2]);
+        put!(self.cam2_sensor_mounting_transform_gamma_angle.to_le_bytes() => bytes[18; 2]);
         bytes[20] = self.cam2_detection_threshold;
         bytes[21] |= u8::from(self.cam2_sensor_auto_adjust_mode);
         put!(self.cam2_sensor_exposure_time.to_le_bytes() => bytes[22; 2]);
@@ -447,8 +430,7 @@ impl CubesenseConfiguration {
     /// Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn cam1_sensor_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        let raw = self.cam1_sensor_mounting_transform_alpha_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.cam1_sensor_mounting_transform_alpha_angle) / 100.0
     }
 
     /// Sets Cam1 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -461,16 +443,15 @@ impl CubesenseConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = CAM1_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
-        self.cam1_sensor_mounting_transform_alpha_angle = raw;
+        self.cam1_sensor_mounting_transform_alpha_angle =
+            CAM1_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn cam1_sensor_mounting_transform_beta_angle_deg(&self) -> f64 {
-        let raw = self.cam1_sensor_mounting_transform_beta_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.cam1_sensor_mounting_transform_beta_angle) / 100.0
     }
 
     /// Sets Cam1 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -483,16 +464,15 @@ impl CubesenseConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = CAM1_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
-        self.cam1_sensor_mounting_transform_beta_angle = raw;
+        self.cam1_sensor_mounting_transform_beta_angle =
+            CAM1_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn cam1_sensor_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        let raw = self.cam1_sensor_mounting_transform_gamma_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.cam1_sensor_mounting_transform_gamma_angle) / 100.0
     }
 
     /// Sets Cam1 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -505,8 +485,8 @@ impl CubesenseConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = CAM1_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
-        self.cam1_sensor_mounting_transform_gamma_angle = raw;
+        self.cam1_sensor_mounting_transform_gamma_angle =
+            CAM1_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
         Ok(())
     }
 
@@ -545,8 +525,7 @@ impl CubesenseConfiguration {
     /// Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn cam2_sensor_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        let raw = self.cam2_sensor_mounting_transform_alpha_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.cam2_sensor_mounting_transform_alpha_angle) / 100.0
     }
 
     /// Sets Cam2 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -559,16 +538,15 @@ impl CubesenseConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = CAM2_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
-        self.cam2_sensor_mounting_transform_alpha_angle = raw;
+        self.cam2_sensor_mounting_transform_alpha_angle =
+            CAM2_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn cam2_sensor_mounting_transform_beta_angle_deg(&self) -> f64 {
-        let raw = self.cam2_sensor_mounting_transform_beta_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.cam2_sensor_mounting_transform_beta_angle) / 100.0
     }
 
     /// Sets Cam2 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -581,16 +559,15 @@ impl CubesenseConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = CAM2_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
-        self.cam2_sensor_mounting_transform_beta_angle = raw;
+        self.cam2_sensor_mounting_transform_beta_angle =
+            CAM2_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn cam2_sensor_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        let raw = self.cam2_sensor_mounting_transform_gamma_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.cam2_sensor_mounting_transform_gamma_angle) / 100.0
     }
 
     /// Sets Cam2 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -603,8 +580,8 @@ impl CubesenseConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = CAM2_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
-        self.cam2_sensor_mounting_transform_gamma_angle = raw;
+        self.cam2_sensor_mounting_transform_gamma_angle =
+            CAM2_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
         Ok(())
     }
 

@@ -6,24 +6,26 @@ use crate::support::{put, take, Error, Scale};
 
 /// CubeStar Estimated Quaternion: telemetry 230, 6 bytes. Table 173.
 ///
+/// Bit 63 of the log mask.
+///
 /// Note ACP-075 (open): Quaternions: the fourth component.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CubestarEstimatedQuaternion {
-    /// Q0 (bits 0 to 15): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Q0: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q1.
     ///
     /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     pub q0: i16,
-    /// Q1 (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Q1: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q2.
     ///
     /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     pub q1: i16,
-    /// Q2 (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Q2: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q3.
     ///
@@ -36,7 +38,7 @@ impl CubestarEstimatedQuaternion {
     pub const NAME: &'static str = "CubeStar Estimated Quaternion";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 230;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -5,25 +5,25 @@
 use crate::support::{put, take, Error, Scale};
 
 /// CubeStar Estimated Rates: telemetry 229, 6 bytes. Table 172.
+///
+/// Bit 62 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CubestarEstimatedRates {
-    /// x-Axis rate (bits 0 to 15): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// x-Axis rate: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Estimated by CubeStar, about its own X axis.
     ///
     /// Note ACP-111 (open): CubeStar rates have no unit.
     pub x_axis_rate: i16,
-    /// y-Axis rate (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
-    /// 3.2767.
+    /// y-Axis rate: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Estimated by CubeStar, about its own Y axis.
     ///
     /// Note ACP-111 (open): CubeStar rates have no unit.
     pub y_axis_rate: i16,
-    /// z-Axis rate (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
-    /// 3.2767.
+    /// z-Axis rate: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Estimated by CubeStar, about its own Z axis.
     ///
@@ -36,7 +36,7 @@ impl CubestarEstimatedRates {
     pub const NAME: &'static str = "CubeStar Estimated Rates";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 229;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

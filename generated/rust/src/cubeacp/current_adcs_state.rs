@@ -9,6 +9,8 @@ use crate::support::{flags, Coded, Error, Scale};
 ///
 /// State of the control processor, frame 1.
 ///
+/// Bit 27 of the log mask.
+///
 /// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
 ///
 /// Note ACP-057 (certain): ACP stands for two things.
@@ -20,137 +22,129 @@ use crate::support::{flags, Coded, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CurrentAdcsState {
-    /// Attitude Estimation Mode (bits 0 to 3).
-    ///
-    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// Attitude Estimation Mode: bits 0 to 3.
     pub attitude_estimation_mode: Coded<enums::EstimModeSelect>,
-    /// Control Mode (bits 4 to 7).
-    ///
-    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// Control Mode: bits 4 to 7.
     pub control_mode: Coded<enums::ConModeSelect>,
-    /// ADCS Run Mode (bits 8 to 9).
-    ///
-    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
+    /// ADCS Run Mode: bits 8 to 9.
     pub adcs_run_mode: Coded<enums::AdcsRunMode>,
-    /// ASGP4 Mode (bits 10 to 11).
+    /// ASGP4 Mode: bits 10 to 11.
     ///
     /// Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
-    ///
-    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub asgp4_mode: Coded<enums::Asgp4ModeSelect>,
-    /// CubeControl Signal Enabled (bit 12).
+    /// CubeControl Signal Enabled: bit 12.
     pub cubecontrol_signal_enabled: bool,
-    /// CubeControl Motor Enabled (bit 13).
+    /// CubeControl Motor Enabled: bit 13.
     pub cubecontrol_motor_enabled: bool,
-    /// CubeSense1 Enabled (bit 14).
+    /// CubeSense1 Enabled: bit 14.
     pub cubesense1_enabled: bool,
-    /// CubeSense2 Enabled (bit 15).
+    /// CubeSense2 Enabled: bit 15.
     pub cubesense2_enabled: bool,
-    /// CubeWheel1 Enabled (bit 16).
+    /// CubeWheel1 Enabled: bit 16.
     pub cubewheel1_enabled: bool,
-    /// CubeWheel2 Enabled (bit 17).
+    /// CubeWheel2 Enabled: bit 17.
     pub cubewheel2_enabled: bool,
-    /// CubeWheel3 Enabled (bit 18).
+    /// CubeWheel3 Enabled: bit 18.
     pub cubewheel3_enabled: bool,
-    /// CubeStar Enabled (bit 19).
+    /// CubeStar Enabled: bit 19.
     ///
     /// Note ACP-063 (certain): Star tracker has four spellings.
     pub cubestar_enabled: bool,
-    /// GPS Receiver Enabled (bit 20).
+    /// GPS Receiver Enabled: bit 20.
     ///
     /// Note ACP-062 (open): Power switches and enabled flags do not match.
     pub gps_receiver_enabled: bool,
-    /// GPS LNA Power Enabled (bit 21).
+    /// GPS LNA Power Enabled: bit 21.
     ///
     /// Amplifier of the GPS antenna.
     ///
     /// Note ACP-062 (open): Power switches and enabled flags do not match.
     pub gps_lna_power_enabled: bool,
-    /// Motor Driver Enabled (bit 22).
+    /// Motor Driver Enabled: bit 22.
     ///
     /// Note ACP-062 (open): Power switches and enabled flags do not match.
     pub motor_driver_enabled: bool,
-    /// Sun is Above Local Horizon (bit 23).
+    /// Sun is Above Local Horizon: bit 23.
     ///
     /// The elevation is above 0.
     pub sun_is_above_local_horizon: bool,
-    /// CubeSense1 Communications Error (bit 24).
+    /// CubeSense1 Communications Error: bit 24.
     pub cubesense1_communications_error: bool,
-    /// CubeSense2 Communications Error (bit 25).
+    /// CubeSense2 Communications Error: bit 25.
     pub cubesense2_communications_error: bool,
-    /// CubeControl Signal Communications Error (bit 26).
+    /// CubeControl Signal Communications Error: bit 26.
     pub cubecontrol_signal_communications_error: bool,
-    /// CubeControl Motor Communications Error (bit 27).
+    /// CubeControl Motor Communications Error: bit 27.
     pub cubecontrol_motor_communications_error: bool,
-    /// CubeWheel1 Communications Error (bit 28).
+    /// CubeWheel1 Communications Error: bit 28.
     pub cubewheel1_communications_error: bool,
-    /// CubeWheel2 Communications Error (bit 29).
+    /// CubeWheel2 Communications Error: bit 29.
     pub cubewheel2_communications_error: bool,
-    /// CubeWheel3 Communications Error (bit 30).
+    /// CubeWheel3 Communications Error: bit 30.
     pub cubewheel3_communications_error: bool,
-    /// CubeStar Communications Error (bit 31).
+    /// CubeStar Communications Error: bit 31.
     pub cubestar_communications_error: bool,
-    /// Magnetometer Range Error (bit 32).
+    /// Magnetometer Range Error: bit 32.
     ///
     /// About a measured field of 65 uT. Whether above or below is not printed.
     ///
     /// Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
     pub magnetometer_range_error: bool,
-    /// Cam1 SRAM Overcurrent Detected (bit 33).
+    /// Cam1 SRAM Overcurrent Detected: bit 33.
     pub cam1_sram_overcurrent_detected: bool,
-    /// Cam1 3V3 Overcurrent Detected (bit 34).
+    /// Cam1 3V3 Overcurrent Detected: bit 34.
     pub cam1_3v3_overcurrent_detected: bool,
-    /// Cam1 Sensor Busy Error (bit 35).
+    /// Cam1 Sensor Busy Error: bit 35.
     ///
     /// Cam1 sensor was still busy when the control loop began.
     pub cam1_sensor_busy_error: bool,
-    /// Cam1 Sensor Detection Error (bit 36).
+    /// Cam1 Sensor Detection Error: bit 36.
     ///
     /// No angles could be computed. The target may have been out of view.
     pub cam1_sensor_detection_error: bool,
-    /// Sun Sensor Range Error (bit 37).
+    /// Sun Sensor Range Error: bit 37.
     ///
     /// A detected sun angle was beyond +/-90 deg.
     ///
     /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
     pub sun_sensor_range_error: bool,
-    /// Cam2 SRAM Overcurrent Detected (bit 38).
+    /// Cam2 SRAM Overcurrent Detected: bit 38.
     pub cam2_sram_overcurrent_detected: bool,
-    /// Cam2 3V3 Overcurrent Detected (bit 39).
+    /// Cam2 3V3 Overcurrent Detected: bit 39.
     pub cam2_3v3_overcurrent_detected: bool,
-    /// Cam2 Sensor Busy Error (bit 40).
+    /// Cam2 Sensor Busy Error: bit 40.
     ///
     /// Cam2 sensor was still busy when the control loop began.
     pub cam2_sensor_busy_error: bool,
-    /// Cam2 Sensor Detection Error (bit 41).
+    /// Cam2 Sensor Detection Error: bit 41.
     ///
     /// No angles could be computed. The target may have been out of view.
     pub cam2_sensor_detection_error: bool,
-    /// Nadir Sensor Range Error (bit 42).
+    /// Nadir Sensor Range Error: bit 42.
     ///
     /// A detected nadir angle was beyond +/-60 deg.
     ///
     /// Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
     pub nadir_sensor_range_error: bool,
-    /// Rate Sensor Range Error (bit 43).
+    /// Rate Sensor Range Error: bit 43.
     ///
     /// A measured body rate was beyond +/-20 deg/s.
     pub rate_sensor_range_error: bool,
-    /// Wheel Speed Range Error (bit 44).
+    /// Wheel Speed Range Error: bit 44.
     ///
     /// A measured wheel speed was beyond +/-8500 rpm.
     pub wheel_speed_range_error: bool,
-    /// Coarse Sun Sensor Error (bit 45).
+    /// Coarse Sun Sensor Error: bit 45.
     ///
     /// No vector could be computed. The sun may have been out of view.
     pub coarse_sun_sensor_error: bool,
-    /// StarTracker Match Error (bit 46).
+    /// StarTracker Match Error: bit 46.
     ///
     /// Too few stars were matched.
     ///
     /// Note ACP-063 (certain): Star tracker has four spellings.
     pub star_tracker_match_error: bool,
-    /// Star Tracker Overcurrent Detected (bit 47).
+    /// Star Tracker Overcurrent Detected: bit 47.
     ///
     /// Note ACP-063 (certain): Star tracker has four spellings.
     pub star_tracker_overcurrent_detected: bool,
@@ -161,7 +155,7 @@ impl CurrentAdcsState {
     pub const NAME: &'static str = "Current ADCS State";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 132;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -255,10 +249,8 @@ impl CurrentAdcsState {
         bytes[2] |= u8::from(self.sun_is_above_local_horizon) << 7;
         bytes[3] |= u8::from(self.cubesense1_communications_error);
         bytes[3] |= u8::from(self.cubesense2_communications_error) << 1;
-        let value = self.cubecontrol_signal_communications_error;
-        bytes[3] |= u8::from(value) << 2;
-        let value = self.cubecontrol_motor_communications_error;
-        bytes[3] |= u8::from(value) << 3;
+        bytes[3] |= u8::from(self.cubecontrol_signal_communications_error) << 2;
+        bytes[3] |= u8::from(self.cubecontrol_motor_communications_error) << 3;
         bytes[3] |= u8::from(self.cubewheel1_communications_error) << 4;
         bytes[3] |= u8::from(self.cubewheel2_communications_error) << 5;
         bytes[3] |= u8::from(self.cubewheel3_communications_error) << 6;
@@ -289,8 +281,7 @@ impl CurrentAdcsState {
     /// [`Error::Range`] if a value does not fit its field.
     #[inline]
     pub fn try_to_bytes(&self) -> Result<[u8; 6], Error> {
-        let value = self.attitude_estimation_mode.raw();
-        ATTITUDE_ESTIMATION_MODE.fit(value)?;
+        ATTITUDE_ESTIMATION_MODE.fit(self.attitude_estimation_mode.raw())?;
         CONTROL_MODE.fit(self.control_mode.raw())?;
         ADCS_RUN_MODE.fit(self.adcs_run_mode.raw())?;
         ASGP4_MODE.fit(self.asgp4_mode.raw())?;

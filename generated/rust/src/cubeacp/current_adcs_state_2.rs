@@ -9,6 +9,8 @@ use crate::support::{flags, Coded, Error, Scale};
 ///
 /// State of the control processor, frame 2.
 ///
+/// Bit 61 of the log mask.
+///
 /// Erratum ACP-120 (open): Current ADCS State 2: 6 bytes announced, 18 bits described.
 ///
 /// Note ACP-057 (certain): ACP stands for two things.
@@ -18,59 +20,59 @@ use crate::support::{flags, Coded, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct CurrentAdcsState2 {
-    /// Orbit Parameters are Invalid (bit 0).
+    /// Orbit Parameters are Invalid: bit 0.
     ///
     /// A parameter is out of bounds, or the SGP4 propagator could not start from them.
     ///
     /// Note ACP-104 (open): Orbit parameter flag has two reasons.
     pub orbit_parameters_are_invalid: bool,
-    /// Configuration is Invalid (bit 1).
+    /// Configuration is Invalid: bit 1.
     ///
     /// Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at least one
     /// CSS.
     ///
     /// Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
     pub configuration_is_invalid: bool,
-    /// Control Mode Change is not allowed (bit 2).
+    /// Control Mode Change is not allowed: bit 2.
     ///
     /// The mode asked for needs another estimator, or Y-momentum was asked for outside steady-state
     /// Y-Thomson.
     pub control_mode_change_is_not_allowed: bool,
-    /// Estimator Change is not allowed (bit 3).
+    /// Estimator Change is not allowed: bit 3.
     ///
     /// The estimation mode asked for does not suit the current control mode.
     pub estimator_change_is_not_allowed: bool,
-    /// Current Magnetometer Sampling Mode (bits 4 to 5).
+    /// Current Magnetometer Sampling Mode: bits 4 to 5.
     pub current_magnetometer_sampling_mode: Coded<enums::MagModeVal>,
-    /// Modelled and measured magnetic field differs in size (bit 6).
+    /// Modelled and measured magnetic field differs in size: bit 6.
     ///
     /// By more than 5000 nT.
     pub magnetic_field_size_mismatch: bool,
-    /// Node Recovery Error (bit 7).
+    /// Node Recovery Error: bit 7.
     ///
     /// An ADCS node could not be recovered by repeated resets.
     pub node_recovery_error: bool,
-    /// CubeSense1 Runtime Error (bit 8).
+    /// CubeSense1 Runtime Error: bit 8.
     pub cubesense1_runtime_error: bool,
-    /// CubeSense2 Runtime Error (bit 9).
+    /// CubeSense2 Runtime Error: bit 9.
     pub cubesense2_runtime_error: bool,
-    /// CubeControl Signal Runtime Error (bit 10).
+    /// CubeControl Signal Runtime Error: bit 10.
     pub cubecontrol_signal_runtime_error: bool,
-    /// CubeControl Motor Runtime Error (bit 11).
+    /// CubeControl Motor Runtime Error: bit 11.
     pub cubecontrol_motor_runtime_error: bool,
-    /// CubeWheel1 Runtime Error (bit 12).
+    /// CubeWheel1 Runtime Error: bit 12.
     pub cubewheel1_runtime_error: bool,
-    /// CubeWheel2 Runtime Error (bit 13).
+    /// CubeWheel2 Runtime Error: bit 13.
     pub cubewheel2_runtime_error: bool,
-    /// CubeWheel3 Runtime Error (bit 14).
+    /// CubeWheel3 Runtime Error: bit 14.
     pub cubewheel3_runtime_error: bool,
-    /// CubeStar Runtime Error (bit 15).
+    /// CubeStar Runtime Error: bit 15.
     pub cubestar_runtime_error: bool,
-    /// Magnetometer Error (bit 16).
+    /// Magnetometer Error: bit 16.
     ///
     /// The magnetometer failed.
     pub magnetometer_error: bool,
-    /// Rate Sensor Failure (bit 17).
+    /// Rate Sensor Failure: bit 17.
     pub rate_sensor_failure: bool,
 }
 
@@ -79,7 +81,7 @@ impl CurrentAdcsState2 {
     pub const NAME: &'static str = "Current ADCS State 2";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 224;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -156,8 +158,7 @@ impl CurrentAdcsState2 {
     /// [`Error::Range`] if a value does not fit its field.
     #[inline]
     pub fn try_to_bytes(&self) -> Result<[u8; 6], Error> {
-        let value = self.current_magnetometer_sampling_mode.raw();
-        CURRENT_MAGNETOMETER_SAMPLING_MODE.fit(value)?;
+        CURRENT_MAGNETOMETER_SAMPLING_MODE.fit(self.current_magnetometer_sampling_mode.raw())?;
         Ok(self.to_bytes())
     }
 }

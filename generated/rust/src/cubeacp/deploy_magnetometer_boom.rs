@@ -11,7 +11,7 @@ use crate::support::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct DeployMagnetometerBoom {
-    /// Timeout (bits 0 to 7): 0 to 255 s.
+    /// Timeout: bits 0 to 7, raw 0 to 255, in s.
     ///
     /// Of the deployment actuation.
     ///
@@ -24,7 +24,7 @@ impl DeployMagnetometerBoom {
     pub const NAME: &'static str = "Deploy Magnetometer Boom";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 7;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -44,7 +44,9 @@ impl DeployMagnetometerBoom {
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 1]) -> Self {
-        Self { timeout: bytes[0] }
+        Self {
+            timeout: bytes[0],
+        }
     }
 
     /// Encodes the message; reserved bits are 0.

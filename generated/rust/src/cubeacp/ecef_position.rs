@@ -5,23 +5,25 @@
 use crate::support::{put, take, Error};
 
 /// ECEF Position: telemetry 219, 6 bytes. Table 166.
+///
+/// Bit 34 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct EcefPosition {
-    /// ECEF Position X (bits 0 to 15): -32768 to 32767.
+    /// ECEF Position X: bits 0 to 15, raw -32768 to 32767.
     ///
     /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
     /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_x: i16,
-    /// ECEF Position Y (bits 16 to 31): -32768 to 32767.
+    /// ECEF Position Y: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
     /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_y: i16,
-    /// ECEF Position Z (bits 32 to 47): -32768 to 32767.
+    /// ECEF Position Z: bits 32 to 47, raw -32768 to 32767.
     ///
     /// Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
     ///
@@ -34,7 +36,7 @@ impl EcefPosition {
     pub const NAME: &'static str = "ECEF Position";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 219;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

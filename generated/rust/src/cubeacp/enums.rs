@@ -5,8 +5,6 @@
 use crate::support::Enumeration;
 
 /// AdcsRunMode: an enumeration. Table 75.
-///
-/// Note ACP-018 (certain): ADCS Run Mode is a message and an enumeration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
@@ -983,8 +981,6 @@ impl From<CaptureResult> for u8 {
 }
 
 /// DetectResult: an enumeration. Table 124.
-///
-/// Note ACP-079 (certain): DetectResult mixes sun and nadir.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

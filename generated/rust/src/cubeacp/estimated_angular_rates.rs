@@ -7,17 +7,19 @@ use crate::support::{put, take, Error, Scale};
 /// Estimated Angular Rates: telemetry 147, 6 bytes. Table 103.
 ///
 /// Relative to the orbit frame.
+///
+/// Bit 30 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct EstimatedAngularRates {
-    /// Estimated X Angular Rate (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.01`, -327.68
-    /// to 327.67 deg/s.
+    /// Estimated X Angular Rate: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
+    /// 327.67 deg/s.
     pub estimated_x_angular_rate: i16,
-    /// Estimated Y Angular Rate (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.01`, -327.68
+    /// Estimated Y Angular Rate: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68
     /// to 327.67 deg/s.
     pub estimated_y_angular_rate: i16,
-    /// Estimated Z Angular Rate (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.01`, -327.68
+    /// Estimated Z Angular Rate: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68
     /// to 327.67 deg/s.
     pub estimated_z_angular_rate: i16,
 }
@@ -27,7 +29,7 @@ impl EstimatedAngularRates {
     pub const NAME: &'static str = "Estimated Angular Rates";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 147;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -6,18 +6,20 @@ use crate::support::{put, take, Error, Scale};
 
 /// Estimated Attitude Angles: telemetry 146, 6 bytes. Table 102.
 ///
+/// Bit 28 of the log mask.
+///
 /// Note ACP-066 (open): Attitude angles: order of rotation and frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct EstimatedAttitudeAngles {
-    /// Estimated Roll Angle (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
+    /// Estimated Roll Angle: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
     pub estimated_roll_angle: i16,
-    /// Estimated Pitch Angle (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
+    /// Estimated Pitch Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
     pub estimated_pitch_angle: i16,
-    /// Estimated Yaw Angle (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
+    /// Estimated Yaw Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
     pub estimated_yaw_angle: i16,
 }
@@ -27,7 +29,7 @@ impl EstimatedAttitudeAngles {
     pub const NAME: &'static str = "Estimated Attitude Angles";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 146;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -7,18 +7,20 @@ use crate::support::{put, take, Error, Scale};
 /// Estimated Gyro Bias: telemetry 161, 6 bytes. Table 117.
 ///
 /// Bias of the rate sensors.
+///
+/// Bit 37 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct EstimatedGyroBias {
-    /// Estimated X-gyro Bias (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.001`, -32.768 to
+    /// Estimated X-gyro Bias: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     pub estimated_x_gyro_bias: i16,
-    /// Estimated Y-gyro Bias (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.001`, -32.768
-    /// to 32.767 deg/s.
+    /// Estimated Y-gyro Bias: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
+    /// 32.767 deg/s.
     pub estimated_y_gyro_bias: i16,
-    /// Estimated Z-gyro Bias (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.001`, -32.768
-    /// to 32.767 deg/s.
+    /// Estimated Z-gyro Bias: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
+    /// 32.767 deg/s.
     pub estimated_z_gyro_bias: i16,
 }
 
@@ -27,7 +29,7 @@ impl EstimatedGyroBias {
     pub const NAME: &'static str = "Estimated Gyro Bias";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 161;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -6,20 +6,22 @@ use crate::support::{put, take, Error};
 
 /// Estimated Quaternion: telemetry 218, 6 bytes. Table 165.
 ///
+/// Bit 29 of the log mask.
+///
 /// Note ACP-075 (open): Quaternions: the fourth component.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct EstimatedQuaternion {
-    /// Estimated q1 (bits 0 to 15): -32768 to 32767.
+    /// Estimated q1: bits 0 to 15, raw -32768 to 32767.
     ///
     /// Note ACP-100 (open): Estimated quaternion has no formula.
     pub estimated_q1: i16,
-    /// Estimated q2 (bits 16 to 31): -32768 to 32767.
+    /// Estimated q2: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Note ACP-100 (open): Estimated quaternion has no formula.
     pub estimated_q2: i16,
-    /// Estimated q3 (bits 32 to 47): -32768 to 32767.
+    /// Estimated q3: bits 32 to 47, raw -32768 to 32767.
     ///
     /// Note ACP-100 (open): Estimated quaternion has no formula.
     pub estimated_q3: i16,
@@ -30,7 +32,7 @@ impl EstimatedQuaternion {
     pub const NAME: &'static str = "Estimated Quaternion";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 218;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

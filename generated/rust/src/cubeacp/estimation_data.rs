@@ -7,87 +7,92 @@ use crate::support::{put, take, Error, Scale};
 /// Estimation Data: telemetry 193, 42 bytes. Table 152.
 ///
 /// Models, innovation and covariance of the estimator in one frame.
+///
+/// Repeats IGRF Modelled Magnetic Field Vector from byte 0. Repeats Modelled Sun Vector from byte
+/// 6\. Repeats Estimated Gyro Bias from byte 12. Repeats Estimation Innovation Vector from byte 18.
+/// Repeats Quaternion Error Vector from byte 24. Repeats Quaternion Covariance from byte 30.
+/// Repeats Angular Rate Covariance from byte 36.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct EstimationData {
-    /// IGRF Modelled Magnetic Field X (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.01`,
+    /// IGRF Modelled Magnetic Field X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`,
     /// -327.68 to 327.67 uT.
     pub igrf_modelled_magnetic_field_x: i16,
-    /// IGRF Modelled Magnetic Field Y (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.01`,
+    /// IGRF Modelled Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
     /// -327.68 to 327.67 uT.
     pub igrf_modelled_magnetic_field_y: i16,
-    /// IGRF Modelled Magnetic Field Z (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.01`,
+    /// IGRF Modelled Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
     /// -327.68 to 327.67 uT.
     pub igrf_modelled_magnetic_field_z: i16,
-    /// Modelled Sun Vector X (bits 48 to 63): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768
+    /// Modelled Sun Vector X: bits 48 to 63, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
     /// to 3.2767.
     pub modelled_sun_vector_x: i16,
-    /// Modelled Sun Vector Y (bits 64 to 79): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768
+    /// Modelled Sun Vector Y: bits 64 to 79, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
     /// to 3.2767.
     pub modelled_sun_vector_y: i16,
-    /// Modelled Sun Vector Z (bits 80 to 95): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768
+    /// Modelled Sun Vector Z: bits 80 to 95, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
     /// to 3.2767.
     pub modelled_sun_vector_z: i16,
-    /// Estimated X-gyro Bias (bits 96 to 111): raw, -32768 to 32767; physical `raw*0.001`, -32.768
-    /// to 32.767 deg/s.
+    /// Estimated X-gyro Bias: bits 96 to 111, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
+    /// 32.767 deg/s.
     pub estimated_x_gyro_bias: i16,
-    /// Estimated Y-gyro Bias (bits 112 to 127): raw, -32768 to 32767; physical `raw*0.001`, -32.768
+    /// Estimated Y-gyro Bias: bits 112 to 127, raw -32768 to 32767; physical `raw*0.001`, -32.768
     /// to 32.767 deg/s.
     pub estimated_y_gyro_bias: i16,
-    /// Estimated Z-gyro Bias (bits 128 to 143): raw, -32768 to 32767; physical `raw*0.001`, -32.768
+    /// Estimated Z-gyro Bias: bits 128 to 143, raw -32768 to 32767; physical `raw*0.001`, -32.768
     /// to 32.767 deg/s.
     pub estimated_z_gyro_bias: i16,
-    /// Innovation Vector X (bits 144 to 159): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
-    /// to 3.2767.
+    /// Innovation Vector X: bits 144 to 159, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
+    /// 3.2767.
     ///
     /// Note ACP-074 (open): Innovation has no unit.
     pub innovation_vector_x: i16,
-    /// Innovation Vector Y (bits 160 to 175): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
-    /// to 3.2767.
+    /// Innovation Vector Y: bits 160 to 175, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
+    /// 3.2767.
     ///
     /// Note ACP-074 (open): Innovation has no unit.
     pub innovation_vector_y: i16,
-    /// Innovation Vector Z (bits 176 to 191): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
-    /// to 3.2767.
+    /// Innovation Vector Z: bits 176 to 191, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
+    /// 3.2767.
     ///
     /// Note ACP-074 (open): Innovation has no unit.
     pub innovation_vector_z: i16,
-    /// Quaternion Error - Q1 (bits 192 to 207): raw, -32768 to 32767; physical `raw*0.0001`,
-    /// -3.2768 to 3.2767.
+    /// Quaternion Error - Q1: bits 192 to 207, raw -32768 to 32767; physical `raw*0.0001`, -3.2768
+    /// to 3.2767.
     pub quaternion_error_q1: i16,
-    /// Quaternion Error - Q2 (bits 208 to 223): raw, -32768 to 32767; physical `raw*0.0001`,
-    /// -3.2768 to 3.2767.
+    /// Quaternion Error - Q2: bits 208 to 223, raw -32768 to 32767; physical `raw*0.0001`, -3.2768
+    /// to 3.2767.
     pub quaternion_error_q2: i16,
-    /// Quaternion Error - Q3 (bits 224 to 239): raw, -32768 to 32767; physical `raw*0.0001`,
-    /// -3.2768 to 3.2767.
+    /// Quaternion Error - Q3: bits 224 to 239, raw -32768 to 32767; physical `raw*0.0001`, -3.2768
+    /// to 3.2767.
     pub quaternion_error_q3: i16,
-    /// Quaternion Covariance - Q1 RMS (bits 240 to 255): raw, -32768 to 32767; physical
-    /// `raw*0.001`, -32.768 to 32.767.
+    /// Quaternion Covariance - Q1 RMS: bits 240 to 255, raw -32768 to 32767; physical `raw*0.001`,
+    /// -32.768 to 32.767.
     ///
     /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
     pub quaternion_covariance_q1_rms: i16,
-    /// Quaternion Covariance - Q2 RMS (bits 256 to 271): raw, -32768 to 32767; physical
-    /// `raw*0.001`, -32.768 to 32.767.
+    /// Quaternion Covariance - Q2 RMS: bits 256 to 271, raw -32768 to 32767; physical `raw*0.001`,
+    /// -32.768 to 32.767.
     ///
     /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
     pub quaternion_covariance_q2_rms: i16,
-    /// Quaternion Covariance - Q3 RMS (bits 272 to 287): raw, -32768 to 32767; physical
-    /// `raw*0.001`, -32.768 to 32.767.
+    /// Quaternion Covariance - Q3 RMS: bits 272 to 287, raw -32768 to 32767; physical `raw*0.001`,
+    /// -32.768 to 32.767.
     ///
     /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
     pub quaternion_covariance_q3_rms: i16,
-    /// X Angular Rate Covariance (bits 288 to 303): raw, -32768 to 32767; physical `raw*0.001`,
+    /// X Angular Rate Covariance: bits 288 to 303, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
     /// Note ACP-077 (open): Angular rate covariance: unit and sign.
     pub x_angular_rate_covariance: i16,
-    /// Y Angular Rate Covariance (bits 304 to 319): raw, -32768 to 32767; physical `raw*0.001`,
+    /// Y Angular Rate Covariance: bits 304 to 319, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
     /// Note ACP-077 (open): Angular rate covariance: unit and sign.
     pub y_angular_rate_covariance: i16,
-    /// Z Angular Rate Covariance (bits 320 to 335): raw, -32768 to 32767; physical `raw*0.001`,
+    /// Z Angular Rate Covariance: bits 320 to 335, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
     /// Note ACP-077 (open): Angular rate covariance: unit and sign.
@@ -99,7 +104,7 @@ impl EstimationData {
     pub const NAME: &'static str = "Estimation Data";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 42;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 193;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

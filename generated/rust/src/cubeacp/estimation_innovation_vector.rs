@@ -5,28 +5,24 @@
 use crate::support::{put, take, Error, Scale};
 
 /// Estimation Innovation Vector: telemetry 162, 6 bytes. Table 118.
+///
+/// Bit 38 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct EstimationInnovationVector {
-    /// Innovation Vector X (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768 to
+    /// Innovation Vector X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
     /// 3.2767.
-    ///
-    /// Note ACP-073 (certain): One factor, several notations.
     ///
     /// Note ACP-074 (open): Innovation has no unit.
     pub innovation_vector_x: i16,
-    /// Innovation Vector Y (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768 to
+    /// Innovation Vector Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
     /// 3.2767.
-    ///
-    /// Note ACP-073 (certain): One factor, several notations.
     ///
     /// Note ACP-074 (open): Innovation has no unit.
     pub innovation_vector_y: i16,
-    /// Innovation Vector Z (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768 to
+    /// Innovation Vector Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
     /// 3.2767.
-    ///
-    /// Note ACP-073 (certain): One factor, several notations.
     ///
     /// Note ACP-074 (open): Innovation has no unit.
     pub innovation_vector_z: i16,
@@ -37,7 +33,7 @@ impl EstimationInnovationVector {
     pub const NAME: &'static str = "Estimation Innovation Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 162;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

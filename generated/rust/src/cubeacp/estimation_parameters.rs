@@ -5,7 +5,8 @@
 use super::enums;
 use crate::support::{flags, put, take, Coded, Error, Scale};
 
-/// Estimation Parameters: configuration, set by 27 and got by 223, 31 bytes. Table 200.
+/// Estimation Parameters: configuration, set by telecommand 27, got by telemetry 223, 31 bytes.
+/// Table 200.
 ///
 /// Noise covariances, and which sensors the estimator uses.
 ///
@@ -16,84 +17,82 @@ use crate::support::{flags, put, take, Coded, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct EstimationParameters {
-    /// Magnetometer Rate Filter System Noise (bits 0 to 31): 32-bit float.
+    /// Magnetometer Rate Filter System Noise: bits 0 to 31, 32-bit float.
     ///
     /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
     pub magnetometer_rate_filter_system_noise: f32,
-    /// EKF System Noise (bits 32 to 63): 32-bit float.
+    /// EKF System Noise: bits 32 to 63, 32-bit float.
     ///
     /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
     pub ekf_system_noise: f32,
-    /// CSS Measurement Noise (bits 64 to 95): 32-bit float.
+    /// CSS Measurement Noise: bits 64 to 95, 32-bit float.
     ///
     /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
     pub css_measurement_noise: f32,
-    /// Sun Sensor Measurement Noise (bits 96 to 127): 32-bit float.
+    /// Sun Sensor Measurement Noise: bits 96 to 127, 32-bit float.
     ///
     /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
     pub sun_sensor_measurement_noise: f32,
-    /// Nadir Sensor Measurement Noise (bits 128 to 159): 32-bit float.
+    /// Nadir Sensor Measurement Noise: bits 128 to 159, 32-bit float.
     ///
     /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
     pub nadir_sensor_measurement_noise: f32,
-    /// Magnetometer Measurement Noise (bits 160 to 191): 32-bit float.
+    /// Magnetometer Measurement Noise: bits 160 to 191, 32-bit float.
     ///
     /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
     pub magnetometer_measurement_noise: f32,
-    /// Star Tracker Measurement Noise (bits 192 to 223): 32-bit float.
+    /// Star Tracker Measurement Noise: bits 192 to 223, 32-bit float.
     ///
     /// Note ACP-168 (open): Noise: covariance or deviation, and no unit.
     pub star_tracker_measurement_noise: f32,
-    /// Use Sun Sensor (bit 224).
+    /// Use Sun Sensor: bit 224.
     ///
     /// In the EKF.
     pub use_sun_sensor: bool,
-    /// Use Nadir Sensor (bit 225).
+    /// Use Nadir Sensor: bit 225.
     ///
     /// In the EKF.
     pub use_nadir_sensor: bool,
-    /// Use CSS (bit 226).
+    /// Use CSS: bit 226.
     ///
     /// In the EKF.
     pub use_css: bool,
-    /// Use Star Tracker (bit 227).
+    /// Use Star Tracker: bit 227.
     ///
     /// In the EKF.
     pub use_star_tracker: bool,
-    /// Nadir sensor terminator test (bit 228).
+    /// Nadir sensor terminator test: bit 228.
     ///
     /// Ignores the nadir sensor while the terminator is in view.
     pub nadir_sensor_terminator_test: bool,
-    /// Automatic Magnetometer Recovery (bit 229).
+    /// Automatic Magnetometer Recovery: bit 229.
     ///
     /// Switches to the redundant magnetometer on a failure.
     pub automatic_magnetometer_recovery: bool,
-    /// Magnetometer Mode (bits 230 to 231).
+    /// Magnetometer Mode: bits 230 to 231.
     ///
     /// The magnetometer that estimation and control use.
     ///
     /// Note ACP-049 (open): Magnetometer mode can be set in two places.
-    ///
-    /// Note ACP-058 (certain): Enumerations have 8 bits in telecommands and fewer in frames.
     pub magnetometer_mode: Coded<enums::MagModeVal>,
-    /// Magnetometer Selection for RAW MTM TLM (bits 232 to 233).
+    /// Magnetometer Selection for RAW MTM TLM: bits 232 to 233.
     ///
     /// Magnetometer and sampling path for the second raw magnetometer frame.
     ///
     /// Note ACP-118 (likely): Secondary magnetometer: fixed or selected.
     pub raw_magnetometer_selection: Coded<enums::MagModeVal>,
-    /// Automatic Estimation Transition due to Rate Sensor Errors (bit 234).
+    /// Automatic Estimation Transition due to Rate Sensor Errors: bit 234.
     ///
     /// From MEMS rate estimation to RKF on a rate sensor error.
     pub estimation_transition_on_rate_sensor_error: bool,
-    /// Cam1 period (bits 240 to 243): 0 to 15 s.
+    /// Cam1 period: bits 240 to 243, raw 0 to 15, in s.
     ///
     /// Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
     /// camera.
     ///
     /// Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
     pub cam1_period: u8,
-    /// Cam2 period (bits 244 to 247): 0 to 15 s.
+    /// Cam2 period: bits 244 to 247, raw 0 to 15, in s.
     ///
     /// Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of that
     /// camera.
@@ -107,9 +106,9 @@ impl EstimationParameters {
     pub const NAME: &'static str = "Estimation Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 31;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 27;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 223;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -159,8 +158,7 @@ impl EstimationParameters {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; 31] {
         let mut bytes = [0; 31];
-        let value = self.magnetometer_rate_filter_system_noise;
-        put!(value.to_le_bytes() => bytes[0; 4]);
+        put!(self.magnetometer_rate_filter_system_noise.to_le_bytes() => bytes[0; 4]);
         put!(self.ekf_system_noise.to_le_bytes() => bytes[4; 4]);
         put!(self.css_measurement_noise.to_le_bytes() => bytes[8; 4]);
         put!(self.sun_sensor_measurement_noise.to_le_bytes() => bytes[12; 4]);
@@ -175,8 +173,7 @@ impl EstimationParameters {
         bytes[28] |= u8::from(self.automatic_magnetometer_recovery) << 5;
         bytes[28] |= self.magnetometer_mode.raw() << 6;
         bytes[29] |= self.raw_magnetometer_selection.raw() & 0x03;
-        let value = self.estimation_transition_on_rate_sensor_error;
-        bytes[29] |= u8::from(value) << 2;
+        bytes[29] |= u8::from(self.estimation_transition_on_rate_sensor_error) << 2;
         bytes[30] |= self.cam1_period & 0x0f;
         bytes[30] |= self.cam2_period << 4;
         bytes
@@ -190,8 +187,7 @@ impl EstimationParameters {
     #[inline]
     pub fn try_to_bytes(&self) -> Result<[u8; 31], Error> {
         MAGNETOMETER_MODE.fit(self.magnetometer_mode.raw())?;
-        let value = self.raw_magnetometer_selection.raw();
-        RAW_MAGNETOMETER_SELECTION.fit(value)?;
+        RAW_MAGNETOMETER_SELECTION.fit(self.raw_magnetometer_selection.raw())?;
         CAM1_PERIOD.fit(self.cam1_period)?;
         CAM2_PERIOD.fit(self.cam2_period)?;
         Ok(self.to_bytes())

@@ -7,26 +7,28 @@ use crate::support::{put, take, Error, Scale};
 /// Fine Estimated Angular Rates: telemetry 201, 6 bytes. Table 157.
 ///
 /// Relative to the orbit frame, with ten times the resolution of Estimated Angular Rates.
+///
+/// Bit 59 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct FineEstimatedAngularRates {
-    /// Estimated X Angular Rate (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.001`, -32.768
+    /// Estimated X Angular Rate: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`, -32.768
     /// to 32.767 deg/s.
     ///
     /// Note ACP-109 (certain): Fine and normal rates have the same field names.
     ///
     /// Note ACP-110 (open): Fine rates end at 32 deg/s.
     pub estimated_x_angular_rate: i16,
-    /// Estimated Y Angular Rate (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.001`,
-    /// -32.768 to 32.767 deg/s.
+    /// Estimated Y Angular Rate: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`, -32.768
+    /// to 32.767 deg/s.
     ///
     /// Note ACP-109 (certain): Fine and normal rates have the same field names.
     ///
     /// Note ACP-110 (open): Fine rates end at 32 deg/s.
     pub estimated_y_angular_rate: i16,
-    /// Estimated Z Angular Rate (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.001`,
-    /// -32.768 to 32.767 deg/s.
+    /// Estimated Z Angular Rate: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`, -32.768
+    /// to 32.767 deg/s.
     ///
     /// Note ACP-109 (certain): Fine and normal rates have the same field names.
     ///
@@ -39,7 +41,7 @@ impl FineEstimatedAngularRates {
     pub const NAME: &'static str = "Fine Estimated Angular Rates";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 201;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -8,16 +8,18 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// As measured.
 ///
+/// Bit 11 of the log mask.
+///
 /// Note ACP-069 (open): Reference frames of measured vectors are not named.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct FineSunVector {
-    /// Sun X (bits 0 to 15): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Sun X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub sun_x: i16,
-    /// Sun Y (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Sun Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub sun_y: i16,
-    /// Sun Z (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Sun Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub sun_z: i16,
 }
 
@@ -26,7 +28,7 @@ impl FineSunVector {
     pub const NAME: &'static str = "Fine Sun Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 153;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -7,17 +7,19 @@ use crate::support::{put, take, Error, Scale};
 /// IGRF Modelled Magnetic Field Vector: telemetry 159, 6 bytes. Table 115.
 ///
 /// In the orbit frame.
+///
+/// Bit 35 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct IgrfModelledMagneticFieldVector {
-    /// IGRF Modelled Magnetic Field X (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.01`,
+    /// IGRF Modelled Magnetic Field X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`,
     /// -327.68 to 327.67 uT.
     pub igrf_modelled_magnetic_field_x: i16,
-    /// IGRF Modelled Magnetic Field Y (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.01`,
+    /// IGRF Modelled Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
     /// -327.68 to 327.67 uT.
     pub igrf_modelled_magnetic_field_y: i16,
-    /// IGRF Modelled Magnetic Field Z (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.01`,
+    /// IGRF Modelled Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
     /// -327.68 to 327.67 uT.
     pub igrf_modelled_magnetic_field_z: i16,
 }
@@ -27,7 +29,7 @@ impl IgrfModelledMagneticFieldVector {
     pub const NAME: &'static str = "IGRF Modelled Magnetic Field Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 159;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

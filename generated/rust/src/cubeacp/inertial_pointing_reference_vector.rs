@@ -4,7 +4,8 @@
 
 use crate::support::{put, take, Error, Scale};
 
-/// Inertial Pointing Reference Vector: configuration, set by 34 and got by 238, 6 bytes. Table 214.
+/// Inertial Pointing Reference Vector: configuration, set by telecommand 34, got by telemetry 238,
+/// 6 bytes. Table 214.
 ///
 /// Unit vector for the inertial pointing mode.
 ///
@@ -13,18 +14,18 @@ use crate::support::{put, take, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct InertialPointingReferenceVector {
-    /// Inertial Reference X (bits 0 to 15): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768
-    /// to 3.2767.
+    /// Inertial Reference X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
+    /// 3.2767.
     ///
     /// Note ACP-188 (open): Inertial reference: unit vector without a frame.
     pub inertial_reference_x: i16,
-    /// Inertial Reference Y (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768
-    /// to 3.2767.
+    /// Inertial Reference Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
+    /// 3.2767.
     ///
     /// Note ACP-188 (open): Inertial reference: unit vector without a frame.
     pub inertial_reference_y: i16,
-    /// Inertial Reference Z (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768
-    /// to 3.2767.
+    /// Inertial Reference Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
+    /// 3.2767.
     ///
     /// Note ACP-188 (open): Inertial reference: unit vector without a frame.
     pub inertial_reference_z: i16,
@@ -35,9 +36,9 @@ impl InertialPointingReferenceVector {
     pub const NAME: &'static str = "Inertial Pointing Reference Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 34;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 238;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -10,13 +10,13 @@ use crate::support::{Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct JpgConversionProgress {
-    /// Progress Percentage (bits 0 to 7): 0 to 255 %.
+    /// Progress Percentage: bits 0 to 7, raw 0 to 255, in %.
     ///
     /// Erratum ACP-065 (certain): JPG progress has its unit in words only.
     pub progress_percentage: u8,
-    /// Conversion Result (bits 8 to 15).
+    /// Conversion Result: bits 8 to 15.
     pub conversion_result: Coded<enums::JpgConvertResult>,
-    /// Output File Counter (bits 16 to 23): 0 to 255.
+    /// Output File Counter: bits 16 to 23, raw 0 to 255.
     pub output_file_counter: u8,
 }
 
@@ -25,7 +25,7 @@ impl JpgConversionProgress {
     pub const NAME: &'static str = "JPG Conversion Progress";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 133;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -8,19 +8,21 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// As measured.
 ///
+/// Bit 9 of the log mask.
+///
 /// Note ACP-069 (open): Reference frames of measured vectors are not named.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct MagneticFieldVector {
-    /// Magnetic Field X (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
-    /// 327.67 uT.
+    /// Magnetic Field X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
+    /// uT.
     pub magnetic_field_x: i16,
-    /// Magnetic Field Y (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
-    /// 327.67 uT.
+    /// Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
+    /// uT.
     pub magnetic_field_y: i16,
-    /// Magnetic Field Z (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to
-    /// 327.67 uT.
+    /// Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
+    /// uT.
     pub magnetic_field_z: i16,
 }
 
@@ -29,7 +31,7 @@ impl MagneticFieldVector {
     pub const NAME: &'static str = "Magnetic Field Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 151;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

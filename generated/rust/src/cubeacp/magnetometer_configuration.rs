@@ -4,87 +4,70 @@
 
 use crate::support::{put, take, Error, Scale};
 
-/// Magnetometer Configuration: configuration, set by 26 and got by 204, 30 bytes. Table 190.
+/// Magnetometer Configuration: configuration, set by telecommand 26, got by telemetry 204, 30
+/// bytes. Table 190.
 ///
 /// Note ACP-051 (certain): Magnetometers have four names for two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct MagnetometerConfiguration {
-    /// Magnetometer Mounting Transform Alpha Angle (bits 0 to 15): raw, -32768 to 32767; physical
+    /// Magnetometer Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub magnetometer_mounting_transform_alpha_angle: i16,
-    /// Magnetometer Mounting Transform Beta Angle (bits 16 to 31): raw, -32768 to 32767; physical
+    /// Magnetometer Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub magnetometer_mounting_transform_beta_angle: i16,
-    /// Magnetometer Mounting Transform Gamma Angle (bits 32 to 47): raw, -32768 to 32767; physical
+    /// Magnetometer Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub magnetometer_mounting_transform_gamma_angle: i16,
-    /// Magnetometer Channel 1 Offset (bits 48 to 63): raw, -32768 to 32767; physical `raw*0.001`,
+    /// Magnetometer Channel 1 Offset: bits 48 to 63, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
     /// Note ACP-155 (open): Magnetometer offsets have no unit.
     pub magnetometer_channel_1_offset: i16,
-    /// Magnetometer Channel 2 Offset (bits 64 to 79): raw, -32768 to 32767; physical `raw*0.001`,
+    /// Magnetometer Channel 2 Offset: bits 64 to 79, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
     /// Note ACP-155 (open): Magnetometer offsets have no unit.
     pub magnetometer_channel_2_offset: i16,
-    /// Magnetometer Channel 3 Offset (bits 80 to 95): raw, -32768 to 32767; physical `raw*0.001`,
+    /// Magnetometer Channel 3 Offset: bits 80 to 95, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
     /// Note ACP-155 (open): Magnetometer offsets have no unit.
     pub magnetometer_channel_3_offset: i16,
-    /// Magnetometer Sensitivity Matrix S11 (bits 96 to 111): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S11: bits 96 to 111, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub magnetometer_sensitivity_matrix_s11: i16,
-    /// Magnetometer Sensitivity Matrix S22 (bits 112 to 127): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S22: bits 112 to 127, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub magnetometer_sensitivity_matrix_s22: i16,
-    /// Magnetometer Sensitivity Matrix S33 (bits 128 to 143): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S33: bits 128 to 143, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub magnetometer_sensitivity_matrix_s33: i16,
-    /// Magnetometer Sensitivity Matrix S12 (bits 144 to 159): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S12: bits 144 to 159, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub magnetometer_sensitivity_matrix_s12: i16,
-    /// Magnetometer Sensitivity Matrix S13 (bits 160 to 175): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S13: bits 160 to 175, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub magnetometer_sensitivity_matrix_s13: i16,
-    /// Magnetometer Sensitivity Matrix S21 (bits 176 to 191): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S21: bits 176 to 191, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub magnetometer_sensitivity_matrix_s21: i16,
-    /// Magnetometer Sensitivity Matrix S23 (bits 192 to 207): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S23: bits 192 to 207, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub magnetometer_sensitivity_matrix_s23: i16,
-    /// Magnetometer Sensitivity Matrix S31 (bits 208 to 223): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S31: bits 208 to 223, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub magnetometer_sensitivity_matrix_s31: i16,
-    /// Magnetometer Sensitivity Matrix S32 (bits 224 to 239): raw, -32768 to 32767; physical
+    /// Magnetometer Sensitivity Matrix S32: bits 224 to 239, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub magnetometer_sensitivity_matrix_s32: i16,
 }
 
@@ -93,9 +76,9 @@ impl MagnetometerConfiguration {
     pub const NAME: &'static str = "Magnetometer Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 30;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 26;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 204;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -139,12 +122,9 @@ impl MagnetometerConfiguration {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; 30] {
         let mut bytes = [0; 30];
-        let value = self.magnetometer_mounting_transform_alpha_angle;
-        put!(value.to_le_bytes() => bytes[0; 2]);
-        let value = self.magnetometer_mounting_transform_beta_angle;
-        put!(value.to_le_bytes() => bytes[2; 2]);
-        let value = self.magnetometer_mounting_transform_gamma_angle;
-        put!(value.to_le_bytes() => bytes[4; 2]);
+        put!(self.magnetometer_mounting_transform_alpha_angle.to_le_bytes() => bytes[0; 2]);
+        put!(self.magnetometer_mounting_transform_beta_angle.to_le_bytes() => bytes[2; 2]);
+        put!(self.magnetometer_mounting_transform_gamma_angle.to_le_bytes() => bytes[4; 2]);
         put!(self.magnetometer_channel_1_offset.to_le_bytes() => bytes[6; 2]);
         put!(self.magnetometer_channel_2_offset.to_le_bytes() => bytes[8; 2]);
         put!(self.magnetometer_channel_3_offset.to_le_bytes() => bytes[10; 2]);
@@ -163,8 +143,7 @@ impl MagnetometerConfiguration {
     /// Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn magnetometer_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        let raw = self.magnetometer_mounting_transform_alpha_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.magnetometer_mounting_transform_alpha_angle) / 100.0
     }
 
     /// Sets Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -177,16 +156,15 @@ impl MagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
-        self.magnetometer_mounting_transform_alpha_angle = raw;
+        self.magnetometer_mounting_transform_alpha_angle =
+            MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn magnetometer_mounting_transform_beta_angle_deg(&self) -> f64 {
-        let raw = self.magnetometer_mounting_transform_beta_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.magnetometer_mounting_transform_beta_angle) / 100.0
     }
 
     /// Sets Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -199,16 +177,15 @@ impl MagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
-        self.magnetometer_mounting_transform_beta_angle = raw;
+        self.magnetometer_mounting_transform_beta_angle =
+            MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn magnetometer_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        let raw = self.magnetometer_mounting_transform_gamma_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.magnetometer_mounting_transform_gamma_angle) / 100.0
     }
 
     /// Sets Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -221,8 +198,8 @@ impl MagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
-        self.magnetometer_mounting_transform_gamma_angle = raw;
+        self.magnetometer_mounting_transform_gamma_angle =
+            MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
         Ok(())
     }
 
@@ -293,8 +270,7 @@ impl MagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S11.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s11 = raw;
+        self.magnetometer_sensitivity_matrix_s11 = MAGNETOMETER_SENSITIVITY_MATRIX_S11.raw(value)?;
         Ok(())
     }
 
@@ -314,8 +290,7 @@ impl MagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S22.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s22 = raw;
+        self.magnetometer_sensitivity_matrix_s22 = MAGNETOMETER_SENSITIVITY_MATRIX_S22.raw(value)?;
         Ok(())
     }
 
@@ -335,8 +310,7 @@ impl MagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S33.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s33 = raw;
+        self.magnetometer_sensitivity_matrix_s33 = MAGNETOMETER_SENSITIVITY_MATRIX_S33.raw(value)?;
         Ok(())
     }
 
@@ -356,8 +330,7 @@ impl MagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S12.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s12 = raw;
+        self.magnetometer_sensitivity_matrix_s12 = MAGNETOMETER_SENSITIVITY_MATRIX_S12.raw(value)?;
         Ok(())
     }
 
@@ -377,8 +350,7 @@ impl MagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S13.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s13 = raw;
+        self.magnetometer_sensitivity_matrix_s13 = MAGNETOMETER_SENSITIVITY_MATRIX_S13.raw(value)?;
         Ok(())
     }
 
@@ -398,8 +370,7 @@ impl MagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S21.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s21 = raw;
+        self.magnetometer_sensitivity_matrix_s21 = MAGNETOMETER_SENSITIVITY_MATRIX_S21.raw(value)?;
         Ok(())
     }
 
@@ -419,8 +390,7 @@ impl MagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S23.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s23 = raw;
+        self.magnetometer_sensitivity_matrix_s23 = MAGNETOMETER_SENSITIVITY_MATRIX_S23.raw(value)?;
         Ok(())
     }
 
@@ -440,8 +410,7 @@ impl MagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S31.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s31 = raw;
+        self.magnetometer_sensitivity_matrix_s31 = MAGNETOMETER_SENSITIVITY_MATRIX_S31.raw(value)?;
         Ok(())
     }
 
@@ -461,8 +430,7 @@ impl MagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = MAGNETOMETER_SENSITIVITY_MATRIX_S32.raw(value)?;
-        self.magnetometer_sensitivity_matrix_s32 = raw;
+        self.magnetometer_sensitivity_matrix_s32 = MAGNETOMETER_SENSITIVITY_MATRIX_S32.raw(value)?;
         Ok(())
     }
 }

@@ -5,11 +5,13 @@
 use crate::support::{put, take, Error};
 
 /// Magnetorquer Command: telemetry 157, 6 bytes. Table 113.
+///
+/// Bit 7 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct MagnetorquerCommand {
-    /// X Magnetorquer Command (bits 0 to 15): -32768 to 32767 10ms units.
+    /// X Magnetorquer Command: bits 0 to 15, raw -32768 to 32767, in 10ms units.
     ///
     /// On-time.
     ///
@@ -17,7 +19,7 @@ pub struct MagnetorquerCommand {
     ///
     /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
     pub x_magnetorquer_command: i16,
-    /// Y Magnetorquer Command (bits 16 to 31): -32768 to 32767 10ms units.
+    /// Y Magnetorquer Command: bits 16 to 31, raw -32768 to 32767, in 10ms units.
     ///
     /// On-time.
     ///
@@ -25,7 +27,7 @@ pub struct MagnetorquerCommand {
     ///
     /// Note ACP-071 (likely): 10ms units is a factor, not a unit.
     pub y_magnetorquer_command: i16,
-    /// Z Magnetorquer Command (bits 32 to 47): -32768 to 32767 10ms units.
+    /// Z Magnetorquer Command: bits 32 to 47, raw -32768 to 32767, in 10ms units.
     ///
     /// On-time.
     ///
@@ -40,7 +42,7 @@ impl MagnetorquerCommand {
     pub const NAME: &'static str = "Magnetorquer Command";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 157;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -7,17 +7,19 @@ use crate::support::{put, take, Error, Scale};
 /// Modelled Sun Vector: telemetry 160, 6 bytes. Table 116.
 ///
 /// In the orbit frame.
+///
+/// Bit 36 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct ModelledSunVector {
-    /// Modelled Sun Vector X (bits 0 to 15): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768
-    /// to 3.2767.
+    /// Modelled Sun Vector X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
+    /// 3.2767.
     pub modelled_sun_vector_x: i16,
-    /// Modelled Sun Vector Y (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768
+    /// Modelled Sun Vector Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
     /// to 3.2767.
     pub modelled_sun_vector_y: i16,
-    /// Modelled Sun Vector Z (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768
+    /// Modelled Sun Vector Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768
     /// to 3.2767.
     pub modelled_sun_vector_z: i16,
 }
@@ -27,7 +29,7 @@ impl ModelledSunVector {
     pub const NAME: &'static str = "Modelled Sun Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 160;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -4,28 +4,29 @@
 
 use crate::support::{put, take, Error};
 
-/// Moment of Inertia Matrix: configuration, set by 41 and got by 222, 24 bytes. Table 199.
+/// Moment of Inertia Matrix: configuration, set by telecommand 41, got by telemetry 222, 24 bytes.
+/// Table 199.
 ///
 /// Of the satellite.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct MomentOfInertiaMatrix {
-    /// Moment Of Inertia - Ixx (bits 0 to 31): 32-bit float, in kg.m^2.
+    /// Moment Of Inertia - Ixx: bits 0 to 31, 32-bit float, in kg.m^2.
     pub moment_of_inertia_ixx: f32,
-    /// Moment Of Inertia - Iyy (bits 32 to 63): 32-bit float, in kg.m^2.
+    /// Moment Of Inertia - Iyy: bits 32 to 63, 32-bit float, in kg.m^2.
     pub moment_of_inertia_iyy: f32,
-    /// Moment Of Inertia - Izz (bits 64 to 95): 32-bit float, in kg.m^2.
+    /// Moment Of Inertia - Izz: bits 64 to 95, 32-bit float, in kg.m^2.
     pub moment_of_inertia_izz: f32,
-    /// Product Of Inertia - Ixy (bits 96 to 127): 32-bit float, in kg.m^2.
+    /// Product Of Inertia - Ixy: bits 96 to 127, 32-bit float, in kg.m^2.
     ///
     /// Note ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_ixy: f32,
-    /// Product Of Inertia - Ixz (bits 128 to 159): 32-bit float, in kg.m^2.
+    /// Product Of Inertia - Ixz: bits 128 to 159, 32-bit float, in kg.m^2.
     ///
     /// Note ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_ixz: f32,
-    /// Product Of Inertia - Iyz (bits 160 to 191): 32-bit float, in kg.m^2.
+    /// Product Of Inertia - Iyz: bits 160 to 191, 32-bit float, in kg.m^2.
     ///
     /// Note ACP-201 (open): Products of inertia: the sign is not given.
     pub product_of_inertia_iyz: f32,
@@ -36,9 +37,9 @@ impl MomentOfInertiaMatrix {
     pub const NAME: &'static str = "Moment of Inertia Matrix";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 24;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 41;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 222;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

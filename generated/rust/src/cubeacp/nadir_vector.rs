@@ -8,16 +8,18 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// As measured.
 ///
+/// Bit 12 of the log mask.
+///
 /// Note ACP-069 (open): Reference frames of measured vectors are not named.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct NadirVector {
-    /// Nadir X (bits 0 to 15): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Nadir X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub nadir_x: i16,
-    /// Nadir Y (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Nadir Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub nadir_y: i16,
-    /// Nadir Z (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Nadir Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     pub nadir_z: i16,
 }
 
@@ -26,7 +28,7 @@ impl NadirVector {
     pub const NAME: &'static str = "Nadir Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 154;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

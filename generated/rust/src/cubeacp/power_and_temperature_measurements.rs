@@ -5,87 +5,92 @@
 use crate::support::{put, take, Error, Scale};
 
 /// Power and Temperature Measurements: telemetry 195, 38 bytes. Table 154.
+///
+/// Repeats CubeSense1 Current Measurements from byte 0. Repeats CubeSense2 Current Measurements
+/// from byte 4. Repeats CubeControl Current Measurements from byte 8. Repeats Wheel Currents from
+/// byte 14. Repeats ADCS Misc Current Measurements from byte 20. Repeats ADCS Temperatures from
+/// byte 26. Repeats Rate sensor temperatures from byte 32.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct PowerAndTemperatureMeasurements {
-    /// CubeSense1 3V3 Current (bits 0 to 15): raw, 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
+    /// CubeSense1 3V3 Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
     pub cubesense1_3v3_current: u16,
-    /// CubeSense1 Cam SRAM Current (bits 16 to 31): raw, 0 to 65535; physical `raw*0.1`, 0 to
-    /// 6553.5 mA.
+    /// CubeSense1 Cam SRAM Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5
+    /// mA.
     pub cubesense1_cam_sram_current: u16,
-    /// CubeSense2 3V3 Current (bits 32 to 47): raw, 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
+    /// CubeSense2 3V3 Current: bits 32 to 47, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
     pub cubesense2_3v3_current: u16,
-    /// CubeSense2 Cam SRAM Current (bits 48 to 63): raw, 0 to 65535; physical `raw*0.1`, 0 to
-    /// 6553.5 mA.
+    /// CubeSense2 Cam SRAM Current: bits 48 to 63, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5
+    /// mA.
     pub cubesense2_cam_sram_current: u16,
-    /// CubeControl 3V3 Current (bits 64 to 79): raw, 0 to 65535; physical `raw*0.48828125`, 0 to
+    /// CubeControl 3V3 Current: bits 64 to 79, raw 0 to 65535; physical `raw*0.48828125`, 0 to
     /// 31999.51171875 mA.
     pub cubecontrol_3v3_current: u16,
-    /// CubeControl 5V Current (bits 80 to 95): raw, 0 to 65535; physical `raw*0.48828125`, 0 to
+    /// CubeControl 5V Current: bits 80 to 95, raw 0 to 65535; physical `raw*0.48828125`, 0 to
     /// 31999.51171875 mA.
     pub cubecontrol_5v_current: u16,
-    /// CubeControl Vbat Current (bits 96 to 111): raw, 0 to 65535; physical `raw*0.48828125`, 0 to
+    /// CubeControl Vbat Current: bits 96 to 111, raw 0 to 65535; physical `raw*0.48828125`, 0 to
     /// 31999.51171875 mA.
     pub cubecontrol_vbat_current: u16,
-    /// Wheel1Current (bits 112 to 127): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
+    /// Wheel1Current: bits 112 to 127, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
     /// Note ACP-083 (open): Wheel currents: by number, described by axis.
     ///
     /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub wheel1_current: u16,
-    /// Wheel2Current (bits 128 to 143): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
+    /// Wheel2Current: bits 128 to 143, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
     /// Note ACP-083 (open): Wheel currents: by number, described by axis.
     ///
     /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub wheel2_current: u16,
-    /// Wheel3Current (bits 144 to 159): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
+    /// Wheel3Current: bits 144 to 159, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
     /// Note ACP-083 (open): Wheel currents: by number, described by axis.
     ///
     /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub wheel3_current: u16,
-    /// CubeStarCurrent (bits 160 to 175): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
+    /// CubeStarCurrent: bits 160 to 175, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
     /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub cubestar_current: u16,
-    /// Magnetorquer Current (bits 176 to 191): raw, 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
+    /// Magnetorquer Current: bits 176 to 191, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
     pub magnetorquer_current: u16,
-    /// CubeStar MCU temperature (bits 192 to 207): raw, -32768 to 32767; physical `raw/100.0`,
+    /// CubeStar MCU temperature: bits 192 to 207, raw -32768 to 32767; physical `raw/100.0`,
     /// -327.68 to 327.67 C.
     ///
     /// Note ACP-005 (likely): Symbol C is the coulomb.
     pub cubestar_mcu_temperature: i16,
-    /// MCU Temperature (bits 208 to 223): -32768 to 32767 C.
+    /// MCU Temperature: bits 208 to 223, raw -32768 to 32767, in C.
     ///
     /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
     /// Note ACP-085 (open): Temperatures have three scales.
     pub mcu_temperature: i16,
-    /// Magnetometer Temperature (bits 224 to 239): raw, -32768 to 32767; physical `raw/10.0`,
-    /// -3276.8 to 3276.7 C.
+    /// Magnetometer Temperature: bits 224 to 239, raw -32768 to 32767; physical `raw/10.0`, -3276.8
+    /// to 3276.7 C.
     ///
     /// Note ACP-005 (likely): Symbol C is the coulomb.
     pub magnetometer_temperature: i16,
-    /// Redundant Magnetometer Temperature (bits 240 to 255): raw, -32768 to 32767; physical
+    /// Redundant Magnetometer Temperature: bits 240 to 255, raw -32768 to 32767; physical
     /// `raw/10.0`, -3276.8 to 3276.7 C.
     ///
     /// Note ACP-005 (likely): Symbol C is the coulomb.
     pub redundant_magnetometer_temperature: i16,
-    /// X-Rate Sensor Temperature (bits 256 to 271): -32768 to 32767 C.
+    /// X-Rate Sensor Temperature: bits 256 to 271, raw -32768 to 32767, in C.
     ///
     /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
     /// Note ACP-085 (open): Temperatures have three scales.
     pub x_rate_sensor_temperature: i16,
-    /// Y-Rate Sensor Temperature (bits 272 to 287): -32768 to 32767 C.
+    /// Y-Rate Sensor Temperature: bits 272 to 287, raw -32768 to 32767, in C.
     ///
     /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
     /// Note ACP-085 (open): Temperatures have three scales.
     pub y_rate_sensor_temperature: i16,
-    /// Z-Rate Sensor Temperature (bits 288 to 303): -32768 to 32767 C.
+    /// Z-Rate Sensor Temperature: bits 288 to 303, raw -32768 to 32767, in C.
     ///
     /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
@@ -98,7 +103,7 @@ impl PowerAndTemperatureMeasurements {
     pub const NAME: &'static str = "Power and Temperature Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 38;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 195;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -404,8 +409,7 @@ impl PowerAndTemperatureMeasurements {
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
     pub fn set_redundant_magnetometer_temperature_c(&mut self, value: f64) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_TEMPERATURE.raw(value)?;
-        self.redundant_magnetometer_temperature = raw;
+        self.redundant_magnetometer_temperature = REDUNDANT_MAGNETOMETER_TEMPERATURE.raw(value)?;
         Ok(())
     }
 }

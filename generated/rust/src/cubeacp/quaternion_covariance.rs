@@ -5,21 +5,23 @@
 use crate::support::{put, take, Error, Scale};
 
 /// Quaternion Covariance: telemetry 164, 6 bytes. Table 120.
+///
+/// Bit 40 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct QuaternionCovariance {
-    /// Quaternion Covariance - Q1 RMS (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.001`,
+    /// Quaternion Covariance - Q1 RMS: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
     /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
     pub quaternion_covariance_q1_rms: i16,
-    /// Quaternion Covariance - Q2 RMS (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.001`,
+    /// Quaternion Covariance - Q2 RMS: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
     /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
     pub quaternion_covariance_q2_rms: i16,
-    /// Quaternion Covariance - Q3 RMS (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.001`,
+    /// Quaternion Covariance - Q3 RMS: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
     /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
@@ -31,7 +33,7 @@ impl QuaternionCovariance {
     pub const NAME: &'static str = "Quaternion Covariance";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 164;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

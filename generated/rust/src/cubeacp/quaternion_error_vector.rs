@@ -6,25 +6,21 @@ use crate::support::{put, take, Error, Scale};
 
 /// Quaternion Error Vector: telemetry 163, 6 bytes. Table 119.
 ///
+/// Bit 39 of the log mask.
+///
 /// Note ACP-075 (open): Quaternions: the fourth component.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct QuaternionErrorVector {
-    /// Quaternion Error - Q1 (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
-    /// to 3.2767.
-    ///
-    /// Note ACP-073 (certain): One factor, several notations.
+    /// Quaternion Error - Q1: bits 0 to 15, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
+    /// 3.2767.
     pub quaternion_error_q1: i16,
-    /// Quaternion Error - Q2 (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
-    /// to 3.2767.
-    ///
-    /// Note ACP-073 (certain): One factor, several notations.
+    /// Quaternion Error - Q2: bits 16 to 31, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
+    /// 3.2767.
     pub quaternion_error_q2: i16,
-    /// Quaternion Error - Q3 (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.0001`, -3.2768
-    /// to 3.2767.
-    ///
-    /// Note ACP-073 (certain): One factor, several notations.
+    /// Quaternion Error - Q3: bits 32 to 47, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
+    /// 3.2767.
     pub quaternion_error_q3: i16,
 }
 
@@ -33,7 +29,7 @@ impl QuaternionErrorVector {
     pub const NAME: &'static str = "Quaternion Error Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 163;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -8,18 +8,20 @@ use crate::support::{put, take, Error, Scale};
 ///
 /// As measured.
 ///
+/// Bit 13 of the log mask.
+///
 /// Note ACP-069 (open): Reference frames of measured vectors are not named.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct RateSensorRates {
-    /// X Angular Rate (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
+    /// X Angular Rate: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
     /// deg/s.
     pub x_angular_rate: i16,
-    /// Y Angular Rate (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
+    /// Y Angular Rate: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
     /// deg/s.
     pub y_angular_rate: i16,
-    /// Z Angular Rate (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
+    /// Z Angular Rate: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
     /// deg/s.
     pub z_angular_rate: i16,
 }
@@ -29,7 +31,7 @@ impl RateSensorRates {
     pub const NAME: &'static str = "Rate Sensor Rates";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 155;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -5,23 +5,25 @@
 use crate::support::{put, take, Error};
 
 /// Rate sensor temperatures: telemetry 175, 6 bytes. Table 133.
+///
+/// Bit 26 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct RateSensorTemperatures {
-    /// X-Rate Sensor Temperature (bits 0 to 15): -32768 to 32767 C.
+    /// X-Rate Sensor Temperature: bits 0 to 15, raw -32768 to 32767, in C.
     ///
     /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
     /// Note ACP-085 (open): Temperatures have three scales.
     pub x_rate_sensor_temperature: i16,
-    /// Y-Rate Sensor Temperature (bits 16 to 31): -32768 to 32767 C.
+    /// Y-Rate Sensor Temperature: bits 16 to 31, raw -32768 to 32767, in C.
     ///
     /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
     /// Note ACP-085 (open): Temperatures have three scales.
     pub y_rate_sensor_temperature: i16,
-    /// Z-Rate Sensor Temperature (bits 32 to 47): -32768 to 32767 C.
+    /// Z-Rate Sensor Temperature: bits 32 to 47, raw -32768 to 32767, in C.
     ///
     /// Note ACP-005 (likely): Symbol C is the coulomb.
     ///
@@ -34,7 +36,7 @@ impl RateSensorTemperatures {
     pub const NAME: &'static str = "Rate sensor temperatures";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 175;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

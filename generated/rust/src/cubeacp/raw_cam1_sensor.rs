@@ -9,26 +9,28 @@ use crate::support::{put, take, Coded, Error};
 ///
 /// What Cam1 captured and detected.
 ///
+/// Bit 48 of the log mask.
+///
 /// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct RawCam1Sensor {
-    /// Cam1 centroid X (bits 0 to 15): -32768 to 32767.
+    /// Cam1 centroid X: bits 0 to 15, raw -32768 to 32767.
     ///
     /// Azimuth angle.
     ///
     /// Note ACP-078 (open): Camera results: centroid or angle.
     pub cam1_centroid_x: i16,
-    /// Cam1 centroid Y (bits 16 to 31): -32768 to 32767.
+    /// Cam1 centroid Y: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Elevation angle.
     ///
     /// Note ACP-078 (open): Camera results: centroid or angle.
     pub cam1_centroid_y: i16,
-    /// Cam1 Capture status (bits 32 to 39).
+    /// Cam1 Capture status: bits 32 to 39.
     pub cam1_capture_status: Coded<enums::CaptureResult>,
-    /// Cam1 Detection result (bits 40 to 47).
+    /// Cam1 Detection result: bits 40 to 47.
     pub cam1_detection_result: Coded<enums::DetectResult>,
 }
 
@@ -37,7 +39,7 @@ impl RawCam1Sensor {
     pub const NAME: &'static str = "Raw Cam1 Sensor";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 167;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -5,41 +5,43 @@
 use crate::support::Error;
 
 /// Raw CSS 1 to 6: telemetry 168, 6 bytes. Table 126.
+///
+/// Bit 49 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct RawCss1To6 {
-    /// CSS1 (bits 0 to 7): 0 to 255.
+    /// CSS1: bits 0 to 7, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
     /// Note ACP-080 (open): CSS raw values have no scale.
     pub css1: u8,
-    /// CSS2 (bits 8 to 15): 0 to 255.
+    /// CSS2: bits 8 to 15, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
     /// Note ACP-080 (open): CSS raw values have no scale.
     pub css2: u8,
-    /// CSS3 (bits 16 to 23): 0 to 255.
+    /// CSS3: bits 16 to 23, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
     /// Note ACP-080 (open): CSS raw values have no scale.
     pub css3: u8,
-    /// CSS4 (bits 24 to 31): 0 to 255.
+    /// CSS4: bits 24 to 31, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
     /// Note ACP-080 (open): CSS raw values have no scale.
     pub css4: u8,
-    /// CSS5 (bits 32 to 39): 0 to 255.
+    /// CSS5: bits 32 to 39, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
     /// Note ACP-080 (open): CSS raw values have no scale.
     pub css5: u8,
-    /// CSS6 (bits 40 to 47): 0 to 255.
+    /// CSS6: bits 40 to 47, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
@@ -52,7 +54,7 @@ impl RawCss1To6 {
     pub const NAME: &'static str = "Raw CSS 1 to 6";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 168;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

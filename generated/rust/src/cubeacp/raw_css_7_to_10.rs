@@ -6,30 +6,32 @@ use crate::support::Error;
 
 /// Raw CSS 7 to 10: telemetry 169, 6 bytes. Table 127.
 ///
+/// Bit 50 of the log mask.
+///
 /// Erratum ACP-081 (likely): Raw CSS 7 to 10: 6 bytes announced, 4 described.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct RawCss7To10 {
-    /// CSS7 (bits 0 to 7): 0 to 255.
+    /// CSS7: bits 0 to 7, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
     /// Note ACP-080 (open): CSS raw values have no scale.
     pub css7: u8,
-    /// CSS8 (bits 8 to 15): 0 to 255.
+    /// CSS8: bits 8 to 15, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
     /// Note ACP-080 (open): CSS raw values have no scale.
     pub css8: u8,
-    /// CSS9 (bits 16 to 23): 0 to 255.
+    /// CSS9: bits 16 to 23, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
     /// Note ACP-080 (open): CSS raw values have no scale.
     pub css9: u8,
-    /// CSS10 (bits 24 to 31): 0 to 255.
+    /// CSS10: bits 24 to 31, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     ///
@@ -42,7 +44,7 @@ impl RawCss7To10 {
     pub const NAME: &'static str = "Raw CSS 7 to 10";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 169;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

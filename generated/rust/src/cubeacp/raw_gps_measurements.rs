@@ -6,75 +6,78 @@ use super::enums;
 use crate::support::{put, take, Coded, Error, Scale};
 
 /// Raw GPS Measurements: telemetry 210, 36 bytes. Table 158.
+///
+/// Repeats Raw GPS Status from byte 0. Repeats Raw GPS Time from byte 6. Repeats Raw GPS X from
+/// byte 12. Repeats Raw GPS Y from byte 18. Repeats Raw GPS Z from byte 24.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct RawGpsMeasurements {
-    /// Gps Solution Status (bits 0 to 7).
+    /// Gps Solution Status: bits 0 to 7.
     ///
     /// Note ACP-042 (certain): GPS is spelt Gps in one field.
     pub gps_solution_status: Coded<enums::GpsSolutionStatus>,
-    /// Number of tracked GPS satellites (bits 8 to 15): 0 to 255.
+    /// Number of tracked GPS satellites: bits 8 to 15, raw 0 to 255.
     pub number_of_tracked_gps_satellites: u8,
-    /// Number of GPS satellites used in solution (bits 16 to 23): 0 to 255.
+    /// Number of GPS satellites used in solution: bits 16 to 23, raw 0 to 255.
     pub number_of_gps_satellites_used_in_solution: u8,
-    /// Counter for XYZ Lof from GPS (bits 24 to 31): 0 to 255.
+    /// Counter for XYZ Lof from GPS: bits 24 to 31, raw 0 to 255.
     ///
     /// Erratum ACP-087 (certain): GPS counter: Lof is Log.
     pub counter_for_xyz_log_from_gps: u8,
-    /// Counter for RANGE log from GPS (bits 32 to 39): 0 to 255.
+    /// Counter for RANGE log from GPS: bits 32 to 39, raw 0 to 255.
     pub counter_for_range_log_from_gps: u8,
-    /// Response Message for GPS log setup (bits 40 to 47): 0 to 255.
+    /// Response Message for GPS log setup: bits 40 to 47, raw 0 to 255.
     ///
     /// Explained on page 656 of the OEMV615 reference manual.
     ///
     /// Note ACP-088 (open): GPS response: explained in another manual.
     pub response_message_for_gps_log_setup: u8,
-    /// GPS Reference Week (bits 48 to 63): 0 to 65535.
+    /// GPS Reference Week: bits 48 to 63, raw 0 to 65535.
     ///
     /// Note ACP-089 (open): GPS week: with or without roll-overs.
     pub gps_reference_week: u16,
-    /// GPS Time Milliseconds (bits 64 to 95): 0 to 4294967295 ms.
+    /// GPS Time Milliseconds: bits 64 to 95, raw 0 to 4294967295, in ms.
     pub gps_time_milliseconds: u32,
-    /// ECEF Position X (bits 96 to 127): -2147483648 to 2147483647 m.
+    /// ECEF Position X: bits 96 to 127, raw -2147483648 to 2147483647, in m.
     ///
     /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_x: i32,
-    /// ECEF Velocity X (bits 128 to 143): -32768 to 32767 m/s.
+    /// ECEF Velocity X: bits 128 to 143, raw -32768 to 32767, in m/s.
     ///
     /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
     pub ecef_velocity_x: i16,
-    /// ECEF Position Y (bits 144 to 175): -2147483648 to 2147483647 m.
+    /// ECEF Position Y: bits 144 to 175, raw -2147483648 to 2147483647, in m.
     ///
     /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_y: i32,
-    /// ECEF Velocity Y (bits 176 to 191): -32768 to 32767 m/s.
+    /// ECEF Velocity Y: bits 176 to 191, raw -32768 to 32767, in m/s.
     ///
     /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
     pub ecef_velocity_y: i16,
-    /// ECEF Position Z (bits 192 to 223): -2147483648 to 2147483647 m.
+    /// ECEF Position Z: bits 192 to 223, raw -2147483648 to 2147483647, in m.
     ///
     /// Note ACP-099 (certain): ECEF position: one name, two widths.
     pub ecef_position_z: i32,
-    /// ECEF Velocity Z (bits 224 to 239): -32768 to 32767 m/s.
+    /// ECEF Velocity Z: bits 224 to 239, raw -32768 to 32767, in m/s.
     ///
     /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
     pub ecef_velocity_z: i16,
-    /// X-pos Standard Deviation (bits 240 to 247): raw, 0 to 255; physical `raw*0.1`, 0 to 25.5 m.
+    /// X-pos Standard Deviation: bits 240 to 247, raw 0 to 255; physical `raw*0.1`, 0 to 25.5 m.
     pub x_pos_standard_deviation: u8,
-    /// Y-pos Standard Deviation (bits 248 to 255): raw, 0 to 255; physical `raw*0.1`, 0 to 25.5 m.
+    /// Y-pos Standard Deviation: bits 248 to 255, raw 0 to 255; physical `raw*0.1`, 0 to 25.5 m.
     pub y_pos_standard_deviation: u8,
-    /// Z-pos Standard Deviation (bits 256 to 263): raw, 0 to 255; physical `raw*0.1`, 0 to 25.5 m.
+    /// Z-pos Standard Deviation: bits 256 to 263, raw 0 to 255; physical `raw*0.1`, 0 to 25.5 m.
     pub z_pos_standard_deviation: u8,
-    /// X-vel Standard Deviation (bits 264 to 271): 0 to 255 m/s.
+    /// X-vel Standard Deviation: bits 264 to 271, raw 0 to 255, in m/s.
     ///
     /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
     pub x_vel_standard_deviation: u8,
-    /// Y-vel Standard Deviation (bits 272 to 279): 0 to 255 m/s.
+    /// Y-vel Standard Deviation: bits 272 to 279, raw 0 to 255, in m/s.
     ///
     /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
     pub y_vel_standard_deviation: u8,
-    /// Z-vel Standard Deviation (bits 280 to 287): 0 to 255 m/s.
+    /// Z-vel Standard Deviation: bits 280 to 287, raw 0 to 255, in m/s.
     ///
     /// Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
     pub z_vel_standard_deviation: u8,
@@ -85,7 +88,7 @@ impl RawGpsMeasurements {
     pub const NAME: &'static str = "Raw GPS Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 36;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 210;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -136,8 +139,7 @@ impl RawGpsMeasurements {
         let mut bytes = [0; 36];
         bytes[0] = self.gps_solution_status.raw();
         bytes[1] = self.number_of_tracked_gps_satellites;
-        let value = self.number_of_gps_satellites_used_in_solution;
-        bytes[2] = value;
+        bytes[2] = self.number_of_gps_satellites_used_in_solution;
         bytes[3] = self.counter_for_xyz_log_from_gps;
         bytes[4] = self.counter_for_range_log_from_gps;
         bytes[5] = self.response_message_for_gps_log_setup;

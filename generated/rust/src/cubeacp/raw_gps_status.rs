@@ -6,25 +6,27 @@ use super::enums;
 use crate::support::{Coded, Error};
 
 /// Raw GPS Status: telemetry 176, 6 bytes. Table 134.
+///
+/// Bit 42 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct RawGpsStatus {
-    /// Gps Solution Status (bits 0 to 7).
+    /// Gps Solution Status: bits 0 to 7.
     ///
     /// Note ACP-042 (certain): GPS is spelt Gps in one field.
     pub gps_solution_status: Coded<enums::GpsSolutionStatus>,
-    /// Number of tracked GPS satellites (bits 8 to 15): 0 to 255.
+    /// Number of tracked GPS satellites: bits 8 to 15, raw 0 to 255.
     pub number_of_tracked_gps_satellites: u8,
-    /// Number of GPS satellites used in solution (bits 16 to 23): 0 to 255.
+    /// Number of GPS satellites used in solution: bits 16 to 23, raw 0 to 255.
     pub number_of_gps_satellites_used_in_solution: u8,
-    /// Counter for XYZ Lof from GPS (bits 24 to 31): 0 to 255.
+    /// Counter for XYZ Lof from GPS: bits 24 to 31, raw 0 to 255.
     ///
     /// Erratum ACP-087 (certain): GPS counter: Lof is Log.
     pub counter_for_xyz_log_from_gps: u8,
-    /// Counter for RANGE log from GPS (bits 32 to 39): 0 to 255.
+    /// Counter for RANGE log from GPS: bits 32 to 39, raw 0 to 255.
     pub counter_for_range_log_from_gps: u8,
-    /// Response Message for GPS log setup (bits 40 to 47): 0 to 255.
+    /// Response Message for GPS log setup: bits 40 to 47, raw 0 to 255.
     ///
     /// Explained on page 656 of the OEMV615 reference manual.
     ///
@@ -37,7 +39,7 @@ impl RawGpsStatus {
     pub const NAME: &'static str = "Raw GPS Status";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 176;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -74,8 +76,7 @@ impl RawGpsStatus {
         let mut bytes = [0; 6];
         bytes[0] = self.gps_solution_status.raw();
         bytes[1] = self.number_of_tracked_gps_satellites;
-        let value = self.number_of_gps_satellites_used_in_solution;
-        bytes[2] = value;
+        bytes[2] = self.number_of_gps_satellites_used_in_solution;
         bytes[3] = self.counter_for_xyz_log_from_gps;
         bytes[4] = self.counter_for_range_log_from_gps;
         bytes[5] = self.response_message_for_gps_log_setup;

@@ -5,15 +5,17 @@
 use crate::support::{put, take, Error};
 
 /// Raw GPS Time: telemetry 177, 6 bytes. Table 135.
+///
+/// Bit 43 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct RawGpsTime {
-    /// GPS Reference Week (bits 0 to 15): 0 to 65535.
+    /// GPS Reference Week: bits 0 to 15, raw 0 to 65535.
     ///
     /// Note ACP-089 (open): GPS week: with or without roll-overs.
     pub gps_reference_week: u16,
-    /// GPS Time Milliseconds (bits 16 to 47): 0 to 4294967295 ms.
+    /// GPS Time Milliseconds: bits 16 to 47, raw 0 to 4294967295, in ms.
     pub gps_time_milliseconds: u32,
 }
 
@@ -22,7 +24,7 @@ impl RawGpsTime {
     pub const NAME: &'static str = "Raw GPS Time";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 177;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

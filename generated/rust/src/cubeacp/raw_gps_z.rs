@@ -7,15 +7,17 @@ use crate::support::{put, take, Error};
 /// Raw GPS Z: telemetry 180, 6 bytes. Table 138.
 ///
 /// Position and velocity along Z, said to be referenced to ECI.
+///
+/// Bit 46 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct RawGpsZ {
-    /// ECEF Position Z (bits 0 to 31): -2147483648 to 2147483647 m.
+    /// ECEF Position Z: bits 0 to 31, raw -2147483648 to 2147483647, in m.
     ///
     /// Note ACP-090 (likely): Raw GPS position: ECI by description, ECEF by name.
     pub ecef_position_z: i32,
-    /// ECEF Velocity Z (bits 32 to 47): -32768 to 32767 m/s.
+    /// ECEF Velocity Z: bits 32 to 47, raw -32768 to 32767, in m/s.
     ///
     /// Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
     ///
@@ -28,7 +30,7 @@ impl RawGpsZ {
     pub const NAME: &'static str = "Raw GPS Z";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 180;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

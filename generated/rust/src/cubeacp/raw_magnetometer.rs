@@ -5,23 +5,25 @@
 use crate::support::{put, take, Error};
 
 /// Raw Magnetometer: telemetry 170, 6 bytes. Table 128.
+///
+/// Bit 51 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct RawMagnetometer {
-    /// MagX (bits 0 to 15): -32768 to 32767.
+    /// MagX: bits 0 to 15, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
     /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_x: i16,
-    /// MagY (bits 16 to 31): -32768 to 32767.
+    /// MagY: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
     /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_y: i16,
-    /// MagZ (bits 32 to 47): -32768 to 32767.
+    /// MagZ: bits 32 to 47, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
@@ -34,7 +36,7 @@ impl RawMagnetometer {
     pub const NAME: &'static str = "Raw Magnetometer";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 170;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

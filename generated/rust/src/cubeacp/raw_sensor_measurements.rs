@@ -7,86 +7,88 @@ use crate::support::{put, take, Coded, Error};
 
 /// Raw Sensor Measurements: telemetry 194, 34 bytes. Table 153.
 ///
-/// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+/// Repeats Raw Cam2 Sensor from byte 0. Repeats Raw Cam1 Sensor from byte 6. Repeats Raw CSS 1 to 6
+/// from byte 12. Repeats Raw CSS 7 to 10 from byte 18. Repeats Raw Magnetometer from byte 22.
+/// Repeats Raw Rate Sensor from byte 28.
 ///
-/// Note ACP-106 (certain): Messages have the names of groups.
+/// Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct RawSensorMeasurements {
-    /// Cam2 centroid X (bits 0 to 15): -32768 to 32767.
+    /// Cam2 centroid X: bits 0 to 15, raw -32768 to 32767.
     ///
     /// Azimuth angle.
     ///
     /// Note ACP-078 (open): Camera results: centroid or angle.
     pub cam2_centroid_x: i16,
-    /// Cam2 centroid Y (bits 16 to 31): -32768 to 32767.
+    /// Cam2 centroid Y: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Elevation angle.
     ///
     /// Note ACP-078 (open): Camera results: centroid or angle.
     pub cam2_centroid_y: i16,
-    /// Cam2 Capture status (bits 32 to 39).
+    /// Cam2 Capture status: bits 32 to 39.
     pub cam2_capture_status: Coded<enums::CaptureResult>,
-    /// Cam2 Detection result (bits 40 to 47).
+    /// Cam2 Detection result: bits 40 to 47.
     pub cam2_detection_result: Coded<enums::DetectResult>,
-    /// Cam1 centroid X (bits 48 to 63): -32768 to 32767.
+    /// Cam1 centroid X: bits 48 to 63, raw -32768 to 32767.
     ///
     /// Azimuth angle.
     ///
     /// Note ACP-078 (open): Camera results: centroid or angle.
     pub cam1_centroid_x: i16,
-    /// Cam1 centroid Y (bits 64 to 79): -32768 to 32767.
+    /// Cam1 centroid Y: bits 64 to 79, raw -32768 to 32767.
     ///
     /// Elevation angle.
     ///
     /// Note ACP-078 (open): Camera results: centroid or angle.
     pub cam1_centroid_y: i16,
-    /// Cam1 Capture status (bits 80 to 87).
+    /// Cam1 Capture status: bits 80 to 87.
     pub cam1_capture_status: Coded<enums::CaptureResult>,
-    /// Cam1 Detection result (bits 88 to 95).
+    /// Cam1 Detection result: bits 88 to 95.
     pub cam1_detection_result: Coded<enums::DetectResult>,
-    /// CSS1 (bits 96 to 103): 0 to 255.
+    /// CSS1: bits 96 to 103, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     pub css1: u8,
-    /// CSS2 (bits 104 to 111): 0 to 255.
+    /// CSS2: bits 104 to 111, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     pub css2: u8,
-    /// CSS3 (bits 112 to 119): 0 to 255.
+    /// CSS3: bits 112 to 119, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     pub css3: u8,
-    /// CSS4 (bits 120 to 127): 0 to 255.
+    /// CSS4: bits 120 to 127, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     pub css4: u8,
-    /// CSS5 (bits 128 to 135): 0 to 255.
+    /// CSS5: bits 128 to 135, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     pub css5: u8,
-    /// CSS6 (bits 136 to 143): 0 to 255.
+    /// CSS6: bits 136 to 143, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     pub css6: u8,
-    /// CSS7 (bits 144 to 151): 0 to 255.
+    /// CSS7: bits 144 to 151, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     pub css7: u8,
-    /// CSS8 (bits 152 to 159): 0 to 255.
+    /// CSS8: bits 152 to 159, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     pub css8: u8,
-    /// CSS9 (bits 160 to 167): 0 to 255.
+    /// CSS9: bits 160 to 167, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     pub css9: u8,
-    /// CSS10 (bits 168 to 175): 0 to 255.
+    /// CSS10: bits 168 to 175, raw 0 to 255.
     ///
     /// Sampled A/D value, follows the cosine of the sun angle.
     pub css10: u8,
-    /// MagX (bits 176 to 191): -32768 to 32767.
+    /// MagX: bits 176 to 191, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
@@ -94,31 +96,31 @@ pub struct RawSensorMeasurements {
     ///
     /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_x: i16,
-    /// MagY (bits 192 to 207): -32768 to 32767.
+    /// MagY: bits 192 to 207, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
     /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_y: i16,
-    /// MagZ (bits 208 to 223): -32768 to 32767.
+    /// MagZ: bits 208 to 223, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
     /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_z: i16,
-    /// RateX (bits 224 to 239): -32768 to 32767.
+    /// RateX: bits 224 to 239, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
     /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub rate_x: i16,
-    /// RateY (bits 240 to 255): -32768 to 32767.
+    /// RateY: bits 240 to 255, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
     /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub rate_y: i16,
-    /// RateZ (bits 256 to 271): -32768 to 32767.
+    /// RateZ: bits 256 to 271, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
@@ -131,7 +133,7 @@ impl RawSensorMeasurements {
     pub const NAME: &'static str = "Raw Sensor Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 34;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 194;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

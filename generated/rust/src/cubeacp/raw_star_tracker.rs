@@ -6,161 +6,162 @@ use super::enums;
 use crate::support::{flags, put, take, Coded, Error, Scale};
 
 /// Raw Star Tracker: telemetry 211, 54 bytes. Table 159.
+///
+/// Repeats Star Performance1 from byte 0. Repeats Star Performance2 from byte 6. Repeats Star
+/// Magnitude from byte 12. Repeats Star 1 Raw Data from byte 18. Repeats Star 2 Raw Data from byte
+/// 24\. Repeats Star 3 Raw Data from byte 30. Repeats Star Timing from byte 36. Repeats CubeStar
+/// Estimated Rates from byte 42. Repeats CubeStar Estimated Quaternion from byte 48.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct RawStarTracker {
-    /// Number of stars detected (bits 0 to 7): 0 to 255 stars.
+    /// Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     pub number_of_stars_detected: u8,
-    /// Star image noise (bits 8 to 15): 0 to 255 noise.
+    /// Star image noise: bits 8 to 15, raw 0 to 255, in noise.
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
-    ///
-    /// Note ACP-094 (open): Star image noise has no scale.
     pub star_image_noise: u8,
-    /// Invalid Stars (bits 16 to 23): 0 to 255 Invalid stars.
+    /// Invalid Stars: bits 16 to 23, raw 0 to 255, in Invalid stars.
     ///
     /// How many of the detected stars are invalid.
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     pub invalid_stars: u8,
-    /// Number of stars identified (bits 24 to 31): 0 to 255 stars.
+    /// Number of stars identified: bits 24 to 31, raw 0 to 255, in stars.
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     pub number_of_stars_identified: u8,
-    /// Identification mode (bits 32 to 39).
+    /// Identification mode: bits 32 to 39.
     pub identification_mode: Coded<enums::StarIdModeVal>,
-    /// Image dark value (bits 40 to 47): 0 to 255 8-bit pixel value.
+    /// Image dark value: bits 40 to 47, raw 0 to 255, in 8-bit pixel value.
     ///
     /// Mean of the centre line of the image.
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
-    ///
-    /// Note ACP-095 (open): Image dark value is the mean of a centre line.
     pub image_dark_value: u8,
-    /// Image Capture Success (bit 48).
+    /// Image Capture Success: bit 48.
     pub image_capture_success: bool,
-    /// Detection Success (bit 49).
+    /// Detection Success: bit 49.
     pub detection_success: bool,
-    /// Identification Success (bit 50).
+    /// Identification Success: bit 50.
     pub identification_success: bool,
-    /// AttitudeSuccess (bit 51).
+    /// AttitudeSuccess: bit 51.
     ///
     /// Note ACP-115 (certain): AttitudeSuccess is written in one piece.
     pub attitude_success: bool,
-    /// Processing Time Error (bit 52).
+    /// Processing Time Error: bit 52.
     pub processing_time_error: bool,
-    /// Tracking Module Enabled (bit 53).
+    /// Tracking Module Enabled: bit 53.
     pub tracking_module_enabled: bool,
-    /// Prediction Enabled (bit 54).
+    /// Prediction Enabled: bit 54.
     pub prediction_enabled: bool,
-    /// Comms error (bit 55).
+    /// Comms error: bit 55.
     pub comms_error: bool,
-    /// Sample Period (bits 56 to 71): 0 to 65535.
+    /// Sample Period: bits 56 to 71, raw 0 to 65535.
     ///
     /// Note ACP-113 (open): Sample period of the star tracker has no unit.
     pub sample_period: u16,
-    /// Star 1 confidence (bits 72 to 79): 0 to 255 %.
+    /// Star 1 confidence: bits 72 to 79, raw 0 to 255, in %.
     ///
     /// Erratum ACP-114 (certain): percentage is %.
     pub star_1_confidence: u8,
-    /// Star 2 confidence (bits 80 to 87): 0 to 255 %.
+    /// Star 2 confidence: bits 80 to 87, raw 0 to 255, in %.
     ///
     /// Erratum ACP-114 (certain): percentage is %.
     pub star_2_confidence: u8,
-    /// Star 3 confidence (bits 88 to 95): 0 to 255 %.
+    /// Star 3 confidence: bits 88 to 95, raw 0 to 255, in %.
     ///
     /// Erratum ACP-114 (certain): percentage is %.
     pub star_3_confidence: u8,
-    /// Magnitude Star 1 (bits 96 to 111): 0 to 65535.
+    /// Magnitude Star 1: bits 96 to 111, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
     /// Note ACP-092 (open): Star magnitudes have no scale.
     pub magnitude_star_1: u16,
-    /// Magnitude Star 2 (bits 112 to 127): 0 to 65535.
+    /// Magnitude Star 2: bits 112 to 127, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
     /// Note ACP-092 (open): Star magnitudes have no scale.
     pub magnitude_star_2: u16,
-    /// Magnitude Star 3 (bits 128 to 143): 0 to 65535.
+    /// Magnitude Star 3: bits 128 to 143, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
     /// Note ACP-092 (open): Star magnitudes have no scale.
     pub magnitude_star_3: u16,
-    /// Catalogue Star 1 (bits 144 to 159): 0 to 65535.
+    /// Catalogue Star 1: bits 144 to 159, raw 0 to 65535.
     ///
     /// Number in the star catalogue.
     pub catalogue_star_1: u16,
-    /// Centroid X Star 1 (bits 160 to 175): -32768 to 32767.
+    /// Centroid X Star 1: bits 160 to 175, raw -32768 to 32767.
     pub centroid_x_star_1: i16,
-    /// Centroid Y Star 1 (bits 176 to 191): -32768 to 32767.
+    /// Centroid Y Star 1: bits 176 to 191, raw -32768 to 32767.
     pub centroid_y_star_1: i16,
-    /// Catalogue Star 2 (bits 192 to 207): 0 to 65535.
+    /// Catalogue Star 2: bits 192 to 207, raw 0 to 65535.
     ///
     /// Number in the star catalogue.
     pub catalogue_star_2: u16,
-    /// Centroid X Star 2 (bits 208 to 223): -32768 to 32767.
+    /// Centroid X Star 2: bits 208 to 223, raw -32768 to 32767.
     pub centroid_x_star_2: i16,
-    /// Centroid Y Star 2 (bits 224 to 239): -32768 to 32767.
+    /// Centroid Y Star 2: bits 224 to 239, raw -32768 to 32767.
     pub centroid_y_star_2: i16,
-    /// Catalogue Star 3 (bits 240 to 255): 0 to 65535.
+    /// Catalogue Star 3: bits 240 to 255, raw 0 to 65535.
     ///
     /// Number in the star catalogue.
     pub catalogue_star_3: u16,
-    /// Centroid X Star 3 (bits 256 to 271): -32768 to 32767.
+    /// Centroid X Star 3: bits 256 to 271, raw -32768 to 32767.
     pub centroid_x_star_3: i16,
-    /// Centroid Y Star 3 (bits 272 to 287): -32768 to 32767.
+    /// Centroid Y Star 3: bits 272 to 287, raw -32768 to 32767.
     pub centroid_y_star_3: i16,
-    /// Capture (bits 288 to 303): 0 to 65535 ms.
+    /// Capture: bits 288 to 303, raw 0 to 65535, in ms.
     pub capture: u16,
-    /// Detection (bits 304 to 319): 0 to 65535 ms.
+    /// Detection: bits 304 to 319, raw 0 to 65535, in ms.
     pub detection: u16,
-    /// Identification (bits 320 to 335): 0 to 65535 ms.
+    /// Identification: bits 320 to 335, raw 0 to 65535, in ms.
     pub identification: u16,
-    /// x-Axis rate (bits 336 to 351): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
+    /// x-Axis rate: bits 336 to 351, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
     /// Estimated by CubeStar, about its own X axis.
     ///
     /// Note ACP-111 (open): CubeStar rates have no unit.
     pub x_axis_rate: i16,
-    /// y-Axis rate (bits 352 to 367): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
+    /// y-Axis rate: bits 352 to 367, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
     /// Estimated by CubeStar, about its own Y axis.
     ///
     /// Note ACP-111 (open): CubeStar rates have no unit.
     pub y_axis_rate: i16,
-    /// z-Axis rate (bits 368 to 383): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to
+    /// z-Axis rate: bits 368 to 383, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
     /// Estimated by CubeStar, about its own Z axis.
     ///
     /// Note ACP-111 (open): CubeStar rates have no unit.
     pub z_axis_rate: i16,
-    /// Q0 (bits 384 to 399): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Q0: bits 384 to 399, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q1.
     ///
     /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     pub q0: i16,
-    /// Q1 (bits 400 to 415): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Q1: bits 400 to 415, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q2.
     ///
     /// Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
     pub q1: i16,
-    /// Q2 (bits 416 to 431): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Q2: bits 416 to 431, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Of the attitude estimated by CubeStar, described as Q3.
     ///
@@ -173,7 +174,7 @@ impl RawStarTracker {
     pub const NAME: &'static str = "Raw Star Tracker";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 54;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 211;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -4,88 +4,70 @@
 
 use crate::support::{put, take, Error, Scale};
 
-/// Redundant Magnetometer Configuration: configuration, set by 36 and got by 205, 30 bytes. Table
-/// 191\.
+/// Redundant Magnetometer Configuration: configuration, set by telecommand 36, got by telemetry
+/// 205, 30 bytes. Table 191.
 ///
 /// Note ACP-051 (certain): Magnetometers have four names for two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct RedundantMagnetometerConfiguration {
-    /// Redundant Magnetometer Mounting Transform Alpha Angle (bits 0 to 15): raw, -32768 to 32767;
+    /// Redundant Magnetometer Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub redundant_magnetometer_mounting_transform_alpha_angle: i16,
-    /// Redundant Magnetometer Mounting Transform Beta Angle (bits 16 to 31): raw, -32768 to 32767;
+    /// Redundant Magnetometer Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub redundant_magnetometer_mounting_transform_beta_angle: i16,
-    /// Redundant Magnetometer Mounting Transform Gamma Angle (bits 32 to 47): raw, -32768 to 32767;
+    /// Redundant Magnetometer Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub redundant_magnetometer_mounting_transform_gamma_angle: i16,
-    /// Redundant Magnetometer Channel 1 Offset (bits 48 to 63): raw, -32768 to 32767; physical
+    /// Redundant Magnetometer Channel 1 Offset: bits 48 to 63, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     ///
     /// Note ACP-155 (open): Magnetometer offsets have no unit.
     pub redundant_magnetometer_channel_1_offset: i16,
-    /// Redundant Magnetometer Channel 2 Offset (bits 64 to 79): raw, -32768 to 32767; physical
+    /// Redundant Magnetometer Channel 2 Offset: bits 64 to 79, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     ///
     /// Note ACP-155 (open): Magnetometer offsets have no unit.
     pub redundant_magnetometer_channel_2_offset: i16,
-    /// Redundant Magnetometer Channel 3 Offset (bits 80 to 95): raw, -32768 to 32767; physical
+    /// Redundant Magnetometer Channel 3 Offset: bits 80 to 95, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
     ///
     /// Note ACP-155 (open): Magnetometer offsets have no unit.
     pub redundant_magnetometer_channel_3_offset: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S11 (bits 96 to 111): raw, -32768 to 32767;
-    /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
+    /// Redundant Magnetometer Sensitivity Matrix S11: bits 96 to 111, raw -32768 to 32767; physical
+    /// `raw*0.001`, -32.768 to 32.767.
     pub redundant_magnetometer_sensitivity_matrix_s11: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S22 (bits 112 to 127): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S22: bits 112 to 127, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s22: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S33 (bits 128 to 143): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S33: bits 128 to 143, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s33: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S12 (bits 144 to 159): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S12: bits 144 to 159, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s12: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S13 (bits 160 to 175): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S13: bits 160 to 175, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s13: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S21 (bits 176 to 191): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S21: bits 176 to 191, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s21: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S23 (bits 192 to 207): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S23: bits 192 to 207, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s23: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S31 (bits 208 to 223): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S31: bits 208 to 223, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s31: i16,
-    /// Redundant Magnetometer Sensitivity Matrix S32 (bits 224 to 239): raw, -32768 to 32767;
+    /// Redundant Magnetometer Sensitivity Matrix S32: bits 224 to 239, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    ///
-    /// Note ACP-156 (certain): Sensitivity matrix: diagonal first.
     pub redundant_magnetometer_sensitivity_matrix_s32: i16,
 }
 
@@ -94,9 +76,9 @@ impl RedundantMagnetometerConfiguration {
     pub const NAME: &'static str = "Redundant Magnetometer Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 30;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 36;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 205;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -116,13 +98,10 @@ impl RedundantMagnetometerConfiguration {
     #[inline]
     #[must_use]
     pub fn from_array(bytes: &[u8; 30]) -> Self {
-        let value_0 = i16::from_le_bytes(take!(bytes[0; 2]));
-        let value_1 = i16::from_le_bytes(take!(bytes[2; 2]));
-        let value_2 = i16::from_le_bytes(take!(bytes[4; 2]));
         Self {
-            redundant_magnetometer_mounting_transform_alpha_angle: value_0,
-            redundant_magnetometer_mounting_transform_beta_angle: value_1,
-            redundant_magnetometer_mounting_transform_gamma_angle: value_2,
+            redundant_magnetometer_mounting_transform_alpha_angle: i16::from_le_bytes(take!(bytes[0; 2])),
+            redundant_magnetometer_mounting_transform_beta_angle: i16::from_le_bytes(take!(bytes[2; 2])),
+            redundant_magnetometer_mounting_transform_gamma_angle: i16::from_le_bytes(take!(bytes[4; 2])),
             redundant_magnetometer_channel_1_offset: i16::from_le_bytes(take!(bytes[6; 2])),
             redundant_magnetometer_channel_2_offset: i16::from_le_bytes(take!(bytes[8; 2])),
             redundant_magnetometer_channel_3_offset: i16::from_le_bytes(take!(bytes[10; 2])),
@@ -143,44 +122,28 @@ impl RedundantMagnetometerConfiguration {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; 30] {
         let mut bytes = [0; 30];
-        let value = self.redundant_magnetometer_mounting_transform_alpha_angle;
-        put!(value.to_le_bytes() => bytes[0; 2]);
-        let value = self.redundant_magnetometer_mounting_transform_beta_angle;
-        put!(value.to_le_bytes() => bytes[2; 2]);
-        let value = self.redundant_magnetometer_mounting_transform_gamma_angle;
-        put!(value.to_le_bytes() => bytes[4; 2]);
-        let value = self.redundant_magnetometer_channel_1_offset;
-        put!(value.to_le_bytes() => bytes[6; 2]);
-        let value = self.redundant_magnetometer_channel_2_offset;
-        put!(value.to_le_bytes() => bytes[8; 2]);
-        let value = self.redundant_magnetometer_channel_3_offset;
-        put!(value.to_le_bytes() => bytes[10; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s11;
-        put!(value.to_le_bytes() => bytes[12; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s22;
-        put!(value.to_le_bytes() => bytes[14; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s33;
-        put!(value.to_le_bytes() => bytes[16; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s12;
-        put!(value.to_le_bytes() => bytes[18; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s13;
-        put!(value.to_le_bytes() => bytes[20; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s21;
-        put!(value.to_le_bytes() => bytes[22; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s23;
-        put!(value.to_le_bytes() => bytes[24; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s31;
-        put!(value.to_le_bytes() => bytes[26; 2]);
-        let value = self.redundant_magnetometer_sensitivity_matrix_s32;
-        put!(value.to_le_bytes() => bytes[28; 2]);
+        put!(self.redundant_magnetometer_mounting_transform_alpha_angle.to_le_bytes() => bytes[0; 2]);
+        put!(self.redundant_magnetometer_mounting_transform_beta_angle.to_le_bytes() => bytes[2; 2]);
+        put!(self.redundant_magnetometer_mounting_transform_gamma_angle.to_le_bytes() => bytes[4; 2]);
+        put!(self.redundant_magnetometer_channel_1_offset.to_le_bytes() => bytes[6; 2]);
+        put!(self.redundant_magnetometer_channel_2_offset.to_le_bytes() => bytes[8; 2]);
+        put!(self.redundant_magnetometer_channel_3_offset.to_le_bytes() => bytes[10; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s11.to_le_bytes() => bytes[12; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s22.to_le_bytes() => bytes[14; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s33.to_le_bytes() => bytes[16; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s12.to_le_bytes() => bytes[18; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s13.to_le_bytes() => bytes[20; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s21.to_le_bytes() => bytes[22; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s23.to_le_bytes() => bytes[24; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s31.to_le_bytes() => bytes[26; 2]);
+        put!(self.redundant_magnetometer_sensitivity_matrix_s32.to_le_bytes() => bytes[28; 2]);
         bytes
     }
 
     /// Redundant Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn redundant_magnetometer_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        let raw = self.redundant_magnetometer_mounting_transform_alpha_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.redundant_magnetometer_mounting_transform_alpha_angle) / 100.0
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value,
@@ -193,16 +156,15 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
-        self.redundant_magnetometer_mounting_transform_alpha_angle = raw;
+        self.redundant_magnetometer_mounting_transform_alpha_angle =
+            REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn redundant_magnetometer_mounting_transform_beta_angle_deg(&self) -> f64 {
-        let raw = self.redundant_magnetometer_mounting_transform_beta_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.redundant_magnetometer_mounting_transform_beta_angle) / 100.0
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value,
@@ -215,16 +177,15 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
-        self.redundant_magnetometer_mounting_transform_beta_angle = raw;
+        self.redundant_magnetometer_mounting_transform_beta_angle =
+            REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn redundant_magnetometer_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        let raw = self.redundant_magnetometer_mounting_transform_gamma_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.redundant_magnetometer_mounting_transform_gamma_angle) / 100.0
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value,
@@ -237,16 +198,15 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
-        self.redundant_magnetometer_mounting_transform_gamma_angle = raw;
+        self.redundant_magnetometer_mounting_transform_gamma_angle =
+            REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_channel_1_offset_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_channel_1_offset;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_channel_1_offset) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value,
@@ -259,16 +219,15 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_CHANNEL_1_OFFSET.raw(value)?;
-        self.redundant_magnetometer_channel_1_offset = raw;
+        self.redundant_magnetometer_channel_1_offset =
+            REDUNDANT_MAGNETOMETER_CHANNEL_1_OFFSET.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_channel_2_offset_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_channel_2_offset;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_channel_2_offset) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value,
@@ -281,16 +240,15 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_CHANNEL_2_OFFSET.raw(value)?;
-        self.redundant_magnetometer_channel_2_offset = raw;
+        self.redundant_magnetometer_channel_2_offset =
+            REDUNDANT_MAGNETOMETER_CHANNEL_2_OFFSET.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_channel_3_offset_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_channel_3_offset;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_channel_3_offset) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value,
@@ -303,16 +261,15 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_CHANNEL_3_OFFSET.raw(value)?;
-        self.redundant_magnetometer_channel_3_offset = raw;
+        self.redundant_magnetometer_channel_3_offset =
+            REDUNDANT_MAGNETOMETER_CHANNEL_3_OFFSET.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s11_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s11;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s11) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw
@@ -325,16 +282,15 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S11.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s11 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s11 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S11.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s22_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s22;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s22) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw
@@ -347,16 +303,15 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S22.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s22 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s22 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S22.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s33_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s33;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s33) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw
@@ -369,16 +324,15 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S33.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s33 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s33 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S33.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s12_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s12;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s12) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw
@@ -391,16 +345,15 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S12.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s12 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s12 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S12.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s13_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s13;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s13) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw
@@ -413,16 +366,15 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S13.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s13 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s13 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S13.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s21_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s21;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s21) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw
@@ -435,16 +387,15 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S21.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s21 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s21 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S21.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s23_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s23;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s23) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw
@@ -457,16 +408,15 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S23.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s23 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s23 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S23.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s31_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s31;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s31) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw
@@ -479,16 +429,15 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S31.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s31 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s31 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S31.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to 32.767.
     #[must_use]
     pub fn redundant_magnetometer_sensitivity_matrix_s32_physical(&self) -> f64 {
-        let raw = self.redundant_magnetometer_sensitivity_matrix_s32;
-        f64::from(raw) / 1_000.0
+        f64::from(self.redundant_magnetometer_sensitivity_matrix_s32) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw
@@ -501,8 +450,8 @@ impl RedundantMagnetometerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S32.raw(value)?;
-        self.redundant_magnetometer_sensitivity_matrix_s32 = raw;
+        self.redundant_magnetometer_sensitivity_matrix_s32 =
+            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S32.raw(value)?;
         Ok(())
     }
 }

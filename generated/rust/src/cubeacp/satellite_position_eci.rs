@@ -5,15 +5,17 @@
 use crate::support::{put, take, Error, Scale};
 
 /// Satellite Position (ECI): telemetry 148, 6 bytes. Table 104.
+///
+/// Bit 31 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SatellitePositionEci {
-    /// X position (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 km.
+    /// X position: bits 0 to 15, raw -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 km.
     pub x_position: i16,
-    /// Y position (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 km.
+    /// Y position: bits 16 to 31, raw -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 km.
     pub y_position: i16,
-    /// Z position (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 km.
+    /// Z position: bits 32 to 47, raw -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 km.
     pub z_position: i16,
 }
 
@@ -22,7 +24,7 @@ impl SatellitePositionEci {
     pub const NAME: &'static str = "Satellite Position (ECI)";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 148;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

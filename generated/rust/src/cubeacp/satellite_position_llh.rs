@@ -7,17 +7,19 @@ use crate::support::{put, take, Error, Scale};
 /// Satellite Position (LLH): telemetry 150, 6 bytes. Table 106.
 ///
 /// Latitude, longitude and altitude in the WGS-84 frame.
+///
+/// Bit 33 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SatellitePositionLlh {
-    /// Latitude (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
+    /// Latitude: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     pub latitude: i16,
-    /// Longitude (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
+    /// Longitude: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
     pub longitude: i16,
-    /// Altitude (bits 32 to 47): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
+    /// Altitude: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
     ///
     /// Note ACP-067 (open): Position and altitude do not reach equally far.
     pub altitude: u16,
@@ -28,7 +30,7 @@ impl SatellitePositionLlh {
     pub const NAME: &'static str = "Satellite Position (LLH)";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 150;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

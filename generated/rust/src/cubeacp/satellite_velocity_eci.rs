@@ -5,15 +5,17 @@
 use crate::support::{put, take, Error, Scale};
 
 /// Satellite Velocity (ECI): telemetry 149, 6 bytes. Table 105.
+///
+/// Bit 32 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SatelliteVelocityEci {
-    /// X Velocity (bits 0 to 15): raw, -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 m/s.
+    /// X Velocity: bits 0 to 15, raw -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 m/s.
     pub x_velocity: i16,
-    /// Y Velocity (bits 16 to 31): raw, -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 m/s.
+    /// Y Velocity: bits 16 to 31, raw -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 m/s.
     pub y_velocity: i16,
-    /// Z Velocity (bits 32 to 47): raw, -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 m/s.
+    /// Z Velocity: bits 32 to 47, raw -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 m/s.
     pub z_velocity: i16,
 }
 
@@ -22,7 +24,7 @@ impl SatelliteVelocityEci {
     pub const NAME: &'static str = "Satellite Velocity (ECI)";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 149;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -19,7 +19,7 @@ impl SaveConfiguration {
     pub const NAME: &'static str = "Save Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 63;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -14,9 +14,9 @@ use crate::support::{Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SaveImage {
-    /// Camera Select (bits 0 to 7).
+    /// Camera Select: bits 0 to 7.
     pub camera_select: Coded<enums::CamSelect>,
-    /// Image Size (bits 8 to 15).
+    /// Image Size: bits 8 to 15.
     pub image_size: Coded<enums::ImSize>,
 }
 
@@ -25,7 +25,7 @@ impl SaveImage {
     pub const NAME: &'static str = "Save Image";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 80;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -19,7 +19,7 @@ impl SaveOrbitParameters {
     pub const NAME: &'static str = "Save Orbit Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 64;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

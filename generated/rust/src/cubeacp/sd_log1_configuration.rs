@@ -5,31 +5,32 @@
 use super::enums;
 use crate::support::{array, put, put_array, take, Coded, Error};
 
-/// SD Log1 Configuration: configuration, set by 104 and got by 235, 13 bytes. Table 210.
+/// SD Log1 Configuration: configuration, set by telecommand 104, got by telemetry 235, 13 bytes.
+/// Table 210.
 ///
 /// Which frames go into log 1, how often, and to which card.
 ///
-/// Note ACP-185 (certain): Log1, LOG1, Log 1.
+/// Note ACP-185 (certain): Log1 is LOG1 in its description.
 ///
 /// Note ACP-186 (open): A log that is reconfigured while it runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SdLog1Configuration {
-    /// Log Selection (bits 0 to 79): 10 bytes.
+    /// Log Selection: bytes 0 to 9.
     ///
     /// Mask of up to 80 telemetry frames.
     ///
     /// Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub log_selection: [u8; 10],
-    /// Log Period (bits 80 to 95): 0 to 65535.
+    /// Log Period: bits 80 to 95, raw 0 to 65535.
     ///
     /// 0: logging disabled.
     ///
     /// Note ACP-183 (open): Log period has no unit.
     pub log_period: u16,
-    /// Log Destination (bits 96 to 103).
+    /// Log Destination: bits 96 to 103.
     pub log_destination: Coded<enums::SdLogSelect>,
 }
 
@@ -38,9 +39,9 @@ impl SdLog1Configuration {
     pub const NAME: &'static str = "SD Log1 Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 13;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 104;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 235;
     /// Log Period: logging disabled.
     pub const LOG_PERIOD_LOGGING_DISABLED: u16 = 0;

@@ -5,31 +5,32 @@
 use super::enums;
 use crate::support::{array, put, put_array, take, Coded, Error};
 
-/// SD Log2 Configuration: configuration, set by 105 and got by 236, 13 bytes. Table 212.
+/// SD Log2 Configuration: configuration, set by telecommand 105, got by telemetry 236, 13 bytes.
+/// Table 212.
 ///
 /// Which frames go into log 2, how often, and to which card.
 ///
-/// Note ACP-185 (certain): Log1, LOG1, Log 1.
+/// Note ACP-185 (certain): Log1 is LOG1 in its description.
 ///
 /// Note ACP-186 (open): A log that is reconfigured while it runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SdLog2Configuration {
-    /// Log Selection (bits 0 to 79): 10 bytes.
+    /// Log Selection: bytes 0 to 9.
     ///
     /// Mask of up to 80 telemetry frames.
     ///
     /// Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub log_selection: [u8; 10],
-    /// Log Period (bits 80 to 95): 0 to 65535.
+    /// Log Period: bits 80 to 95, raw 0 to 65535.
     ///
     /// 0: logging disabled.
     ///
     /// Note ACP-183 (open): Log period has no unit.
     pub log_period: u16,
-    /// Log Destination (bits 96 to 103).
+    /// Log Destination: bits 96 to 103.
     pub log_destination: Coded<enums::SdLogSelect>,
 }
 
@@ -38,9 +39,9 @@ impl SdLog2Configuration {
     pub const NAME: &'static str = "SD Log2 Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 13;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 105;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 236;
     /// Log Period: logging disabled.
     pub const LOG_PERIOD_LOGGING_DISABLED: u16 = 0;

@@ -6,6 +6,8 @@ use crate::support::{put, take, Error};
 
 /// Secondary Magnetometer Raw Measurements: telemetry 215, 6 bytes. Table 163.
 ///
+/// Bit 58 of the log mask.
+///
 /// Note ACP-051 (certain): Magnetometers have four names for two.
 ///
 /// Note ACP-118 (likely): Secondary magnetometer: fixed or selected.
@@ -13,19 +15,19 @@ use crate::support::{put, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SecondaryMagnetometerRawMeasurements {
-    /// MagX (bits 0 to 15): -32768 to 32767.
+    /// MagX: bits 0 to 15, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
     /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_x: i16,
-    /// MagY (bits 16 to 31): -32768 to 32767.
+    /// MagY: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
     /// Note ACP-082 (open): Raw magnetometer and rate values are A/D values without a scale.
     pub mag_y: i16,
-    /// MagZ (bits 32 to 47): -32768 to 32767.
+    /// MagZ: bits 32 to 47, raw -32768 to 32767.
     ///
     /// Sampled A/D value.
     ///
@@ -38,7 +40,7 @@ impl SecondaryMagnetometerRawMeasurements {
     pub const NAME: &'static str = "Secondary Magnetometer Raw Measurements";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 215;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -8,13 +8,11 @@ use crate::support::{Coded, Error};
 /// ADCS Run Mode: telecommand 10, 1 byte. Table 74.
 ///
 /// Switches the control loop and chooses how it runs.
-///
-/// Note ACP-018 (certain): ADCS Run Mode is a message and an enumeration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetAdcsRunMode {
-    /// Enabled (bits 0 to 7).
+    /// Enabled: bits 0 to 7.
     ///
     /// While off, the control program leaves the ADCS I2C bus alone.
     ///
@@ -27,7 +25,7 @@ impl SetAdcsRunMode {
     pub const NAME: &'static str = "ADCS Run Mode";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 10;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -10,11 +10,13 @@ use crate::support::{put, take, Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetAttitudeControlMode {
-    /// Control Mode (bits 0 to 7).
+    /// Control Mode: bits 0 to 7.
     pub control_mode: Coded<enums::ConModeSelect>,
-    /// Timeout (bits 8 to 23): 0 to 65535 s.
+    /// Timeout: bits 8 to 23, raw 0 to 65535, in s.
     ///
-    /// The mode returns to None when it runs out. 65535: no timeout.
+    /// The mode returns to None when it runs out.
+    ///
+    /// 65535 (0xFFFF): no timeout.
     ///
     /// Note ACP-022 (open): Timeout of a control mode: 0.
     ///
@@ -27,7 +29,7 @@ impl SetAttitudeControlMode {
     pub const NAME: &'static str = "Set Attitude Control Mode";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 13;
     /// Timeout: no timeout.
     pub const TIMEOUT_NO_TIMEOUT: u16 = 65_535;

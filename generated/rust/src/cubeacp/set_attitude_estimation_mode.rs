@@ -10,7 +10,7 @@ use crate::support::{Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetAttitudeEstimationMode {
-    /// Attitude Estimation Mode (bits 0 to 7).
+    /// Attitude Estimation Mode: bits 0 to 7.
     pub attitude_estimation_mode: Coded<enums::EstimModeSelect>,
 }
 
@@ -19,7 +19,7 @@ impl SetAttitudeEstimationMode {
     pub const NAME: &'static str = "Set Attitude Estimation Mode";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 14;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

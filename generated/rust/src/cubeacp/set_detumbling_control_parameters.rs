@@ -4,7 +4,8 @@
 
 use crate::support::{put, take, Error, Scale};
 
-/// Set Detumbling Control Parameters: configuration, set by 38 and got by 208, 14 bytes. Table 195.
+/// Set Detumbling Control Parameters: configuration, set by telecommand 38, got by telemetry 208,
+/// 14 bytes. Table 195.
 ///
 /// Gains and references of the detumbling mode.
 ///
@@ -13,26 +14,28 @@ use crate::support::{put, take, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetDetumblingControlParameters {
-    /// Detumbling Spin Gain (bits 0 to 31): 32-bit float.
+    /// Detumbling Spin Gain: bits 0 to 31, 32-bit float.
     ///
     /// Ks.
     ///
     /// Note ACP-163 (open): Gains have no units.
     pub detumbling_spin_gain: f32,
-    /// Detumbling Damping Gain (bits 32 to 63): 32-bit float.
+    /// Detumbling Damping Gain: bits 32 to 63, 32-bit float.
     ///
     /// Kd.
     ///
     /// Note ACP-163 (open): Gains have no units.
     pub detumbling_damping_gain: f32,
-    /// Reference spin rate (bits 64 to 79): raw, -32768 to 32767; physical `raw*0.001`, -32.768 to
+    /// Reference spin rate: bits 64 to 79, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     ///
-    /// wy-ref. Must be below 0 deg/s.
+    /// wy-ref.
+    ///
+    /// Must be below 0 deg/s.
     ///
     /// Note ACP-162 (certain): Limits of a sign in words only.
     pub reference_spin_rate: i16,
-    /// Fast BDot Detumbling Gain (bits 80 to 111): 32-bit float.
+    /// Fast BDot Detumbling Gain: bits 80 to 111, 32-bit float.
     ///
     /// Kdf.
     ///
@@ -45,11 +48,11 @@ impl SetDetumblingControlParameters {
     pub const NAME: &'static str = "Set Detumbling Control Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 14;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 38;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 208;
-    /// Must be below this: Reference spin rate in deg/s.
+    /// Reference spin rate in deg/s: must be below this.
     pub const REFERENCE_SPIN_RATE_DEG_PER_S_BELOW: f64 = 0.0;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -89,7 +92,7 @@ impl SetDetumblingControlParameters {
         bytes
     }
 
-    /// Reference spin rate in deg/s: -32.768 to 32.767.
+    /// Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s.
     #[must_use]
     pub fn reference_spin_rate_deg_per_s(&self) -> f64 {
         f64::from(self.reference_spin_rate) / 1_000.0

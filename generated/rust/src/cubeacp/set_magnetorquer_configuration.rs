@@ -5,22 +5,23 @@
 use super::enums;
 use crate::support::{Coded, Error};
 
-/// Set Magnetorquer Configuration: configuration, set by 21 and got by 136, 3 bytes. Table 179.
+/// Set Magnetorquer Configuration: configuration, set by telecommand 21, got by telemetry 136, 3
+/// bytes. Table 179.
 ///
 /// Note ACP-125 (certain): Eight messages are named Set and can be read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetMagnetorquerConfiguration {
-    /// Magnetorquer 1 Configuration (bits 0 to 7).
+    /// Magnetorquer 1 Configuration: bits 0 to 7.
     ///
     /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
     pub magnetorquer_1_configuration: Coded<enums::AxisSelect>,
-    /// Magnetorquer 2 Configuration (bits 8 to 15).
+    /// Magnetorquer 2 Configuration: bits 8 to 15.
     ///
     /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
     pub magnetorquer_2_configuration: Coded<enums::AxisSelect>,
-    /// Magnetorquer 3 Configuration (bits 16 to 23).
+    /// Magnetorquer 3 Configuration: bits 16 to 23.
     ///
     /// Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
     pub magnetorquer_3_configuration: Coded<enums::AxisSelect>,
@@ -31,9 +32,9 @@ impl SetMagnetorquerConfiguration {
     pub const NAME: &'static str = "Set Magnetorquer Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 21;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 136;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

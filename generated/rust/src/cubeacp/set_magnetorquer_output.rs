@@ -13,21 +13,21 @@ use crate::support::{put, take, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetMagnetorquerOutput {
-    /// Commanded X Magnetorquer duty cycle (bits 0 to 15): raw, -32768 to 32767; physical `raw =
+    /// Commanded X Magnetorquer duty cycle: bits 0 to 15, raw -32768 to 32767; physical `raw =
     /// value*1000.0`, -32.768 to 32.767.
     ///
     /// Note ACP-030 (certain): Formulas are written in two directions.
     ///
     /// Note ACP-031 (likely): Duty cycle: unit and range are not given.
     pub commanded_x_magnetorquer_duty_cycle: i16,
-    /// Commanded Y Magnetorquer duty cycle (bits 16 to 31): raw, -32768 to 32767; physical `raw =
+    /// Commanded Y Magnetorquer duty cycle: bits 16 to 31, raw -32768 to 32767; physical `raw =
     /// value*1000.0`, -32.768 to 32.767.
     ///
     /// Note ACP-030 (certain): Formulas are written in two directions.
     ///
     /// Note ACP-031 (likely): Duty cycle: unit and range are not given.
     pub commanded_y_magnetorquer_duty_cycle: i16,
-    /// Commanded Z Magnetorquer duty cycle (bits 32 to 47): raw, -32768 to 32767; physical `raw =
+    /// Commanded Z Magnetorquer duty cycle: bits 32 to 47, raw -32768 to 32767; physical `raw =
     /// value*1000.0`, -32.768 to 32.767.
     ///
     /// Note ACP-030 (certain): Formulas are written in two directions.
@@ -41,7 +41,7 @@ impl SetMagnetorquerOutput {
     pub const NAME: &'static str = "Set Magnetorquer Output";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 16;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -95,8 +95,7 @@ impl SetMagnetorquerOutput {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = COMMANDED_X_MAGNETORQUER_DUTY_CYCLE.raw(value)?;
-        self.commanded_x_magnetorquer_duty_cycle = raw;
+        self.commanded_x_magnetorquer_duty_cycle = COMMANDED_X_MAGNETORQUER_DUTY_CYCLE.raw(value)?;
         Ok(())
     }
 
@@ -116,8 +115,7 @@ impl SetMagnetorquerOutput {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = COMMANDED_Y_MAGNETORQUER_DUTY_CYCLE.raw(value)?;
-        self.commanded_y_magnetorquer_duty_cycle = raw;
+        self.commanded_y_magnetorquer_duty_cycle = COMMANDED_Y_MAGNETORQUER_DUTY_CYCLE.raw(value)?;
         Ok(())
     }
 
@@ -137,8 +135,7 @@ impl SetMagnetorquerOutput {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = COMMANDED_Z_MAGNETORQUER_DUTY_CYCLE.raw(value)?;
-        self.commanded_z_magnetorquer_duty_cycle = raw;
+        self.commanded_z_magnetorquer_duty_cycle = COMMANDED_Z_MAGNETORQUER_DUTY_CYCLE.raw(value)?;
         Ok(())
     }
 }

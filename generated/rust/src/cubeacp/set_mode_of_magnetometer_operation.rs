@@ -12,7 +12,7 @@ use crate::support::{Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetModeOfMagnetometerOperation {
-    /// Magnetometer Mode (bits 0 to 7).
+    /// Magnetometer Mode: bits 0 to 7.
     ///
     /// The magnetometer that estimation and control use.
     ///
@@ -25,7 +25,7 @@ impl SetModeOfMagnetometerOperation {
     pub const NAME: &'static str = "Set Mode of Magnetometer Operation";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 56;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -5,7 +5,8 @@
 use super::enums;
 use crate::support::{put, take, Coded, Error, Scale};
 
-/// Set Rate Gyro Configuration: configuration, set by 23 and got by 138, 10 bytes. Table 182.
+/// Set Rate Gyro Configuration: configuration, set by telecommand 23, got by telemetry 138, 10
+/// bytes. Table 182.
 ///
 /// Note ACP-125 (certain): Eight messages are named Set and can be read.
 ///
@@ -14,28 +15,28 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetRateGyroConfiguration {
-    /// Gyro1 Configuration (bits 0 to 7).
+    /// Gyro1 Configuration: bits 0 to 7.
     pub gyro1_configuration: Coded<enums::AxisSelect>,
-    /// Gyro2 Configuration (bits 8 to 15).
+    /// Gyro2 Configuration: bits 8 to 15.
     pub gyro2_configuration: Coded<enums::AxisSelect>,
-    /// Gyro3 Configuration (bits 16 to 23).
+    /// Gyro3 Configuration: bits 16 to 23.
     pub gyro3_configuration: Coded<enums::AxisSelect>,
-    /// X-Rate Sensor Offset (bits 24 to 39): raw, -32768 to 32767; physical `raw*0.001`, -32.768 to
+    /// X-Rate Sensor Offset: bits 24 to 39, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     ///
     /// Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
     pub x_rate_sensor_offset: i16,
-    /// Y-Rate Sensor Offset (bits 40 to 55): raw, -32768 to 32767; physical `raw*0.001`, -32.768 to
+    /// Y-Rate Sensor Offset: bits 40 to 55, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     ///
     /// Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
     pub y_rate_sensor_offset: i16,
-    /// Z-Rate Sensor Offset (bits 56 to 71): raw, -32768 to 32767; physical `raw*0.001`, -32.768 to
+    /// Z-Rate Sensor Offset: bits 56 to 71, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
     /// 32.767 deg/s.
     ///
     /// Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
     pub z_rate_sensor_offset: i16,
-    /// RateSensorMult (bits 72 to 79): 0 to 255.
+    /// RateSensorMult: bits 72 to 79, raw 0 to 255.
     ///
     /// Factor on the rate sensor measurements.
     ///
@@ -48,9 +49,9 @@ impl SetRateGyroConfiguration {
     pub const NAME: &'static str = "Set Rate Gyro Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 10;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 23;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 138;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -5,8 +5,8 @@
 use super::enums;
 use crate::support::{put, take, Coded, Error, Scale};
 
-/// Set Reaction Wheel Control Parameters: configuration, set by 40 and got by 217, 13 bytes. Table
-/// 197\.
+/// Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, got by telemetry
+/// 217, 13 bytes. Table 197.
 ///
 /// Gains and reference of the reaction-wheel mode.
 ///
@@ -15,35 +15,33 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetReactionWheelControlParameters {
-    /// RWheel Proportional Gain (bits 0 to 31): 32-bit float.
+    /// RWheel Proportional Gain: bits 0 to 31, 32-bit float.
     ///
     /// Kp2.
     ///
     /// Note ACP-163 (open): Gains have no units.
     pub rwheel_proportional_gain: f32,
-    /// RWheel Derivative Gain (bits 32 to 63): 32-bit float.
+    /// RWheel Derivative Gain: bits 32 to 63, 32-bit float.
     ///
     /// Kd2.
     ///
     /// Note ACP-163 (open): Gains have no units.
     pub rwheel_derivative_gain: f32,
-    /// Y-Wheel Bias Momentum (bits 64 to 95): 32-bit float, in Nms.
+    /// Y-Wheel Bias Momentum: bits 64 to 95, 32-bit float, in Nms.
     ///
     /// H-bias.
     ///
     /// Note ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels.
     pub y_wheel_bias_momentum: f32,
-    /// Sun-pointing Facet (bits 96 to 102).
+    /// Sun-pointing Facet: bits 96 to 102.
     ///
     /// Body axis that is turned towards the sun.
     ///
     /// Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
     ///
-    /// Note ACP-166 (certain): Facets have 7 bits and 8 bits.
-    ///
     /// Note ACP-177 (open): Sun-pointing facet and special control selection.
     pub sun_pointing_facet: Coded<enums::AxisSelect>,
-    /// Automatic Control Transition due to Wheel Errors (bit 103).
+    /// Automatic Control Transition due to Wheel Errors: bit 103.
     ///
     /// From the wheel modes to Y-Thomson on a wheel error.
     pub control_transition_on_wheel_error: bool,
@@ -54,9 +52,9 @@ impl SetReactionWheelControlParameters {
     pub const NAME: &'static str = "Set Reaction Wheel Control Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 13;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 40;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 217;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -4,7 +4,8 @@
 
 use crate::support::{put, take, Error, Scale};
 
-/// Set Star Tracker Configuration: configuration, set by 37 and got by 202, 53 bytes. Table 188.
+/// Set Star Tracker Configuration: configuration, set by telecommand 37, got by telemetry 202, 53
+/// bytes. Table 188.
 ///
 /// Of CubeStar.
 ///
@@ -15,22 +16,22 @@ use crate::support::{put, take, Error, Scale};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetStarTrackerConfiguration {
-    /// StarTracker Mounting Transform Alpha Angle (bits 0 to 15): raw, -32768 to 32767; physical
+    /// StarTracker Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub star_tracker_mounting_transform_alpha_angle: i16,
-    /// StarTracker Mounting Transform Beta Angle (bits 16 to 31): raw, -32768 to 32767; physical
+    /// StarTracker Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub star_tracker_mounting_transform_beta_angle: i16,
-    /// StarTracker Mounting Transform Gamma Angle (bits 32 to 47): raw, -32768 to 32767; physical
+    /// StarTracker Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
     pub star_tracker_mounting_transform_gamma_angle: i16,
-    /// StarTracker exposure time (bits 48 to 63): 0 to 65535.
+    /// StarTracker exposure time: bits 48 to 63, raw 0 to 65535.
     ///
     /// Register value.
     ///
@@ -38,100 +39,99 @@ pub struct SetStarTrackerConfiguration {
     ///
     /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
     pub star_tracker_exposure_time: u16,
-    /// StarTracker analog gain (bits 64 to 79): 0 to 65535.
+    /// StarTracker analog gain: bits 64 to 79, raw 0 to 65535.
     ///
     /// Register value.
     ///
     /// Note ACP-145 (open): Exposure and gain are register values.
     pub star_tracker_analog_gain: u16,
-    /// StarTracker detection threshold (bits 80 to 87): 0 to 255.
+    /// StarTracker detection threshold: bits 80 to 87, raw 0 to 255.
     ///
     /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     pub star_tracker_detection_threshold: u8,
-    /// StarTracker star threshold (bits 88 to 95): 0 to 255.
+    /// StarTracker star threshold: bits 88 to 95, raw 0 to 255.
     ///
     /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     pub star_tracker_star_threshold: u8,
-    /// Maximum Star Matched (bits 96 to 103): 0 to 255.
+    /// Maximum Star Matched: bits 96 to 103, raw 0 to 255.
     ///
     /// Most stars that are matched.
     ///
     /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     pub maximum_star_matched: u8,
-    /// Detection Timeout duration (bits 104 to 119): 0 to 65535.
+    /// Detection Timeout duration: bits 104 to 119, raw 0 to 65535.
     ///
     /// Note ACP-141 (open): Detection timeout has no unit.
     pub detection_timeout_duration: u16,
-    /// Maximum Star Pixel (bits 120 to 127): 0 to 255.
+    /// Maximum Star Pixel: bits 120 to 127, raw 0 to 255.
     ///
     /// Most pixels of a star.
     pub maximum_star_pixel: u8,
-    /// Minimum Star Pixel (bits 128 to 135): 0 to 255.
+    /// Minimum Star Pixel: bits 128 to 135, raw 0 to 255.
     ///
     /// Fewest pixels of a star.
     pub minimum_star_pixel: u8,
-    /// Star Tracker Error Margin (bits 136 to 143): raw, 0 to 255; physical `raw*0.01`, 0 to 2.55
-    /// %.
+    /// Star Tracker Error Margin: bits 136 to 143, raw 0 to 255; physical `raw*0.01`, 0 to 2.55 %.
     ///
     /// Of the star identification.
     ///
     /// Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
     pub star_tracker_error_margin: u8,
-    /// Star Tracker Delay Time (bits 144 to 159): 0 to 65535 ms.
+    /// Star Tracker Delay Time: bits 144 to 159, raw 0 to 65535, in ms.
     ///
     /// Erratum ACP-140 (certain): milliseconds is ms.
     ///
     /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
     pub star_tracker_delay_time: u16,
-    /// Star Tracker Centroid X (bits 160 to 191): 32-bit float, in pixels.
+    /// Star Tracker Centroid X: bits 160 to 191, 32-bit float, in pixels.
     ///
     /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
     pub star_tracker_centroid_x: f32,
-    /// Star Tracker Centroid Y (bits 192 to 223): 32-bit float, in pixels.
+    /// Star Tracker Centroid Y: bits 192 to 223, 32-bit float, in pixels.
     ///
     /// Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words only.
     pub star_tracker_centroid_y: f32,
-    /// Star Tracker Focal Length (bits 224 to 255): 32-bit float, in mm.
+    /// Star Tracker Focal Length: bits 224 to 255, 32-bit float, in mm.
     pub star_tracker_focal_length: f32,
-    /// K1 radial distortion coefficient (bits 256 to 287): 32-bit float, in gain.
+    /// K1 radial distortion coefficient: bits 256 to 287, 32-bit float, in gain.
     ///
     /// Note ACP-144 (certain): gain is no unit.
     pub k1_radial_distortion_coefficient: f32,
-    /// K2 radial distortion coefficient (bits 288 to 319): 32-bit float, in gain.
+    /// K2 radial distortion coefficient: bits 288 to 319, 32-bit float, in gain.
     ///
     /// Note ACP-144 (certain): gain is no unit.
     pub k2_radial_distortion_coefficient: f32,
-    /// P1 tangential distortion coefficient (bits 320 to 351): 32-bit float, in gain.
+    /// P1 tangential distortion coefficient: bits 320 to 351, 32-bit float, in gain.
     ///
     /// Note ACP-144 (certain): gain is no unit.
     pub p1_tangential_distortion_coefficient: f32,
-    /// P2 tangential distortion coefficient (bits 352 to 383): 32-bit float, in gain.
+    /// P2 tangential distortion coefficient: bits 352 to 383, 32-bit float, in gain.
     ///
     /// Note ACP-144 (certain): gain is no unit.
     pub p2_tangential_distortion_coefficient: f32,
-    /// Star tracking window width (bits 384 to 391): 0 to 255.
+    /// Star tracking window width: bits 384 to 391, raw 0 to 255.
     ///
     /// Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
     ///
     /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
     pub star_tracking_window_width: u8,
-    /// Star Tracking Margin (bits 392 to 399): raw, 0 to 255; physical `raw/100.0`, 0 to 2.55.
+    /// Star Tracking Margin: bits 392 to 399, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
     ///
     /// Note ACP-143 (open): Margins and search width have no unit.
     ///
     /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
     pub star_tracking_margin: u8,
-    /// Star Validation Margin (bits 400 to 407): raw, 0 to 255; physical `raw/100.0`, 0 to 2.55.
+    /// Star Validation Margin: bits 400 to 407, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
     ///
     /// Note ACP-143 (open): Margins and search width have no unit.
     pub star_validation_margin: u8,
-    /// Star Tracking Module Enable (bit 408).
+    /// Star Tracking Module Enable: bit 408.
     pub star_tracking_module_enable: bool,
-    /// Star Tracking Location Prediction Enable (bit 409).
+    /// Star Tracking Location Prediction Enable: bit 409.
     ///
     /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
     pub star_tracking_location_prediction_enable: bool,
-    /// Star Tracking Search Width (bits 416 to 423): raw, 0 to 255; physical `raw/5.0`, 0 to 51.
+    /// Star Tracking Search Width: bits 416 to 423, raw 0 to 255; physical `raw/5.0`, 0 to 51.
     ///
     /// Note ACP-143 (open): Margins and search width have no unit.
     pub star_tracking_search_width: u8,
@@ -142,9 +142,9 @@ impl SetStarTrackerConfiguration {
     pub const NAME: &'static str = "Set Star Tracker Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 53;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 37;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 202;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -199,12 +199,9 @@ impl SetStarTrackerConfiguration {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; 53] {
         let mut bytes = [0; 53];
-        let value = self.star_tracker_mounting_transform_alpha_angle;
-        put!(value.to_le_bytes() => bytes[0; 2]);
-        let value = self.star_tracker_mounting_transform_beta_angle;
-        put!(value.to_le_bytes() => bytes[2; 2]);
-        let value = self.star_tracker_mounting_transform_gamma_angle;
-        put!(value.to_le_bytes() => bytes[4; 2]);
+        put!(self.star_tracker_mounting_transform_alpha_angle.to_le_bytes() => bytes[0; 2]);
+        put!(self.star_tracker_mounting_transform_beta_angle.to_le_bytes() => bytes[2; 2]);
+        put!(self.star_tracker_mounting_transform_gamma_angle.to_le_bytes() => bytes[4; 2]);
         put!(self.star_tracker_exposure_time.to_le_bytes() => bytes[6; 2]);
         put!(self.star_tracker_analog_gain.to_le_bytes() => bytes[8; 2]);
         bytes[10] = self.star_tracker_detection_threshold;
@@ -226,8 +223,7 @@ impl SetStarTrackerConfiguration {
         bytes[49] = self.star_tracking_margin;
         bytes[50] = self.star_validation_margin;
         bytes[51] |= u8::from(self.star_tracking_module_enable);
-        let value = self.star_tracking_location_prediction_enable;
-        bytes[51] |= u8::from(value) << 1;
+        bytes[51] |= u8::from(self.star_tracking_location_prediction_enable) << 1;
         bytes[52] = self.star_tracking_search_width;
         bytes
     }
@@ -235,8 +231,7 @@ impl SetStarTrackerConfiguration {
     /// StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn star_tracker_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        let raw = self.star_tracker_mounting_transform_alpha_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.star_tracker_mounting_transform_alpha_angle) / 100.0
     }
 
     /// Sets StarTracker Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -249,16 +244,15 @@ impl SetStarTrackerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = STAR_TRACKER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
-        self.star_tracker_mounting_transform_alpha_angle = raw;
+        self.star_tracker_mounting_transform_alpha_angle =
+            STAR_TRACKER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn star_tracker_mounting_transform_beta_angle_deg(&self) -> f64 {
-        let raw = self.star_tracker_mounting_transform_beta_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.star_tracker_mounting_transform_beta_angle) / 100.0
     }
 
     /// Sets StarTracker Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -271,16 +265,15 @@ impl SetStarTrackerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = STAR_TRACKER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
-        self.star_tracker_mounting_transform_beta_angle = raw;
+        self.star_tracker_mounting_transform_beta_angle =
+            STAR_TRACKER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
         Ok(())
     }
 
     /// StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
     pub fn star_tracker_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        let raw = self.star_tracker_mounting_transform_gamma_angle;
-        f64::from(raw) / 100.0
+        f64::from(self.star_tracker_mounting_transform_gamma_angle) / 100.0
     }
 
     /// Sets StarTracker Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -293,8 +286,8 @@ impl SetStarTrackerConfiguration {
         &mut self,
         value: f64,
     ) -> Result<(), Error> {
-        let raw = STAR_TRACKER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
-        self.star_tracker_mounting_transform_gamma_angle = raw;
+        self.star_tracker_mounting_transform_gamma_angle =
+            STAR_TRACKER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
         Ok(())
     }
 

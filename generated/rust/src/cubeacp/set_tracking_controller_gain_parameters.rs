@@ -5,8 +5,8 @@
 use super::enums;
 use crate::support::{put, take, Coded, Error};
 
-/// Set Tracking Controller Gain Parameters: configuration, set by 54 and got by 221, 13 bytes.
-/// Table 198.
+/// Set Tracking Controller Gain Parameters: configuration, set by telecommand 54, got by telemetry
+/// 221, 13 bytes. Table 198.
 ///
 /// Gains of the tracking mode.
 ///
@@ -15,25 +15,25 @@ use crate::support::{put, take, Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetTrackingControllerGainParameters {
-    /// Tracking Proportional Gain (bits 0 to 31): 32-bit float.
+    /// Tracking Proportional Gain: bits 0 to 31, 32-bit float.
     ///
     /// Kp3.
     ///
     /// Note ACP-163 (open): Gains have no units.
     pub tracking_proportional_gain: f32,
-    /// Tracking Derivative Gain (bits 32 to 63): 32-bit float.
+    /// Tracking Derivative Gain: bits 32 to 63, 32-bit float.
     ///
     /// Kd3.
     ///
     /// Note ACP-163 (open): Gains have no units.
     pub tracking_derivative_gain: f32,
-    /// Tracking Integral Gain (bits 64 to 95): 32-bit float.
+    /// Tracking Integral Gain: bits 64 to 95, 32-bit float.
     ///
     /// Ki3.
     ///
     /// Note ACP-163 (open): Gains have no units.
     pub tracking_integral_gain: f32,
-    /// Target-tracking Facet (bits 96 to 103).
+    /// Target-tracking Facet: bits 96 to 103.
     ///
     /// Body axis that is pointed at the target.
     ///
@@ -46,9 +46,9 @@ impl SetTrackingControllerGainParameters {
     pub const NAME: &'static str = "Set Tracking Controller Gain Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 13;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 54;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 221;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

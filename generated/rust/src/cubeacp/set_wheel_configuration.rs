@@ -5,26 +5,27 @@
 use super::enums;
 use crate::support::{Coded, Error};
 
-/// Set Wheel Configuration: configuration, set by 22 and got by 137, 4 bytes. Table 181.
+/// Set Wheel Configuration: configuration, set by telecommand 22, got by telemetry 137, 4 bytes.
+/// Table 181.
 ///
 /// Note ACP-125 (certain): Eight messages are named Set and can be read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetWheelConfiguration {
-    /// RW1 Configuration (bits 0 to 7).
+    /// RW1 Configuration: bits 0 to 7.
     ///
     /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
     pub rw1_configuration: Coded<enums::AxisSelect>,
-    /// RW2 Configuration (bits 8 to 15).
+    /// RW2 Configuration: bits 8 to 15.
     ///
     /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
     pub rw2_configuration: Coded<enums::AxisSelect>,
-    /// RW3 Configuration (bits 16 to 23).
+    /// RW3 Configuration: bits 16 to 23.
     ///
     /// Note ACP-129 (open): Reaction wheels are RW1 and RW-X.
     pub rw3_configuration: Coded<enums::AxisSelect>,
-    /// RW4 Configuration (bits 24 to 31).
+    /// RW4 Configuration: bits 24 to 31.
     ///
     /// Wheel 4 or the momentum wheel.
     ///
@@ -39,9 +40,9 @@ impl SetWheelConfiguration {
     pub const NAME: &'static str = "Set Wheel Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 4;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 22;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 137;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

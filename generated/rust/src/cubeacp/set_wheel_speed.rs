@@ -13,11 +13,11 @@ use crate::support::{put, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetWheelSpeed {
-    /// Commanded X speed (bits 0 to 15): -32768 to 32767 rpm.
+    /// Commanded X speed: bits 0 to 15, raw -32768 to 32767, in rpm.
     pub commanded_x_speed: i16,
-    /// Commanded Y speed (bits 16 to 31): -32768 to 32767 rpm.
+    /// Commanded Y speed: bits 16 to 31, raw -32768 to 32767, in rpm.
     pub commanded_y_speed: i16,
-    /// Commanded Z speed (bits 32 to 47): -32768 to 32767 rpm.
+    /// Commanded Z speed: bits 32 to 47, raw -32768 to 32767, in rpm.
     pub commanded_z_speed: i16,
 }
 
@@ -26,7 +26,7 @@ impl SetWheelSpeed {
     pub const NAME: &'static str = "Set Wheel Speed";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 17;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

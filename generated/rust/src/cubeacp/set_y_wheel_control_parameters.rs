@@ -4,7 +4,8 @@
 
 use crate::support::{put, take, Error};
 
-/// Set Y-Wheel Control Parameters: configuration, set by 39 and got by 209, 20 bytes. Table 196.
+/// Set Y-Wheel Control Parameters: configuration, set by telecommand 39, got by telemetry 209, 20
+/// bytes. Table 196.
 ///
 /// Gains and reference of the Y-wheel mode.
 ///
@@ -13,7 +14,7 @@ use crate::support::{put, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct SetYWheelControlParameters {
-    /// Y-Momentum Control Gain (bits 0 to 31): 32-bit float.
+    /// Y-Momentum Control Gain: bits 0 to 31, 32-bit float.
     ///
     /// Kh.
     ///
@@ -21,7 +22,7 @@ pub struct SetYWheelControlParameters {
     ///
     /// Note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel.
     pub y_momentum_control_gain: f32,
-    /// Y-momentum Nutation Damping Gain (bits 32 to 63): 32-bit float.
+    /// Y-momentum Nutation Damping Gain: bits 32 to 63, 32-bit float.
     ///
     /// Kn.
     ///
@@ -29,21 +30,23 @@ pub struct SetYWheelControlParameters {
     ///
     /// Note ACP-164 (certain): Y-Momentum, Y-momentum and Y-Wheel.
     pub y_momentum_nutation_damping_gain: f32,
-    /// Y-momentum Proportional Gain (bits 64 to 95): 32-bit float.
+    /// Y-momentum Proportional Gain: bits 64 to 95, 32-bit float.
     ///
     /// Kp1.
     ///
     /// Note ACP-163 (open): Gains have no units.
     pub y_momentum_proportional_gain: f32,
-    /// Y-momentum Derivative Gain (bits 96 to 127): 32-bit float.
+    /// Y-momentum Derivative Gain: bits 96 to 127, 32-bit float.
     ///
     /// Kd1.
     ///
     /// Note ACP-163 (open): Gains have no units.
     pub y_momentum_derivative_gain: f32,
-    /// Reference Wheel Momentum (bits 128 to 159): 32-bit float, in Nms.
+    /// Reference Wheel Momentum: bits 128 to 159, 32-bit float, in Nms.
     ///
-    /// H-ref. Must be below 0 Nms.
+    /// H-ref.
+    ///
+    /// Must be below 0 Nms.
     ///
     /// Note ACP-162 (certain): Limits of a sign in words only.
     pub reference_wheel_momentum: f32,
@@ -54,11 +57,11 @@ impl SetYWheelControlParameters {
     pub const NAME: &'static str = "Set Y-Wheel Control Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 20;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 39;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 209;
-    /// Must be below this: Reference Wheel Momentum in Nms.
+    /// Reference Wheel Momentum in Nms: must be below this.
     pub const REFERENCE_WHEEL_MOMENTUM_BELOW: f64 = 0.0;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -4,28 +4,29 @@
 
 use crate::support::{put, take, Error};
 
-/// SGP4 Orbit Parameters: configuration, set by 45 and got by 207, 64 bytes. Table 194.
+/// SGP4 Orbit Parameters: configuration, set by telecommand 45, got by telemetry 207, 64 bytes.
+/// Table 194.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Sgp4OrbitParameters {
-    /// Inclination (bits 0 to 63): 64-bit float, in deg.
+    /// Inclination: bits 0 to 63, 64-bit float, in deg.
     pub inclination: f64,
-    /// Eccentricity (bits 64 to 127): 64-bit float.
+    /// Eccentricity: bits 64 to 127, 64-bit float.
     pub eccentricity: f64,
-    /// Right-ascension of the Ascending Node (bits 128 to 191): 64-bit float, in deg.
+    /// Right-ascension of the Ascending Node: bits 128 to 191, 64-bit float, in deg.
     pub right_ascension_of_the_ascending_node: f64,
-    /// Argument of Perigee (bits 192 to 255): 64-bit float, in deg.
+    /// Argument of Perigee: bits 192 to 255, 64-bit float, in deg.
     pub argument_of_perigee: f64,
-    /// B-Star drag term (bits 256 to 319): 64-bit float.
+    /// B-Star drag term: bits 256 to 319, 64-bit float.
     ///
     /// Note ACP-161 (open): B-Star has no unit.
     pub b_star_drag_term: f64,
-    /// Mean Motion (bits 320 to 383): 64-bit float, in orbits/day.
+    /// Mean Motion: bits 320 to 383, 64-bit float, in orbits/day.
     pub mean_motion: f64,
-    /// Mean Anomaly (bits 384 to 447): 64-bit float, in deg.
+    /// Mean Anomaly: bits 384 to 447, 64-bit float, in deg.
     pub mean_anomaly: f64,
-    /// Epoch (bits 448 to 511): 64-bit float, in year.day.
+    /// Epoch: bits 448 to 511, 64-bit float, in year.day.
     ///
     /// Year and day in one number.
     ///
@@ -38,9 +39,9 @@ impl Sgp4OrbitParameters {
     pub const NAME: &'static str = "SGP4 Orbit Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 64;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 45;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 207;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
@@ -79,8 +80,7 @@ impl Sgp4OrbitParameters {
         let mut bytes = [0; 64];
         put!(self.inclination.to_le_bytes() => bytes[0; 8]);
         put!(self.eccentricity.to_le_bytes() => bytes[8; 8]);
-        let value = self.right_ascension_of_the_ascending_node;
-        put!(value.to_le_bytes() => bytes[16; 8]);
+        put!(self.right_ascension_of_the_ascending_node.to_le_bytes() => bytes[16; 8]);
         put!(self.argument_of_perigee.to_le_bytes() => bytes[24; 8]);
         put!(self.b_star_drag_term.to_le_bytes() => bytes[32; 8]);
         put!(self.mean_motion.to_le_bytes() => bytes[40; 8]);

@@ -5,23 +5,25 @@
 use crate::support::{put, take, Error, Scale};
 
 /// Star 1 Body Vector: telemetry 181, 6 bytes. Table 139.
+///
+/// Bit 15 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Star1BodyVector {
-    /// Star1BX (bits 0 to 15): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star1BX: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     ///
     /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star1_body_x: i16,
-    /// Star1BY (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star1BY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     ///
     /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star1_body_y: i16,
-    /// Star1BZ (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star1BZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     ///
@@ -34,7 +36,7 @@ impl Star1BodyVector {
     pub const NAME: &'static str = "Star 1 Body Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 181;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

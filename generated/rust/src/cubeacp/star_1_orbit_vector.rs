@@ -5,23 +5,25 @@
 use crate::support::{put, take, Error, Scale};
 
 /// Star 1 Orbit Vector: telemetry 184, 6 bytes. Table 142.
+///
+/// Bit 16 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Star1OrbitVector {
-    /// Star1OX (bits 0 to 15): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star1OX: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     ///
     /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star1_orbit_x: i16,
-    /// Star1OY (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star1OY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     ///
     /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star1_orbit_y: i16,
-    /// Star1OZ (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star1OZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     ///
@@ -34,7 +36,7 @@ impl Star1OrbitVector {
     pub const NAME: &'static str = "Star 1 Orbit Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 184;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

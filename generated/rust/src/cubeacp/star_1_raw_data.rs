@@ -7,21 +7,23 @@ use crate::support::{put, take, Error};
 /// Star 1 Raw Data: telemetry 212, 6 bytes. Table 160.
 ///
 /// Catalogue index and detected position.
+///
+/// Bit 54 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Star1RawData {
-    /// Catalogue Star 1 (bits 0 to 15): 0 to 65535.
+    /// Catalogue Star 1: bits 0 to 15, raw 0 to 65535.
     ///
     /// Number in the star catalogue.
     ///
     /// Note ACP-117 (open): Catalogue number or catalogue index.
     pub catalogue_star_1: u16,
-    /// Centroid X Star 1 (bits 16 to 31): -32768 to 32767.
+    /// Centroid X Star 1: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Note ACP-116 (open): Star centroids have no scale.
     pub centroid_x_star_1: i16,
-    /// Centroid Y Star 1 (bits 32 to 47): -32768 to 32767.
+    /// Centroid Y Star 1: bits 32 to 47, raw -32768 to 32767.
     ///
     /// Note ACP-116 (open): Star centroids have no scale.
     pub centroid_y_star_1: i16,
@@ -32,7 +34,7 @@ impl Star1RawData {
     pub const NAME: &'static str = "Star 1 Raw Data";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 212;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

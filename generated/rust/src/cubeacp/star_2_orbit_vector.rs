@@ -5,23 +5,25 @@
 use crate::support::{put, take, Error, Scale};
 
 /// Star 2 Orbit Vector: telemetry 185, 6 bytes. Table 143.
+///
+/// Bit 18 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Star2OrbitVector {
-    /// Star2OX (bits 0 to 15): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star2OX: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     ///
     /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star2_orbit_x: i16,
-    /// Star2OY (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star2OY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     ///
     /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star2_orbit_y: i16,
-    /// Star2OZ (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star2OZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     ///
@@ -34,7 +36,7 @@ impl Star2OrbitVector {
     pub const NAME: &'static str = "Star 2 Orbit Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 185;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -7,21 +7,23 @@ use crate::support::{put, take, Error};
 /// Star 2 Raw Data: telemetry 213, 6 bytes. Table 161.
 ///
 /// Catalogue index and detected position.
+///
+/// Bit 55 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Star2RawData {
-    /// Catalogue Star 2 (bits 0 to 15): 0 to 65535.
+    /// Catalogue Star 2: bits 0 to 15, raw 0 to 65535.
     ///
     /// Number in the star catalogue.
     ///
     /// Note ACP-117 (open): Catalogue number or catalogue index.
     pub catalogue_star_2: u16,
-    /// Centroid X Star 2 (bits 16 to 31): -32768 to 32767.
+    /// Centroid X Star 2: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Note ACP-116 (open): Star centroids have no scale.
     pub centroid_x_star_2: i16,
-    /// Centroid Y Star 2 (bits 32 to 47): -32768 to 32767.
+    /// Centroid Y Star 2: bits 32 to 47, raw -32768 to 32767.
     ///
     /// Note ACP-116 (open): Star centroids have no scale.
     pub centroid_y_star_2: i16,
@@ -32,7 +34,7 @@ impl Star2RawData {
     pub const NAME: &'static str = "Star 2 Raw Data";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 213;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

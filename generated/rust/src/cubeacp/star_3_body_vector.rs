@@ -5,23 +5,25 @@
 use crate::support::{put, take, Error, Scale};
 
 /// Star 3 Body Vector: telemetry 183, 6 bytes. Table 141.
+///
+/// Bit 19 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Star3BodyVector {
-    /// Star3BX (bits 0 to 15): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star3BX: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     ///
     /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star3_body_x: i16,
-    /// Star3BY (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star3BY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     ///
     /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star3_body_y: i16,
-    /// Star3BZ (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star3BZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the body frame.
     ///
@@ -34,7 +36,7 @@ impl Star3BodyVector {
     pub const NAME: &'static str = "Star 3 Body Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 183;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -5,23 +5,25 @@
 use crate::support::{put, take, Error, Scale};
 
 /// Star 3 Orbit Vector: telemetry 186, 6 bytes. Table 144.
+///
+/// Bit 20 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Star3OrbitVector {
-    /// Star3OX (bits 0 to 15): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star3OX: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     ///
     /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star3_orbit_x: i16,
-    /// Star3OY (bits 16 to 31): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star3OY: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     ///
     /// Note ACP-091 (certain): Star vectors: X-vector is a component.
     pub star3_orbit_y: i16,
-    /// Star3OZ (bits 32 to 47): raw, -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
+    /// Star3OZ: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
     /// Vector in the orbit frame.
     ///
@@ -34,7 +36,7 @@ impl Star3OrbitVector {
     pub const NAME: &'static str = "Star 3 Orbit Vector";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 186;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

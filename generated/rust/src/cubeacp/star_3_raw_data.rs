@@ -7,21 +7,23 @@ use crate::support::{put, take, Error};
 /// Star 3 Raw Data: telemetry 214, 6 bytes. Table 162.
 ///
 /// Catalogue index and detected position.
+///
+/// Bit 56 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Star3RawData {
-    /// Catalogue Star 3 (bits 0 to 15): 0 to 65535.
+    /// Catalogue Star 3: bits 0 to 15, raw 0 to 65535.
     ///
     /// Number in the star catalogue.
     ///
     /// Note ACP-117 (open): Catalogue number or catalogue index.
     pub catalogue_star_3: u16,
-    /// Centroid X Star 3 (bits 16 to 31): -32768 to 32767.
+    /// Centroid X Star 3: bits 16 to 31, raw -32768 to 32767.
     ///
     /// Note ACP-116 (open): Star centroids have no scale.
     pub centroid_x_star_3: i16,
-    /// Centroid Y Star 3 (bits 32 to 47): -32768 to 32767.
+    /// Centroid Y Star 3: bits 32 to 47, raw -32768 to 32767.
     ///
     /// Note ACP-116 (open): Star centroids have no scale.
     pub centroid_y_star_3: i16,
@@ -32,7 +34,7 @@ impl Star3RawData {
     pub const NAME: &'static str = "Star 3 Raw Data";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 214;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

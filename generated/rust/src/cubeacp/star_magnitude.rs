@@ -7,23 +7,25 @@ use crate::support::{put, take, Error};
 /// Star Magnitude: telemetry 187, 6 bytes. Table 145.
 ///
 /// Of the identified stars, in instrument magnitudes.
+///
+/// Bit 53 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct StarMagnitude {
-    /// Magnitude Star 1 (bits 0 to 15): 0 to 65535.
+    /// Magnitude Star 1: bits 0 to 15, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
     /// Note ACP-092 (open): Star magnitudes have no scale.
     pub magnitude_star_1: u16,
-    /// Magnitude Star 2 (bits 16 to 31): 0 to 65535.
+    /// Magnitude Star 2: bits 16 to 31, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
     /// Note ACP-092 (open): Star magnitudes have no scale.
     pub magnitude_star_2: u16,
-    /// Magnitude Star 3 (bits 32 to 47): 0 to 65535.
+    /// Magnitude Star 3: bits 32 to 47, raw 0 to 65535.
     ///
     /// Instrument magnitude.
     ///
@@ -36,7 +38,7 @@ impl StarMagnitude {
     pub const NAME: &'static str = "Star Magnitude";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 187;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

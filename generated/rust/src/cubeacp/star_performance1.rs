@@ -9,45 +9,43 @@ use crate::support::{Coded, Error};
 ///
 /// Quality of the star measurement, frame 1.
 ///
+/// Bit 52 of the log mask.
+///
 /// Note ACP-096 (certain): Star Performance2 has the description of Star Performance1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct StarPerformance1 {
-    /// Number of stars detected (bits 0 to 7): 0 to 255 stars.
+    /// Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     pub number_of_stars_detected: u8,
-    /// Star image noise (bits 8 to 15): 0 to 255 noise.
+    /// Star image noise: bits 8 to 15, raw 0 to 255, in noise.
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
-    ///
-    /// Note ACP-094 (open): Star image noise has no scale.
     pub star_image_noise: u8,
-    /// Invalid Stars (bits 16 to 23): 0 to 255 Invalid stars.
+    /// Invalid Stars: bits 16 to 23, raw 0 to 255, in Invalid stars.
     ///
     /// How many of the detected stars are invalid.
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     pub invalid_stars: u8,
-    /// Number of stars identified (bits 24 to 31): 0 to 255 stars.
+    /// Number of stars identified: bits 24 to 31, raw 0 to 255, in stars.
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
     pub number_of_stars_identified: u8,
-    /// Identification mode (bits 32 to 39).
+    /// Identification mode: bits 32 to 39.
     pub identification_mode: Coded<enums::StarIdModeVal>,
-    /// Image dark value (bits 40 to 47): 0 to 255 8-bit pixel value.
+    /// Image dark value: bits 40 to 47, raw 0 to 255, in 8-bit pixel value.
     ///
     /// Mean of the centre line of the image.
     ///
     /// Note ACP-093 (certain): Units that are no units: stars, noise, Invalid stars, 8-bit pixel
     /// value.
-    ///
-    /// Note ACP-095 (open): Image dark value is the mean of a centre line.
     pub image_dark_value: u8,
 }
 
@@ -56,7 +54,7 @@ impl StarPerformance1 {
     pub const NAME: &'static str = "Star Performance1";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 188;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

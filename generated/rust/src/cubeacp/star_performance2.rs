@@ -8,42 +8,44 @@ use crate::support::{flags, put, take, Error};
 ///
 /// Quality of the star measurement, frame 2.
 ///
+/// Bit 64 of the log mask.
+///
 /// Note ACP-096 (certain): Star Performance2 has the description of Star Performance1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct StarPerformance2 {
-    /// Image Capture Success (bit 0).
+    /// Image Capture Success: bit 0.
     pub image_capture_success: bool,
-    /// Detection Success (bit 1).
+    /// Detection Success: bit 1.
     pub detection_success: bool,
-    /// Identification Success (bit 2).
+    /// Identification Success: bit 2.
     pub identification_success: bool,
-    /// AttitudeSuccess (bit 3).
+    /// AttitudeSuccess: bit 3.
     ///
     /// Note ACP-115 (certain): AttitudeSuccess is written in one piece.
     pub attitude_success: bool,
-    /// Processing Time Error (bit 4).
+    /// Processing Time Error: bit 4.
     pub processing_time_error: bool,
-    /// Tracking Module Enabled (bit 5).
+    /// Tracking Module Enabled: bit 5.
     pub tracking_module_enabled: bool,
-    /// Prediction Enabled (bit 6).
+    /// Prediction Enabled: bit 6.
     pub prediction_enabled: bool,
-    /// Comms error (bit 7).
+    /// Comms error: bit 7.
     pub comms_error: bool,
-    /// Sample Period (bits 8 to 23): 0 to 65535.
+    /// Sample Period: bits 8 to 23, raw 0 to 65535.
     ///
     /// Note ACP-113 (open): Sample period of the star tracker has no unit.
     pub sample_period: u16,
-    /// Star 1 confidence (bits 24 to 31): 0 to 255 %.
+    /// Star 1 confidence: bits 24 to 31, raw 0 to 255, in %.
     ///
     /// Erratum ACP-114 (certain): percentage is %.
     pub star_1_confidence: u8,
-    /// Star 2 confidence (bits 32 to 39): 0 to 255 %.
+    /// Star 2 confidence: bits 32 to 39, raw 0 to 255, in %.
     ///
     /// Erratum ACP-114 (certain): percentage is %.
     pub star_2_confidence: u8,
-    /// Star 3 confidence (bits 40 to 47): 0 to 255 %.
+    /// Star 3 confidence: bits 40 to 47, raw 0 to 255, in %.
     ///
     /// Erratum ACP-114 (certain): percentage is %.
     pub star_3_confidence: u8,
@@ -54,7 +56,7 @@ impl StarPerformance2 {
     pub const NAME: &'static str = "Star Performance2";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 231;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

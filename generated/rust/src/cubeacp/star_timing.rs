@@ -7,15 +7,17 @@ use crate::support::{put, take, Error};
 /// Star Timing: telemetry 189, 6 bytes. Table 148.
 ///
 /// How long the steps of the star measurement took.
+///
+/// Bit 57 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct StarTiming {
-    /// Capture (bits 0 to 15): 0 to 65535 ms.
+    /// Capture: bits 0 to 15, raw 0 to 65535, in ms.
     pub capture: u16,
-    /// Detection (bits 16 to 31): 0 to 65535 ms.
+    /// Detection: bits 16 to 31, raw 0 to 65535, in ms.
     pub detection: u16,
-    /// Identification (bits 32 to 47): 0 to 65535 ms.
+    /// Identification: bits 32 to 47, raw 0 to 65535, in ms.
     pub identification: u16,
 }
 
@@ -24,7 +26,7 @@ impl StarTiming {
     pub const NAME: &'static str = "Star Timing";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 189;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

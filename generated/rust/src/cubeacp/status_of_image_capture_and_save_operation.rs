@@ -12,9 +12,9 @@ use crate::support::{Coded, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct StatusOfImageCaptureAndSaveOperation {
-    /// Percentage Complete (bits 0 to 7): 0 to 255 %.
+    /// Percentage Complete: bits 0 to 7, raw 0 to 255, in %.
     pub percentage_complete: u8,
-    /// Status (bits 8 to 15).
+    /// Status: bits 8 to 15.
     ///
     /// Note ACP-124 (open): Image status: no value for busy or done.
     pub status: Coded<enums::ImSaveStatus>,
@@ -25,7 +25,7 @@ impl StatusOfImageCaptureAndSaveOperation {
     pub const NAME: &'static str = "Status of Image Capture and Save Operation";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 2;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 233;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

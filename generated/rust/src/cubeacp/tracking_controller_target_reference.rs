@@ -4,23 +4,23 @@
 
 use crate::support::{put, take, Error};
 
-/// Tracking Controller Target Reference: configuration, set by 55 and got by 200, 12 bytes. Table
-/// 187\.
+/// Tracking Controller Target Reference: configuration, set by telecommand 55, got by telemetry
+/// 200, 12 bytes. Table 187.
 ///
 /// Target of the tracking control mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct TrackingControllerTargetReference {
-    /// Geocentric longitude of target (bits 0 to 31): 32-bit float, in deg.
+    /// Geocentric longitude of target: bits 0 to 31, 32-bit float, in deg.
     ///
     /// Note ACP-138 (open): Target is geocentric, position is geodetic.
     pub geocentric_longitude_of_target: f32,
-    /// Geocentric latitude of target (bits 32 to 63): 32-bit float, in deg.
+    /// Geocentric latitude of target: bits 32 to 63, 32-bit float, in deg.
     ///
     /// Note ACP-138 (open): Target is geocentric, position is geodetic.
     pub geocentric_latitude_of_target: f32,
-    /// Geocentric altitude of target (bits 64 to 95): 32-bit float, in m.
+    /// Geocentric altitude of target: bits 64 to 95, 32-bit float, in m.
     ///
     /// Erratum ACP-139 (certain): meter is m.
     ///
@@ -33,9 +33,9 @@ impl TrackingControllerTargetReference {
     pub const NAME: &'static str = "Tracking Controller Target Reference";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 12;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 55;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 200;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

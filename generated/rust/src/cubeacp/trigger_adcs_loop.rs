@@ -17,7 +17,7 @@ impl TriggerAdcsLoop {
     pub const NAME: &'static str = "Trigger ADCS Loop";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 0;
-    /// The telecommand id.
+    /// Id of the telecommand.
     pub const ID: u8 = 18;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

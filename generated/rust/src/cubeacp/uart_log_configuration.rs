@@ -4,21 +4,22 @@
 
 use crate::support::{array, put, put_array, take, Error};
 
-/// UART Log Configuration: configuration, set by 106 and got by 237, 12 bytes. Table 213.
+/// UART Log Configuration: configuration, set by telecommand 106, got by telemetry 237, 12 bytes.
+/// Table 213.
 ///
 /// Which frames are sent unasked on the UART, and how often.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct UartLogConfiguration {
-    /// Log Selection (bits 0 to 79): 10 bytes.
+    /// Log Selection: bytes 0 to 9.
     ///
     /// Mask of up to 80 telemetry frames.
     ///
     /// Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub log_selection: [u8; 10],
-    /// Log Period (bits 80 to 95): 0 to 65535.
+    /// Log Period: bits 80 to 95, raw 0 to 65535.
     ///
     /// 0: logging disabled.
     ///
@@ -31,9 +32,9 @@ impl UartLogConfiguration {
     pub const NAME: &'static str = "UART Log Configuration";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 12;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 106;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 237;
     /// Log Period: logging disabled.
     pub const LOG_PERIOD_LOGGING_DISABLED: u16 = 0;

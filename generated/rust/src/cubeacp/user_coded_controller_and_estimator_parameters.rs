@@ -4,18 +4,18 @@
 
 use crate::support::{array, put_array, Error};
 
-/// User-coded Controller and Estimator Parameters: configuration, set by 29 and got by 226, 96
-/// bytes. Table 208.
+/// User-coded Controller and Estimator Parameters: configuration, set by telecommand 29, got by
+/// telemetry 226, 96 bytes. Table 208.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct UserCodedControllerAndEstimatorParameters {
-    /// User Coded Controller Settings (bits 0 to 383): 48 bytes.
+    /// User Coded Controller Settings: bytes 0 to 47.
     ///
     /// Note ACP-178 (open): User coded settings: content of the arrays.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
     pub user_coded_controller_settings: [u8; 48],
-    /// User Coded Estimator Settings (bits 384 to 767): 48 bytes.
+    /// User Coded Estimator Settings: bytes 48 to 95.
     ///
     /// Note ACP-178 (open): User coded settings: content of the arrays.
     #[cfg_attr(feature = "serde", serde(with = "crate::support::array"))]
@@ -27,9 +27,9 @@ impl UserCodedControllerAndEstimatorParameters {
     pub const NAME: &'static str = "User-coded Controller and Estimator Parameters";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 96;
-    /// The telecommand id that sets it.
+    /// Id of the telecommand that sets it.
     pub const SET_ID: u8 = 29;
-    /// The telemetry id that gets it.
+    /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 226;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

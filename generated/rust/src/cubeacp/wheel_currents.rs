@@ -7,23 +7,25 @@ use crate::support::{put, take, Error, Scale};
 /// Wheel Currents: telemetry 173, 6 bytes. Table 131.
 ///
 /// Of the X, Y and Z wheels.
+///
+/// Bit 23 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct WheelCurrents {
-    /// Wheel1Current (bits 0 to 15): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
+    /// Wheel1Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
     /// Note ACP-083 (open): Wheel currents: by number, described by axis.
     ///
     /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub wheel1_current: u16,
-    /// Wheel2Current (bits 16 to 31): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
+    /// Wheel2Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
     /// Note ACP-083 (open): Wheel currents: by number, described by axis.
     ///
     /// Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
     pub wheel2_current: u16,
-    /// Wheel3Current (bits 32 to 47): raw, 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
+    /// Wheel3Current: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
     /// Note ACP-083 (open): Wheel currents: by number, described by axis.
     ///
@@ -36,7 +38,7 @@ impl WheelCurrents {
     pub const NAME: &'static str = "Wheel Currents";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 173;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

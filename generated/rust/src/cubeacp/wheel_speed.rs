@@ -7,15 +7,17 @@ use crate::support::{put, take, Error};
 /// Wheel Speed: telemetry 156, 6 bytes. Table 112.
 ///
 /// As measured.
+///
+/// Bit 14 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct WheelSpeed {
-    /// X Wheel Speed (bits 0 to 15): -32768 to 32767 rpm.
+    /// X Wheel Speed: bits 0 to 15, raw -32768 to 32767, in rpm.
     pub x_wheel_speed: i16,
-    /// Y Wheel Speed (bits 16 to 31): -32768 to 32767 rpm.
+    /// Y Wheel Speed: bits 16 to 31, raw -32768 to 32767, in rpm.
     pub y_wheel_speed: i16,
-    /// Z Wheel Speed (bits 32 to 47): -32768 to 32767 rpm.
+    /// Z Wheel Speed: bits 32 to 47, raw -32768 to 32767, in rpm.
     pub z_wheel_speed: i16,
 }
 
@@ -24,7 +26,7 @@ impl WheelSpeed {
     pub const NAME: &'static str = "Wheel Speed";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 156;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -5,19 +5,21 @@
 use crate::support::{put, take, Error};
 
 /// Wheel Speed Commands: telemetry 158, 6 bytes. Table 114.
+///
+/// Bit 8 of the log mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct WheelSpeedCommands {
-    /// Commanded X Wheel Speed (bits 0 to 15): -32768 to 32767 rpm.
+    /// Commanded X Wheel Speed: bits 0 to 15, raw -32768 to 32767, in rpm.
     ///
     /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
     pub commanded_x_wheel_speed: i16,
-    /// Commanded Y Wheel Speed (bits 16 to 31): -32768 to 32767 rpm.
+    /// Commanded Y Wheel Speed: bits 16 to 31, raw -32768 to 32767, in rpm.
     ///
     /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
     pub commanded_y_wheel_speed: i16,
-    /// Commanded Z Wheel Speed (bits 32 to 47): -32768 to 32767 rpm.
+    /// Commanded Z Wheel Speed: bits 32 to 47, raw -32768 to 32767, in rpm.
     ///
     /// Note ACP-072 (certain): Commanded wheel speeds are described as wheel speeds.
     pub commanded_z_wheel_speed: i16,
@@ -28,7 +30,7 @@ impl WheelSpeedCommands {
     pub const NAME: &'static str = "Wheel Speed Commands";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 6;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 158;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -8,8 +8,6 @@ use crate::support::{flags, put, take, Error};
 ///
 /// Only for the CubeMag of type Deploy.
 ///
-/// Note MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
-///
 /// Note MAG-011 (open): Deployment Status: how to tell the type, and what other types answer.
 ///
 /// Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
@@ -17,37 +15,37 @@ use crate::support::{flags, put, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct DeploymentStatus {
-    /// Burn Current (bits 0 to 31): 0 to 4294967295 mA.
+    /// Burn Current: bits 0 to 31, raw 0 to 4294967295, in mA.
     ///
     /// Through the burn wire.
     ///
     /// Note MAG-012 (open): Burn Current: 32 bits of whole milliamperes.
     pub burn_current: u32,
-    /// Deployment Pin State (bit 32).
+    /// Deployment Pin State: bit 32.
     ///
     /// Pin that detects the deployment.
     ///
     /// Note MAG-013 (open): Polarity of the deployment pins is not given.
     pub deployment_pin_state: bool,
-    /// Burn Pin State (bit 33).
+    /// Burn Pin State: bit 33.
     ///
     /// Pin that enables the burn wire.
     ///
     /// Note MAG-013 (open): Polarity of the deployment pins is not given.
     pub burn_pin_state: bool,
-    /// Burn UnderCurrent (bit 34).
+    /// Burn UnderCurrent: bit 34.
     ///
     /// Too little current through the burn wire.
     ///
     /// Note MAG-014 (open): Limits of the burn current and the configured time-out.
     pub burn_under_current: bool,
-    /// Burn OverCurrent (bit 35).
+    /// Burn OverCurrent: bit 35.
     ///
     /// Too much current through the burn wire.
     ///
     /// Note MAG-014 (open): Limits of the burn current and the configured time-out.
     pub burn_over_current: bool,
-    /// Deployment Timeout (bit 36).
+    /// Deployment Timeout: bit 36.
     ///
     /// No deployment was detected within the configured time.
     ///
@@ -60,7 +58,7 @@ impl DeploymentStatus {
     pub const NAME: &'static str = "Deployment Status";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 5;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 190;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

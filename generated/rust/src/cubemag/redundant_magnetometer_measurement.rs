@@ -6,14 +6,12 @@ use crate::support::{put, take, Error};
 
 /// Redundant Magnetometer Measurement: telemetry 193, 13 bytes. Table 64.
 ///
-/// Note MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
-///
 /// Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct RedundantMagnetometerMeasurement {
-    /// X_axis (bits 0 to 31): 32-bit float, in nT.
+    /// X_axis: bits 0 to 31, 32-bit float, in nT.
     ///
     /// Note MAG-016 (likely): FLOAT is not defined.
     ///
@@ -21,7 +19,7 @@ pub struct RedundantMagnetometerMeasurement {
     ///
     /// Note MAG-018 (certain): nT here, uT there.
     pub x_axis: f32,
-    /// Y_axis (bits 32 to 63): 32-bit float, in nT.
+    /// Y_axis: bits 32 to 63, 32-bit float, in nT.
     ///
     /// Note MAG-016 (likely): FLOAT is not defined.
     ///
@@ -29,7 +27,7 @@ pub struct RedundantMagnetometerMeasurement {
     ///
     /// Note MAG-018 (certain): nT here, uT there.
     pub y_axis: f32,
-    /// Z_axis (bits 64 to 95): 32-bit float, in nT.
+    /// Z_axis: bits 64 to 95, 32-bit float, in nT.
     ///
     /// Note MAG-016 (likely): FLOAT is not defined.
     ///
@@ -37,9 +35,7 @@ pub struct RedundantMagnetometerMeasurement {
     ///
     /// Note MAG-018 (certain): nT here, uT there.
     pub z_axis: f32,
-    /// Data Valid (bit 96).
-    ///
-    /// Note MAG-019 (open): Measurements carry no time.
+    /// Data Valid: bit 96.
     pub data_valid: bool,
 }
 
@@ -48,7 +44,7 @@ impl RedundantMagnetometerMeasurement {
     pub const NAME: &'static str = "Redundant Magnetometer Measurement";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 13;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 193;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -10,27 +10,23 @@ use crate::support::{Coded, Error};
 /// States of all services.
 ///
 /// Note MAG-004 (certain): Number 57 is used twice in the addendum.
-///
-/// Note MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
-///
-/// Note MAG-006 (open): State is described as all service states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct State {
-    /// MagSvc State (bits 0 to 7).
+    /// MagSvc State: bits 0 to 7.
     ///
     /// Of the CubeMag service.
     ///
     /// Note MAG-007 (certain): State: names are cut short in three ways.
     pub mag_svc_state: Coded<enums::MagState>,
-    /// Primary Mag State (bits 8 to 15).
+    /// Primary Mag State: bits 8 to 15.
     ///
     /// Of the primary magnetometer.
     ///
     /// Note MAG-007 (certain): State: names are cut short in three ways.
     pub primary_mag_state: Coded<enums::MntState>,
-    /// Red Mag State (bits 16 to 23).
+    /// Red Mag State: bits 16 to 23.
     ///
     /// Of the redundant magnetometer.
     ///
@@ -43,7 +39,7 @@ impl State {
     pub const NAME: &'static str = "State";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 3;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 188;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

@@ -10,8 +10,6 @@ use crate::support::Error;
 ///
 /// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
 ///
-/// Note WHL-006 (certain): Ids 188, 196 and 197 are other frames elsewhere.
-///
 /// Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
 ///
 /// Note WHL-016 (open): Motor Power: seven bits are not described.
@@ -19,7 +17,7 @@ use crate::support::Error;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct MotorPower {
-    /// Motor Power Switch (bit 0).
+    /// Motor Power Switch: bit 0.
     ///
     /// Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
     pub motor_power_switch: bool,
@@ -30,7 +28,7 @@ impl MotorPower {
     pub const NAME: &'static str = "Motor Power";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 1;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 197;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

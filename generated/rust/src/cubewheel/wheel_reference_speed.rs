@@ -10,8 +10,6 @@ use crate::support::{put, take, Error};
 ///
 /// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
 ///
-/// Note WHL-006 (certain): Ids 188, 196 and 197 are other frames elsewhere.
-///
 /// Note WHL-012 (likely): Wheel Reference Speed is described as a telecommand.
 ///
 /// Note WHL-013 (open): Momentum wheel in one place, wheel in the others.
@@ -19,7 +17,7 @@ use crate::support::{put, take, Error};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct WheelReferenceSpeed {
-    /// Reference Speed (bits 0 to 31): 32-bit float, in rpm.
+    /// Reference Speed: bits 0 to 31, 32-bit float, in rpm.
     ///
     /// Erratum WHL-007 (certain): RPM is rpm.
     ///
@@ -34,7 +32,7 @@ impl WheelReferenceSpeed {
     pub const NAME: &'static str = "Wheel Reference Speed";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 4;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 196;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.

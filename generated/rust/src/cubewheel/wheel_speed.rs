@@ -8,21 +8,19 @@ use crate::support::{put, take, Coded, Error};
 /// Wheel Speed: telemetry 188, 5 bytes. Table 47.
 ///
 /// Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
-///
-/// Note WHL-006 (certain): Ids 188, 196 and 197 are other frames elsewhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct WheelSpeed {
-    /// Wheel Speed (bits 0 to 31): 32-bit float, in rpm.
+    /// Wheel Speed: bits 0 to 31, 32-bit float, in rpm.
     ///
     /// Erratum WHL-007 (certain): RPM is rpm.
     ///
-    /// Note WHL-008 (open): Wheel speed: float here, integer in the control program.
+    /// Note WHL-008 (open): Wheel speed: the positive direction is not given.
     ///
     /// Note WHL-009 (likely): FLOAT is not defined.
     pub wheel_speed: f32,
-    /// Wheel Error State (bits 32 to 39).
+    /// Wheel Error State: bits 32 to 39.
     ///
     /// Note WHL-010 (open): Wheel Error State: data that are valid are an error state.
     pub wheel_error_state: Coded<enums::WheelErrorState>,
@@ -33,7 +31,7 @@ impl WheelSpeed {
     pub const NAME: &'static str = "Wheel Speed";
     /// Length in bytes, without the id.
     pub const LENGTH: usize = 5;
-    /// The telemetry id.
+    /// Id of the telemetry.
     pub const ID: u8 = 188;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
