@@ -8,6 +8,9 @@ use crate::support::Error;
 ///
 /// Clears the latched error flags of Bootloader State.
 ///
+/// Erratum BOOT-022 (certain): Clear Error Flags with a checksum deploys the magnetometer boom
+/// where CubeACP runs.
+///
 /// Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
 ///
 /// Note BOOT-005 (certain): Clear Error Flags and Clear Errors.
