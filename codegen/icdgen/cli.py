@@ -51,6 +51,13 @@ class _Commands(click.Group):
             args = [_DEFAULT, *args]
         return super().parse_args(ctx, args)
 
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        from icdgen.commands.common import known_languages
+
+        formatter.write_paragraph()
+        formatter.write_text(f"Languages: {known_languages()}.")
+        super().format_epilog(ctx, formatter)
+
     def invoke(self, ctx: click.Context) -> object:
         try:
             return super().invoke(ctx)

@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from icdgen import cache
 from icdgen.icd.loaded import Loaded
 
+if TYPE_CHECKING:
+    from icdgen.backends import Backend
+
 KIND = "models"
 
 
-def load_checked(paths: list[Path]) -> Loaded:
-    """Like `icdgen.icd.load.load`. A remembered model carries no positions and comes without texts."""
+def load_checked(paths: list[Path], plug_ins: Sequence[Backend] = ()) -> Loaded:
+    """Like `icdgen.icd.load.load`. A remembered model carries no positions and comes without texts.
+
+    With plug-ins nothing is remembered: what they say of names may change with any file of theirs.
+    """
+    if plug_ins:
+        from icdgen.icd.load import load
+
+        return load(paths, plug_ins=plug_ins)
     from icdgen.icd import model_json
 
     name = cache.key("model", os.getcwd(), *(str(path) for path in paths))

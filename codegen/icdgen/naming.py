@@ -15,7 +15,7 @@ _DIGITS = re.compile(r"[0-9]*")
 _HUMPS = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z0-9])(?=[A-Z][a-z])")
 
 
-@lru_cache(maxsize=8192)
+@lru_cache(maxsize=1 << 18)
 def words(name: str, vocabulary: tuple[str, ...] = ()) -> tuple[str, ...]:
     """Lower-case words of a name: ``TcErrorReason`` -> ``('tc', 'error', 'reason')``. Empty if nothing is left."""
     longest_first = sorted(vocabulary, key=len, reverse=True)

@@ -17,7 +17,7 @@
 #include "cubemag/primary_magnetometer_measurement.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-#define CUBEMAG_ICD_DIGEST "8f03447c95748554"
+#define CUBEMAG_ICD_DIGEST "ee8b1fc5a231b184"
 
 /** Any telemetry of CubeMag: the member of `as` that goes with the id. */
 typedef struct {

@@ -16,7 +16,7 @@
 #include "cubewheel/motor_power.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-#define CUBEWHEEL_ICD_DIGEST "d7b9c8d8d4cde0d5"
+#define CUBEWHEEL_ICD_DIGEST "849292d8783b4481"
 
 /** Any telemetry of CubeWheel: the member of `as` that goes with the id. */
 typedef struct {

@@ -48,4 +48,6 @@
 
 #include "wire/erase.h"
 
+#include "wire/program.h"
+
 #endif /* ICDGEN_WIRE_H */

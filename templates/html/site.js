@@ -85,7 +85,7 @@
 
   const input = document.getElementById("search");
   const list = document.getElementById("results");
-  const RANKS = { node: 0, message: 1, enumeration: 2, field: 3, unit: 4, member: 5, erratum: 6 };
+  const RANKS = { node: 0, message: 1, enumeration: 2, field: 3, unit: 4, member: 5, erratum: 6, note: 7 };
   const MOST = 24;
   let index = null;
   let chosen = -1;

@@ -27,6 +27,9 @@ def source(icd: Icd, node_name: str = NODE) -> str:
     plans = {one.message.name: one for one in describe(icd).node(node).spoken}
     telecommands = [plans[m.name] for m in known.telecommands.values()]
     starters = [one.name for one in icd.nodes if one.protocol.get("program_start", {}).get("application") == node.name]
+    boot = icd.node(starters[0])
+    name = boot.protocol["program_start"]["message"]
+    start = next(one for one in describe(icd).node(boot).spoken if one.message.name == name)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(harness.HERE),
         trim_blocks=True,
@@ -46,7 +49,9 @@ def source(icd: Icd, node_name: str = NODE) -> str:
         last=plans[known.polled.message.name],
         last_id=next(m.name for m in plans[known.polled.message.name].fields if m.field.name == known.polled.id),
         identification=plans[known.identification.message.name],
-        restarted=(starters or [node.name])[0],
+        restarted=starters[0],
+        start=stem(start).upper(),
+        running=icd.protocol_of(boot)["program_copy"]["destination"],
     )
 
 

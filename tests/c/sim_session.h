@@ -32,18 +32,30 @@ static inline void session_on_event(void *context, const icd_event_t *event)
     }
 }
 
-static inline void session_open(session_t *session, const icd_link_t *link, const char *host, const char *number)
+static inline void session_forget(session_t *session)
+{
+    free(session->buffer);
+    free(session->frame);
+}
+
+/* The same device, while the program of that link runs. */
+static inline void session_becomes(session_t *session, const icd_link_t *link)
 {
     const icd_client_settings_t settings = {150, 4, 5, 2000};
+    const int port = session->port;
+    session_forget(session);
     memset(session, 0, sizeof *session);
+    session->port = port;
     session->link = *link;
     session->download = *link->download;
-    session->upload = *link->upload;
     session->download.silence = 60;
     session->download.poll_interval = 5;
-    session->upload.poll_interval = 5;
     session->link.download = &session->download;
-    session->link.upload = &session->upload;
+    if (link->upload != NULL) {
+        session->upload = *link->upload;
+        session->upload.poll_interval = 5;
+        session->link.upload = &session->upload;
+    }
     session->link.client = settings;
     session->buffer = (uint8_t *)malloc(icd_client_bytes(link));
     session->frame = (uint8_t *)malloc(link->longest);
@@ -51,14 +63,19 @@ static inline void session_open(session_t *session, const icd_link_t *link, cons
         port_failed("no memory");
     }
     icd_client_init(&session->client, &session->link, ICD_BUS_UART, session->buffer, icd_client_bytes(link));
+}
+
+static inline void session_open(session_t *session, const icd_link_t *link, const char *host, const char *number)
+{
+    memset(session, 0, sizeof *session);
     session->port = port_open(host, number);
+    session_becomes(session, link);
 }
 
 static inline void session_close(session_t *session)
 {
     close(session->port);
-    free(session->buffer);
-    free(session->frame);
+    session_forget(session);
 }
 
 /* Waits until the client or the procedure wants to go on. */

@@ -127,6 +127,42 @@ def test_a_request_that_is_cancelled_is_not_in_the_way_of_the_next(headers, tmp_
     assert (done.returncode, done.stderr) == (0, "")
 
 
+OTHERS = r"""
+#include "bootloader.h"
+#include "cubeacp.h"
+#include <assert.h>
+
+static icd_status_t ask(const icd_link_t *link, int which)
+{
+    static icd_client_t client;
+    static uint8_t buffer[CUBEACP_CLIENT_BYTES > BOOTLOADER_CLIENT_BYTES ? CUBEACP_CLIENT_BYTES : BOOTLOADER_CLIENT_BYTES];
+    assert(icd_client_init(&client, link, ICD_BUS_UART, buffer, sizeof buffer) == ICD_OK);
+    return which == 0 ? ICD_REQUEST(&client, 0, CUBEACP_CURRENT_ADCS_STATE)
+        : which == 1 ? ICD_REQUEST(&client, 0, BOOTLOADER_BOOTLOADER_STATE)
+                     : ICD_REQUEST(&client, 0, COMMON_IDENTIFICATION);
+}
+
+int main(void)
+{
+    assert(ask(cubeacp_link(), 0) == ICD_OK);
+    assert(ask(cubeacp_link(), 1) == ICD_ERROR_UNKNOWN_ID); /* the same id as the one above */
+    assert(ask(bootloader_link(), 0) == ICD_ERROR_UNKNOWN_ID);
+    assert(ask(bootloader_link(), 1) == ICD_OK);
+    assert(ask(cubeacp_link(), 2) == ICD_OK && ask(bootloader_link(), 2) == ICD_OK && ask(common_link(), 2) == ICD_OK);
+    assert(ask(common_link(), 0) == ICD_ERROR_UNKNOWN_ID);
+    return 0;
+}
+"""
+
+
+def test_a_message_of_another_node_is_not_requested_and_a_shared_one_is(headers, tmp_path):
+    source = tmp_path / "others.c"
+    source.write_text(OTHERS)
+    program = harness.compile(source, "-std=c99", *harness.SANITIZERS, f"-I{headers}", output=tmp_path / "others")
+    done = subprocess.run([program], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 def calls_of(source, headers, folder) -> dict[str, set[str]]:
     """The functions and what each calls, as gcc sees it without any inlining."""
     flags = ("-std=c99", "-O0", "-c", "-fkeep-static-functions", "-fkeep-inline-functions", "-fcallgraph-info")

@@ -16,7 +16,7 @@ from icdgen import backends
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from tests.conformance import ROOT, testees  # noqa: F401  (it registers the testees' backends)
-from tests.conformance.languages import Language
+from tests.conformance.languages import Language, version
 
 BOARD = ROOT / "tests" / "conformance" / "board"  # what the self-tests are linked with
 
@@ -79,14 +79,8 @@ def _key(language: Language, files: dict[str, bytes]) -> str:
     recipe = Path(inspect.getfile(getattr(language.build, "func", language.build)))
     for file in (recipe, *sorted(BOARD.glob("*"))):
         digest.update(file.read_bytes() + b"\0")
-    for part in (language.name, *(_version(tool) for tool in language.tools)):
+    for part in (language.name, *(version(tool) or tool for tool in language.tools)):
         digest.update(part.encode() + b"\0")
     for name, data in files.items():
         digest.update(f"{name}\0{len(data)}\0".encode() + data)
     return digest.hexdigest()[:16]
-
-
-@cache
-def _version(tool: str) -> str:
-    path = shutil.which(tool) or tool
-    return path + subprocess.run([path, "--version"], capture_output=True, text=True).stdout

@@ -55,3 +55,18 @@ def test_physical_values_are_the_same_to_the_last_bit(strange, name, tmp_path):
 def test_random_icds_agree_in_all_languages():
     totals = check(10, ["c", "javascript", "python", "rust-debug"], start=1)
     assert all(total.vectors > 100 and total.differences == 0 for total in totals.values())
+
+
+def test_a_language_of_another_package_joins_by_its_entry_point(tmp_path, monkeypatch):
+    (tmp_path / "icdgen_other.py").write_text(
+        "from tests.conformance.languages import Language\n"
+        'LANGUAGES = [Language("other", ("c",), ("env true", "env false"), lambda source, out: [])]\n'
+    )
+    info = tmp_path / "icdgen_other-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: icdgen-other\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text("[icdgen.conformance]\nother = icdgen_other:LANGUAGES\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    other = all_languages()["other"]
+    assert other.missing() == ["env"]  # a tool is there if the command that says its version ends well
+    assert "c" in all_languages()

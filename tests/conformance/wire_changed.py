@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator
 
 from icdgen.icd.model import Icd
-from icdgen.protocol import facts, ops, scripts
+from icdgen.protocol import facts, ops, scripts, transfer
 from icdgen.protocol.asked import Refusal
 from icdgen.protocol.client import TELEMETRY, Request
 
@@ -113,7 +113,7 @@ def _frames_are_whole(icd: Icd, request: dict) -> bool:
     known = facts.of(icd, icd.node(request["node"]))
     try:
         procedure = scripts.procedure_of(known, request)
-    except Refusal:
+    except (Refusal, facts.Unsupported, transfer.NotAllowed, transfer.TooLarge):
         return True
     for row in request["script"]:
         event, want = row.get("event"), procedure.want

@@ -143,13 +143,18 @@ def _heard(known: Facts, bus: str, checked: bool, asked: tuple[str, int], source
 
 
 def _transfer(known: Facts, source: random.Random) -> dict:
-    what = source.choice(["list", "download", "download", "download", "upload", "upload", "erase", "format"])
+    known_steps = known.files.steps if known.files else {}
+    uploads = ["upload", "upload"] if "upload.initiate" in known_steps else []
+    operations = ["program_copy", "program_information"] if known.program_copy and known.program_information else []
+    what = source.choice(["list", "download", "download", "download", "erase", "format", *uploads, *operations])
     request: dict = {"op": "file", "do": what}
     if what == "download":
         request |= {"bus": source.choice(["uart", "uart", "i2c", "can"]), "type": 2, "counter": 1}
         request |= source.choice([{}, {"size": source.choice([0, 5, 60, 90])}])
     if what == "upload":
         request |= {"destination": 3, "bytes": source.randbytes(source.choice([0, 1, 30, 85])).hex()}
+    if what in operations:
+        request["program"] = source.choice([3, 9])
     if what == "erase":
         request |= {"type": 1, "counter": 2, "all": source.random() < 0.5}
     if source.random() < 0.6:

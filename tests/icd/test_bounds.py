@@ -16,7 +16,6 @@ HELD_ELSEWHERE = {
     "can/extended/max_packets",
     "unsolicited_log/id",
     "boot/attempts",
-    "boot/external_flash/program_areas",
 }
 
 

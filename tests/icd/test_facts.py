@@ -60,9 +60,9 @@ def test_a_unit_that_stands_in_words_is_held(icd, node, message, name, unit):
 def test_flash_sizes_are_numbers(icd):
     """Section 3.1: halves of 512 kB, of which each of seven areas holds one."""
     boot = icd.node("common").protocol["boot"]
-    internal, external = boot["internal_flash"], boot["external_flash"]
+    internal, upload = boot["internal_flash"], icd.node("common").protocol["file_transfer"]["upload"]
     assert internal["size_bytes"] == internal["bootloader_bytes"] + internal["application_bytes"] == 1 << 20
-    assert external["area_bytes"] == internal["application_bytes"]
+    assert upload["destination_bytes"] == internal["application_bytes"]
 
 
 def test_what_is_assumed_of_boot_attempts_and_reads_on_i2c_says_so(icd):
@@ -87,3 +87,24 @@ def test_a_log_may_hold_the_time_of_the_receiver(icd):
 def test_pages_of_a_copy_are_not_given_as_those_of_the_manual(icd):
     """Its own contents put section 6.3 on page 40, the copy that was captured does not."""
     assert not [m.name for node in icd.nodes for m in node.messages if m.page is not None]
+
+
+@pytest.mark.parametrize(
+    ("id", "gone", "holds"),
+    [
+        ("COM-017", "whether the bootloader shares", "whichever of its programs runs"),  # sections 1 and 5.4, BOOT-004
+        ("COM-052", "is also read on I2C", "241 is assumed"),  # section 7.2.3
+        ("COM-081", "Neither is said", "For the I2C flag"),  # section 5.3.1
+        ("COM-090", "flag and error to the last one processed", "Id and Processed flag belong"),  # Table 39
+        ("WHL-004", "Kind, length and type are unknown", "telemetry is taken"),  # section 5.1
+        ("ACP-198", "is not said", "rules of the UART"),  # section 5.2
+    ],
+)
+def test_a_note_does_not_gainsay_the_manual_or_another_note(icd, id, gone, holds):
+    assert gone not in erratum(icd, id).why and holds in erratum(icd, id).why
+
+
+def test_what_is_no_fault_is_no_note(icd):
+    """Table 40 and section 5.5 say what a byte too many is; all set and get ids stand in Table 47; and so on."""
+    known = {e.id for node in icd.nodes for e in node.errata}
+    assert not known & {"ACP-011", "COM-094", "COM-107", "ACP-158", "MAG-005", "WHL-006"}

@@ -92,12 +92,13 @@ entries:
     why: It is printed wrongly.
     evidence: Table 7.
     confidence: open
+notes:
   - id: DEMO-003
     title: Addresses
     where: [{section: protocol.i2c.write}, {section: messages.0}, {loggable: 0}]
-    why: Nothing is known.
+    printed: {id: 130}
+    what: Nothing is known.
     evidence: Table 7.
-    confidence: open
 """
 PIECES = st.sampled_from(
     [

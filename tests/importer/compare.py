@@ -12,7 +12,7 @@ def differences(wanted: dict, got: dict, tables: bool = True) -> list[str]:
     ``tables``: the table numbers too.
     """
     found: list[str] = []
-    found += _named("message", wanted.get("messages", []), got.get("messages", []), lambda a, b: _message(a, b, tables))
+    found += _named("message", _messages(wanted), _messages(got), lambda a, b: _message(a, b, tables))
     found += _named("enumeration", wanted.get("enums", []), got.get("enums", []), lambda a, b: _enum(a, b, tables))
     found += _same(
         "loggable",
@@ -20,6 +20,25 @@ def differences(wanted: dict, got: dict, tables: bool = True) -> list[str]:
         [(r["bit"], r["id"], r.get("name")) for r in got.get("loggable", [])],
     )
     return found
+
+
+def _messages(tree: dict) -> list[dict]:
+    """With what is announced of all formulas of a kind of messages at each of their fields."""
+    announced = tree.get("formula_for", {})
+    return [
+        message
+        | {
+            "fields": [
+                (
+                    {"formula_for": announced[message["kind"]], **field}
+                    if "formula" in field and message["kind"] in announced
+                    else field
+                )
+                for field in message.get("fields", [])
+            ]
+        }
+        for message in tree.get("messages", [])
+    ]
 
 
 def _named(what: str, wanted: list, got: list, compare) -> list[str]:

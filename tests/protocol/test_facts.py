@@ -45,7 +45,19 @@ def test_a_telecommand_is_acknowledged_or_not_or_answered_by_a_reset(icd):
     assert messages["Erase File"].acknowledge and not messages["Erase File"].expects_reset
 
 
+def test_uploads_belong_to_the_nodes_that_the_icd_names(icd, known):
+    boot = facts.of(icd, icd.node("bootloader"))
+    assert not any(path.startswith("upload.") for path in (*known.files.steps, *known.files.numbers))
+    assert boot.files.steps["upload.finalize"].fields["offset"] == "Offset"
+    assert (boot.files.destinations, boot.files.numbers["upload.destination_bytes"]) == ((3, 4, 5, 6, 7, 8, 9), 524_288)
+
+
+def test_operations_on_programs_are_those_of_the_node(icd, known):
+    boot = facts.of(icd, icd.node("bootloader"))
+    assert (boot.program_information.timeout, boot.program_copy.programs) == (2000, (3, 4, 5, 6, 7, 8, 9))
+    assert (known.program_copy, known.program_information) == (None, None)
+
+
 def test_numbers_of_the_procedures_are_found_by_path(known):
     assert known.files.numbers["download.message_length"] == 20
-    assert known.files.steps["upload.finalize"].fields["offset"] == "Offset"
     assert known.boot_ms == 5000

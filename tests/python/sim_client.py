@@ -10,15 +10,18 @@ import socket
 import sys
 from typing import TYPE_CHECKING
 
-from icdgen_messages import cubeacp
+from icdgen_messages import bootloader, cubeacp
 from icdgen_messages.wire import (
     Download,
     FailedError,
+    ProgramCopy,
+    ProgramInformation,
     RefusedError,
     ReplyTimeoutError,
     Session,
     Settings,
     Upload,
+    crc16,
     identify,
 )
 
@@ -31,6 +34,12 @@ if TYPE_CHECKING:
 
 KNOWN = hasty(facts.of(ICD, ICD.node("cubeacp")))
 LINK = cubeacp.LINK._replace(files=cubeacp.LINK.files._replace(numbers=dict(KNOWN.files.numbers)))
+BOOT = bootloader.LINK._replace(
+    files=bootloader.LINK.files._replace(
+        numbers={**bootloader.LINK.files.numbers, **KNOWN.files.numbers, "upload.poll_interval_ms": 5}
+    ),
+)
+DESTINATION, RUNNING = 3, bootloader.ProgramsList.INTERNAL_FLASH_PROGRAM
 LOGS = next(m for _, m in LINK.TELECOMMANDS.items() if log_message() == m.NAME)
 FAST = Settings(reply_timeout=150, retries=4, poll_interval=5, poll_timeout=2000)
 TRIES = 20
@@ -56,12 +65,25 @@ def main(host: str, number: str, size: str) -> int:
             every_setting(device)
             insist(device, LOGS())  # none during the transfers
             data = transfer(device, lambda: Download(LINK, "uart", 2, 1, int(size))).data
-            transfer(device, lambda: Upload(LINK, 3, data))
             every_telecommand(device)
+            started(device, Session(BOOT, port.sendall, read, settings=FAST), data)
         except (Failed, FailedError, RefusedError, ReplyTimeoutError) as failure:
             print(type(failure).__name__, failure, file=sys.stderr)
             return 1
     return 0
+
+
+def started(device: Session, boot: Session, data: bytes) -> None:
+    """Uploads a program, copies it to where it can run, and starts it. The boot program runs."""
+    data = data[: BOOT.files.numbers["upload.destination_bytes"]]
+    transfer(boot, lambda: Upload(BOOT, DESTINATION, data))
+    transfer(boot, lambda: ProgramCopy(BOOT, DESTINATION))
+    told = transfer(boot, lambda: ProgramInformation(BOOT, RUNNING))
+    if (told.size, told.checksum) != (len(data), crc16(BOOT, data)):
+        raise Failed(f"the program that can run has {told.size} bytes and the checksum {told.checksum:#x}")
+    boot.send(bootloader.RunSelectedProgram())
+    if not identity(device).matches:
+        raise Failed("the program does not run")
 
 
 def identity(device: Session):

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import jinja2
 
 from icdgen import codec
-from icdgen.backends.rust import message_rows, names
-from icdgen.backends.rust.messages import MessageRow
-from icdgen.icd.model import CONFIGURATION, Field, Icd, Message
+from icdgen.backends.rust.names import type_name
+from icdgen.describe import MessageDescription, describe
+from icdgen.icd.model import CONFIGURATION, Field, Icd, Message, Node
 from icdgen.protocol import facts
 from icdgen.sim.values import fresh
 from tests.rust import harness
@@ -42,14 +42,14 @@ class Place(NamedTuple):
 def source(icd: Icd, node_name: str = NODE) -> str:
     """The client's main file."""
     node, known = icd.node(node_name), facts.of(icd, icd.node(node_name))
-    enums = names.Enums(icd)
-    rows = {row.message.name: row for one in (*icd.included(node), node) for row in message_rows(icd, one, enums)}
+    rows = {one.message.name: one for one in describe(icd).node(node).spoken}
 
     def of(messages, values) -> list[Row]:
         return [_row(icd, rows[message.name], values(message)) for message in messages]
 
     commands = [m for m in known.telecommands.values() if m.kind != CONFIGURATION]
     starters = [one.name for one in icd.nodes if one.protocol.get("program_start", {}).get("application") == node.name]
+    boot = icd.node(starters[0])
     last, log = known.polled, icd.protocol_of(node).get("unsolicited_log", {}).get("configured_by", {}).get("message")
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE), trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
@@ -64,8 +64,16 @@ def source(icd: Icd, node_name: str = NODE) -> str:
         last=Place(_type(rows[last.message.name]), _field(rows[last.message.name], last.id)),
         identification=_type(rows[known.identification.message.name]),
         log=log and _type(rows[log]),
-        restarted=starters[0] if starters else None,
+        restarted=starters[0],
+        start=_start(icd, boot),
+        running=icd.protocol_of(boot)["program_copy"]["destination"],
     )
+
+
+def _start(icd: Icd, boot: Node) -> str:
+    """The type of the telecommand that starts the application."""
+    name = boot.protocol["program_start"]["message"]
+    return _type(next(one for one in describe(icd).node(boot).messages if one.message.name == name))
 
 
 def build(folder: Path) -> list[str]:
@@ -98,16 +106,16 @@ def _numbered(field: Field, number: int, otherwise: int | bytes) -> int | bytes:
     return otherwise
 
 
-def _row(icd: Icd, row: MessageRow, raw: dict[str, int | bytes]) -> Row:
+def _row(icd: Icd, row: MessageDescription, raw: dict[str, int | bytes]) -> Row:
     return Row(_type(row), f"&{list(codec.encode(row.node, row.message, raw))}")
 
 
-def _type(row: MessageRow) -> str:
-    return f"icd::{row.node.name}::{row.type}"
+def _type(row: MessageDescription) -> str:
+    return f"icd::{row.node.name}::{type_name(row)}"
 
 
-def _field(row: MessageRow, name: str) -> str:
-    return next(one.name for one in row.fields if one.model.name == name)
+def _field(row: MessageDescription, name: str) -> str:
+    return next(one.name for one in row.fields if one.field.name == name)
 
 
 if __name__ == "__main__":

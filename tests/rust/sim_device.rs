@@ -20,6 +20,7 @@ pub type Problem = Box<dyn std::error::Error>;
 
 pub struct Device<const N: usize> {
     pub link: &'static Link,
+    port: TcpStream,
     session: Session<TcpStream, N>,
 }
 
@@ -28,9 +29,18 @@ impl<const N: usize> Device<N> {
         let port = TcpStream::connect(place)?;
         port.set_nodelay(true)?;
         port.set_read_timeout(Some(Duration::from_millis(5)))?;
+        Self::over(port, link)
+    }
+
+    /// The same device, while the program of that link runs.
+    pub fn running(&self, link: &Link) -> Result<Self, Problem> {
+        Self::over(self.port.try_clone()?, link)
+    }
+
+    fn over(port: TcpStream, link: &Link) -> Result<Self, Problem> {
         let link: &'static Link = Box::leak(Box::new(hasty(*link)));
-        let session = Session::new(link, port)?.with_settings(SETTINGS);
-        Ok(Self { link, session })
+        let session = Session::new(link, port.try_clone()?)?.with_settings(SETTINGS);
+        Ok(Self { link, port, session })
     }
 
     /// Sends a telecommand until it is acknowledged, or refused twice: an acknowledge may be lost or spoilt.
@@ -79,6 +89,9 @@ fn hasty(mut link: Link) -> Link {
         if let Some(upload) = &mut files.upload {
             upload.poll_interval_ms = 5;
         }
+    }
+    for operation in [&mut link.program_copy, &mut link.program_information].into_iter().flatten() {
+        operation.poll_interval_ms = 5;
     }
     link
 }

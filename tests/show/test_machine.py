@@ -48,8 +48,9 @@ node: top
 entries:
   - {id: TOP-001, title: Wrong unit, where: {message: Temperature, field: Air}, printed: {unit: C}, held: {unit: K},
      tables: [98], why: It is., evidence: Table 98., confidence: likely}
-  - {id: TOP-002, title: A section, where: {section: protocol.uart}, why: W., evidence: E., confidence: open}
-  - {id: TOP-003, title: Two places, where: [{message: Reset}, {loggable: 5}], why: W., evidence: E.,
+notes:
+  - {id: TOP-002, title: A section, where: {section: protocol.uart}, what: W., evidence: E.}
+  - {id: TOP-003, title: Two places, where: [{message: Reset}, {loggable: 5}], what: W., evidence: E.,
      confidence: certain}
 """
 
@@ -94,7 +95,7 @@ def test_the_keys_that_programs_look_for(shown):
     assert "node_type" not in base and base["messages"] == [] and top["enums"] == []
     reset, temperature, nothing = top["messages"]
     assert reset == {
-        "name": "Reset", "kind": "telecommand", "id": 0, "length": 1, "acknowledge": False, "errata": ["TOP-003"],
+        "name": "Reset", "kind": "telecommand", "id": 0, "length": 1, "acknowledge": False, "notes": ["TOP-003"],
         "fields": [{"name": "Magic", "offset": 0, "bits": 8, "type": "uint", "const": 0}],
     }  # fmt: skip
     assert (temperature["set_id"], temperature["get_id"], temperature["table"]) == (2, 140, 98)
@@ -111,19 +112,19 @@ def test_the_keys_that_programs_look_for(shown):
 
 
 def test_loggable_frames_of_a_node_and_of_all(shown):
-    rows = [{"bit": 0, "id": 141, "name": "Nothing"}, {"bit": 5, "id": 140, "errata": ["TOP-003"]}]
+    rows = [{"bit": 0, "id": 141, "name": "Nothing"}, {"bit": 5, "id": 140, "notes": ["TOP-003"]}]
     assert shown["nodes"][1]["loggable"] == rows
     assert shown["loggable"] == [{"node": "top"} | row for row in rows]
 
 
 def test_errata_with_the_places_they_concern(shown):
-    one, two, three = shown["nodes"][1]["errata"]
+    (one,), (two, three) = (shown["nodes"][1][key] for key in ("errata", "notes"))
     assert one == {
         "id": "TOP-001", "title": "Wrong unit", "why": "It is.", "evidence": "Table 98.", "confidence": "likely",
         "tables": [98], "printed": {"unit": "C"}, "held": {"unit": "K"}, "changes": True,
         "places": [{"message": "Temperature", "field": "Air"}],
     }  # fmt: skip
-    assert "places" not in two and two["changes"] is False
+    assert two == {"id": "TOP-002", "title": "A section", "what": "W.", "evidence": "E."}
     assert three["places"] == [{"message": "Reset"}, {"loggable": 5}]
 
 

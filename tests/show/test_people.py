@@ -46,17 +46,17 @@ def icd(tmp_path_factory):
 
 def test_the_nodes(icd):
     assert to_text(icd) == (
-        "node  title  type  version  commands  telemetry  settings  fields  errata  includes\n"
-        "----  -----  ----  -------  --------  ---------  --------  ------  ------  --------\n"
-        "base  Base                         0          0         0       0       0\n"
-        "top   Top       0        7         1          1         1       4       3  base\n"
+        "node  title  type  version  commands  telemetry  settings  fields  errata  notes  includes\n"
+        "----  -----  ----  -------  --------  ---------  --------  ------  ------  -----  --------\n"
+        "base  Base                         0          0         0       0       0      0\n"
+        "top   Top       0        7         1          1         1       4       1      2  base\n"
     )
 
 
 def test_a_node(icd):
     assert to_text(icd, ["top"]) == (
         "top: Top\n"
-        "node type 0; interface version 7; little-endian, lsb0; includes base; 3 errata\n"
+        "node type 0; interface version 7; little-endian, lsb0; includes base; 1 erratum, 2 notes\n"
         "\n"
         "   id  kind           name         bytes  fields  table\n"
         "-----  -------------  -----------  -----  ------  -----\n"
@@ -80,9 +80,9 @@ def test_a_message_without_fields_and_one_that_is_not_acknowledged(icd):
     assert "always 0" in to_text(icd, ["top", "reset"])
 
 
-def test_an_enumeration_and_an_erratum(icd):
+def test_an_enumeration_and_a_note(icd):
     assert to_text(icd, ["top", "mode"]).startswith("Mode (enumeration, table 3)\n")
-    assert to_text(icd, ["top", "top-002"]) == "Erratum TOP-002 (open): A section\n  W.\n  E.\n"
+    assert to_text(icd, ["top", "top-002"]) == "Note TOP-002: A section\n  W.\n  E.\n"
 
 
 @pytest.mark.parametrize("selection", [["nope"], ["top", "nope"], ["base", "TOP-001"]])

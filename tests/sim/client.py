@@ -8,11 +8,13 @@ from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.link.ports import open_port
 from icdgen.link.session import Session
-from icdgen.protocol import transfer
+from icdgen.protocol import crc, programs, transfer
 from icdgen.sim.values import fresh
 from tests.sim.device import FAST, ICD, download, hasty
 
 NODE = "cubeacp"
+STARTER = next(n for n in ICD.nodes if n.protocol.get("program_start", {}).get("application") == NODE)
+DESTINATION = 3
 TRIES = 20
 
 
@@ -31,8 +33,9 @@ def main(host: str, port: str, size: str) -> int:
             every_setting(client)
             log = next(m for m in client.known.telecommands.values() if m.name == log_message())
             client.telecommand(log, bytes(log.length))  # no logs during the transfers
-            files(client, int(size))
+            data = downloaded(client, int(size))
             every_telecommand(client)
+            started(client, data)
         except Failed as failure:
             print(failure, file=sys.stderr)
             return 1
@@ -54,13 +57,36 @@ def every_setting(client: Session) -> None:
                 raise Failed(f"{message.name} is not what was set: {outcome}")
 
 
-def files(client: Session, size: int) -> None:
+def downloaded(client: Session, size: int) -> bytes:
     result, data = download(client, 2, 1, size)
     if result != "done":
         raise Failed(f"download: {result}")
-    result = client.run(transfer.Upload(client.known, 3, data))
+    return data
+
+
+def started(client: Session, data: bytes) -> None:
+    """Uploads a program, copies it to where it can run, and starts it. The boot program runs."""
+    boot = Session(ICD, STARTER, client.port, settings=FAST)
+    boot.known = hasty(boot.known)
+    data = data[: boot.known.files.numbers["upload.destination_bytes"]]
+    done(boot, "upload", transfer.Upload(boot.known, DESTINATION, data))
+    done(boot, "copy", programs.ProgramCopy(boot.known, DESTINATION))
+    running = ICD.protocol_of(STARTER)["program_copy"]["destination"]
+    told = done(boot, "information", programs.ProgramInformation(boot.known, running))
+    if (told.size, told.checksum) != (len(data), crc.compute(boot.known.crc16, data)):
+        raise Failed(f"the program that can run has {told.size} bytes and the checksum {told.checksum:#x}")
+    start = next(m for m in boot.known.telecommands.values() if m.name == STARTER.protocol["program_start"]["message"])
+    boot.telecommand(start, b"")
+    found = client.identify()
+    if found is None or not found[1]:
+        raise Failed(f"the program does not run: {found}")
+
+
+def done(client: Session, name: str, procedure):
+    result = client.run(procedure)
     if result != "done":
-        raise Failed(f"upload: {result}")
+        raise Failed(f"{name}: {result}")
+    return procedure
 
 
 def every_telecommand(client: Session) -> None:
@@ -90,10 +116,9 @@ def silent(client: Session, message: Message, data: bytes) -> None:
 
 def reset(client: Session, message: Message, data: bytes) -> None:
     """The node restarts, and the program that starts the other one answers."""
-    starter = next(n for n in ICD.nodes if n.protocol.get("program_start", {}).get("application") == NODE)
     client.telecommand(message, data)
     found = client.identify()
-    if found is None or found[0]["node_type"] != starter.node_type:
+    if found is None or found[0]["node_type"] != STARTER.node_type:
         raise Failed(f"{message.name} does not restart the node: {found}")
 
 

@@ -56,7 +56,11 @@ def hasty(known):
         "erase.poll_interval_ms": 5,
         "format.poll_interval_ms": 5,
     }
-    return replace(known, files=replace(known.files, numbers=numbers))
+    operations = {
+        name: form and replace(form, poll_interval=5)
+        for name, form in (("program_copy", known.program_copy), ("program_information", known.program_information))
+    }
+    return replace(known, files=replace(known.files, numbers=numbers), **operations)
 
 
 def download(client: Session, type_: int, counter: int, size: int | None) -> tuple[str, bytes]:

@@ -9,13 +9,17 @@ it is expected to
 2. request every telemetry frame,
 3. set every configuration message and read it back,
 4. download file 1 of type 2, which has that size,
-5. upload what it downloaded to destination 3,
-6. send every telecommand, those that restart the node last,
+5. send every telecommand, those that restart the node last: then the boot program answers, which the request for identification
+   keeps from booting,
+6. upload what it downloaded (of more than a destination holds as much as that) to destination 3,
+7. have it copied to where it can run, and see that size and checksum of the copy are those of what it uploaded,
+8. start it, and see that the node of its ICD identifies itself again,
 
-and to end with 0. What it uploaded is held against the file, so both directions are proved at once; every frame must have been
-requested, and every telecommand sent. A telecommand that is refused for a reason that the ICD has is answered (such as one of the
-file transfer for which nothing is prepared), one without an answer is a failure; after one that restarts the node another program
-answers. Acknowledges carry no checksum: a refusal with a code that the ICD does not have is a damaged one, and worth asking again.
+and to end with 0. What it uploaded, and what runs, is held against the file, so both directions are proved at once; every frame
+must have been requested, and every telecommand sent. A telecommand that is refused for a reason that the ICD has is answered (such
+as one of the file transfer for which nothing is prepared), one without an answer is a failure; after one that restarts the node
+another program answers. Acknowledges carry no checksum: a refusal with a code that the ICD does not have is a damaged one, and
+worth asking again.
 A client that takes longer than ``--limit`` seconds hangs, which is a failure. The reference is ``python -m tests.sim.client``.
 """
 
@@ -34,6 +38,8 @@ from tests.sim.device import ICD, simulator
 from tests.sim.tap import Tap, missing
 
 LOSSES = "0,1,10,30"
+ROOM = 524288  # bytes of a destination
+RUNNING = 1  # the program that a copy becomes
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -74,8 +80,9 @@ def run(
                     return "hangs"
         if ended.returncode:
             return f"ended with {ended.returncode}: {ended.stderr.strip() or ended.stdout.strip()}"
-        if not uploaded.is_file() or uploaded.read_bytes() != data:
-            return "the uploaded file is another one"
+        for path, what in ((uploaded, "uploaded"), (Path(folder, f"{RUNNING}.bin"), "running")):
+            if not path.is_file() or path.read_bytes() != data[:ROOM]:
+                return f"the {what} file is another one"
         never = missing(ICD, node, tap.messages(ICD, node))
         return f"never sent: {', '.join(never)}" if never else None
 

@@ -22,8 +22,17 @@ def test_a_file_is_downloaded_and_a_program_uploaded(tmp_path, loss, way):
     source = Random(loss)
     stored, image = source.randbytes(25_003), source.randbytes(24_001)
     (tmp_path / "stored").write_bytes(stored)
-    options = ("--file", f"2:7={tmp_path / 'stored'}", "--uploads", str(tmp_path / "up"), "--loss", loss)
-    with session(*way, *options, "--seed", "5") as client:
+    options = (
+        "--file",
+        f"2:7={tmp_path / 'stored'}",
+        "--uploads",
+        str(tmp_path / "up"),
+        "--loss",
+        loss,
+        "--boot",
+        "100000",
+    )
+    with session(*way, *options, "--seed", "5", node="bootloader") as client:
         assert download(client, 2, 7, len(stored)) == ("done", stored)
         upload = transfer.Upload(client.known, 3, image)
         assert (client.run(upload), upload.sent) == ("done", len(image))
@@ -41,7 +50,16 @@ def test_files_survive_what_happens_to_acknowledges_and_packets(tmp_path, faults
     (tmp_path / "stored").write_bytes(stored)
     options = [word for fault in faults for word in ("--fault", fault)]
     with session(
-        "--file", f"2:7={tmp_path / 'stored'}", "--uploads", str(tmp_path), "--late", "250", *options
+        "--file",
+        f"2:7={tmp_path / 'stored'}",
+        "--uploads",
+        str(tmp_path),
+        "--late",
+        "250",
+        "--boot",
+        "100000",
+        *options,
+        node="bootloader",
     ) as client:
         assert download(client, 2, 7, len(stored)) == ("done", stored)
         assert client.run(transfer.Upload(client.known, 4, stored)) == "done"

@@ -25,6 +25,15 @@ def test_a_client_that_hangs_fails_or_lies_is_found():
 
 
 def test_a_client_that_leaves_out_telecommands_is_found():
-    forgetful = "import sys; from tests.sim import client; client.every_telecommand = print; client.main(*sys.argv[1:])"
+    forgetful = """
+import sys
+from tests.sim import client
+reset = next(m for m in client.ICD.messages_of(client.STARTER) if m.name == "Reset")
+data = client.codec.encode(client.STARTER, reset, client.fresh(reset))
+client.every_telecommand = lambda session: client.reset(session, reset, data)
+client.main(*sys.argv[1:])
+"""
     found = harness.run([sys.executable, "-c", forgetful], 10, "0", [])
-    assert found.startswith("never sent: Reset, ") and "Save Image" in found and "Hole Map" not in found
+    assert (
+        found.startswith("never sent: ") and "Reset," not in found and "Save Image" in found and "Hole Map" not in found
+    )

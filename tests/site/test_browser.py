@@ -51,7 +51,7 @@ def results(page) -> list[tuple[str, str]]:
         ("thomson", ("member", "Y-Thomson spin"), "cubeacp/enum-con_mode_select.html#member-y_thomson_spin"),
         ("0x92", ("message", "Estimated Attitude Angles"), "cubeacp/estimated_attitude_angles.html"),
         ("146", ("message", "Estimated Attitude Angles"), "cubeacp/estimated_attitude_angles.html"),
-        ("acp-066", ("erratum", "ACP-066 Attitude angles: order of rotation and frame"), "errata.html#ACP-066"),
+        ("acp-066", ("note", "ACP-066 Attitude angles: order of rotation and frame"), "errata.html#ACP-066"),
         ("deg/s", ("unit", "deg/s"), "units.html#unit-deg_per_s"),
     ],
 )  # fmt: skip

@@ -1,17 +1,21 @@
 """The registry of backends. A backend is one class and one folder of templates, and touches nothing else.
 
-A backend of another package is found through the entry point group ``icdgen.backends``.
+A backend of another package, a plug-in, is found through the entry point group ``icdgen.backends``: see docs/backends.md.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from importlib import import_module
 from pathlib import PurePosixPath
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
+from icdgen.errors import UserError
 from icdgen.icd.located import Map
 from icdgen.icd.model import Icd
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 GROUP = "icdgen.backends"
 
@@ -40,8 +44,8 @@ class Backend(Protocol):
     name: str  # as in ``--lang``, and the name of its template folder
     reserved: frozenset[str]  # words that can't be identifiers
 
-    # Optional: `templates` and `runtime`, the folders (`Path`) of its templates and of what it copies into the output, for backends
-    # that are not part of icdgen. `--templates` goes before both.
+    # Not of ours, but of plug-ins: `templates` and `runtime`, the folders (`Path`) of what it renders and of what it copies.
+    # Files of `--templates` go before those of either.
 
     def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
         """Every file as relative path and text, in a fixed order."""
@@ -50,7 +54,7 @@ class Backend(Protocol):
         """Every name that ``files`` declares, for the name rules."""
 
 
-class UnknownBackend(LookupError):
+class UnknownBackend(UserError):
     """No backend of that name; the message lists those there are."""
 
 
@@ -58,7 +62,7 @@ _registered: dict[str, str] = {}
 
 
 def register(name: str, target: str) -> None:
-    """Makes a backend known to this process: ``target`` is ``module:Class``, as an entry point would say it."""
+    """Makes a backend known to this process, but not to users: ``target`` is ``module:Class``, as in an entry point."""
     _registered[name] = target
 
 
@@ -67,20 +71,37 @@ def names() -> tuple[str, ...]:
     return tuple(_BUILT_IN)
 
 
+def plug_ins() -> dict[str, list[EntryPoint]]:
+    """The entry points of backends in other packages by name, in order; one that is named like ours is never asked."""
+    from importlib.metadata import entry_points
+
+    found: dict[str, list[EntryPoint]] = {}
+    for point in sorted(entry_points(group=GROUP), key=lambda point: (point.name, point.value)):
+        if point.name not in _BUILT_IN and point not in found.setdefault(point.name, []):
+            found[point.name].append(point)
+    return found
+
+
 def get(name: str) -> Backend:
-    """The backend called ``name``. Raises `UnknownBackend`."""
+    """The backend called ``name``. Raises `UnknownBackend`, and `UserError` for a plug-in that can't be used."""
     known = _registered | _BUILT_IN
     if name in known:
         return _load(known[name])
-    from importlib.metadata import entry_points
-
-    found = {point.name: point for point in entry_points(group=GROUP)}
+    found = plug_ins()
     if name not in found:
-        known = ", ".join(sorted({*_BUILT_IN, *found}))
-        raise UnknownBackend(f"there is no backend `{name}`; there are: {known}")
+        there = ", ".join(sorted({*_BUILT_IN, *found}))
+        raise UnknownBackend(
+            f"there is no backend `{name}`; there are: {there}",
+            "a backend of another package must be installed beside icdgen",
+        )
     from icdgen.backends.plug_in import PlugIn
 
-    return PlugIn(found[name])
+    return PlugIn.of(found[name])
+
+
+def not_ours(languages: Iterable[str]) -> list[Backend]:
+    """Those of the languages that are not built in. Raises like `get`."""
+    return [get(name) for name in dict.fromkeys(languages) if name not in _BUILT_IN]
 
 
 def _load(target: str) -> Backend:

@@ -6,7 +6,7 @@ import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.metadata import EntryPoint
-from pathlib import PurePath, PurePosixPath
+from pathlib import Path, PurePath, PurePosixPath
 from typing import Any
 
 from icdgen.backends import Identifier
@@ -22,8 +22,23 @@ class PlugIn:
         with self._named("cannot be loaded"):
             backend = point.load()()
             self.name: str = backend.name
+            self.templates: Path | None = getattr(backend, "templates", None)
+            self.runtime: Path | None = getattr(backend, "runtime", None)
             self.reserved = frozenset(backend.reserved)
             self._files, self._identifiers = backend.files, backend.identifiers
+        if self.name != point.name:
+            raise UserError(
+                f"the entry point `{point.name} = {point.value}`{_package(point)} leads to a backend called `{self.name}`",
+                "it is a fault of that package, the two must be the same: report it to its makers",
+            )
+
+    @classmethod
+    def of(cls, points: list[EntryPoint]) -> PlugIn:
+        """The backend of that name. Raises `UserError` if several packages have one."""
+        if len(points) > 1:
+            each = " and ".join(f"`{point.value}`{_package(point)}" for point in points)
+            raise UserError(f"there are {len(points)} backends `{points[0].name}`: {each}", "uninstall all but one")
+        return cls(points[0])
 
     def files(self, icd: Icd, render: Any) -> Iterator[tuple[PurePosixPath, str]]:
         """Those of the backend."""
@@ -46,10 +61,13 @@ class PlugIn:
         except UserError:
             raise
         except Exception as error:
-            package = f" of {self._point.dist.name}" if self._point.dist else ""
             last = traceback.extract_tb(error.__traceback__)[-1]
             said = f"{type(error).__name__}: {error}".rstrip(": ")
             raise UserError(
-                f"the backend `{self._point.name}`{package} (entry point `{self._point.value}`) {what}: {said}",
+                f"the backend `{self._point.name}`{_package(self._point)} (entry point `{self._point.value}`) {what}: {said}",
                 f"it is a fault of that package, in {last.filename}, line {last.lineno}: report it to its makers",
             ) from error
+
+
+def _package(point: EntryPoint) -> str:
+    return f" of {point.dist.name}" if point.dist else ""

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from icdgen import backends
 from icdgen.commands.common import chosen, icd_arguments, print_findings
 
 
@@ -19,6 +20,7 @@ def check(icds: tuple[Path, ...], form: str) -> None:
     """Check ICDs and report every finding. Exit status: 0 clean, 1 findings."""
     from icdgen.icd.load import load
 
-    loaded = load(chosen(icds)[0])
+    paths, config = chosen(icds)
+    loaded = load(paths, plug_ins=backends.not_ours(config.lang))
     print_findings(loaded.findings, loaded.texts, form)
     sys.exit(1 if loaded.findings else 0)

@@ -31,6 +31,18 @@ class _Path(click.Path):
 PATH = _Path(path_type=Path)
 
 
+def known_languages() -> str:
+    """The words for ``--lang``: ours, then those of plug-ins with their packages."""
+    from icdgen import backends
+
+    named = ", ".join(backends.names())
+    others = []
+    for name, points in backends.plug_ins().items():
+        packages = dict.fromkeys(point.dist.name for point in points if point.dist)
+        others.append(f"{name} ({', '.join(packages)})")
+    return f"{named}, and of other packages {', '.join(others)}" if others else named
+
+
 def say(text: str, err: bool = False) -> None:
     """Prints lines in which a name may stand, so that no name can act upon a terminal."""
     click.echo("\n".join(printable(line) for line in text.split("\n")), err=err)

@@ -7,17 +7,22 @@ from pathlib import Path
 
 import click
 
-from icdgen import backends
-from icdgen.commands.common import PATH, chosen, icd_arguments, print_findings, say
+from icdgen.commands.common import PATH, chosen, icd_arguments, known_languages, print_findings, say
 from icdgen.errors import UserError
 from icdgen.generation.generate import Job, Outcome, remember, run
 
 
+class _Languages(click.Option):
+    """Looks for plug-ins only when somebody asks what there is."""
+
+    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
+        self.help = f"What to generate: {known_languages()}. Repeatable."
+        return super().get_help_record(ctx)
+
+
 @click.command()
 @icd_arguments
-@click.option(
-    "--lang", "-l", "languages", multiple=True, help=f"What to generate: {', '.join(backends.names())}. Repeatable."
-)
+@click.option("--lang", "-l", "languages", multiple=True, cls=_Languages)
 @click.option("--out", "-o", type=PATH, help="Folder to write to (default: generated/LANG).")
 @click.option("--check", is_flag=True, help="Write nothing; exit 1 with a short diff if the output is not current.")
 @click.option("--depfile", type=PATH, help="Also write a Make/Ninja dependency file.")
@@ -43,10 +48,7 @@ def generate(
         base = config.out or Path("generated")
         out = base / asked[0] if len(set(asked)) == 1 else base
     job = Job(asked, out, paths, templates or config.templates, depfile, check, config.looked_at)
-    try:
-        outcome = run(job)
-    except backends.UnknownBackend as error:
-        raise UserError(str(error.args[0]), "a backend of another package must be installed beside icdgen") from None
+    outcome = run(job)
     if outcome.loaded.findings:
         print_findings(outcome.loaded.findings, outcome.loaded.texts, "text", err=True)
     if not outcome.loaded.ok:

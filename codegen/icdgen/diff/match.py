@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 from icdgen.diff.pairs import EnumPair, FieldPair, Match, MemberPair, MessagePair, NodePair, kind, position
-from icdgen.diff.similar import likeness, overlap
+from icdgen.diff.similar import letters, likeness, overlap
 from icdgen.icd.model import CONFIGURATION, Enum, Field, Icd, Message, Node
 
 SAME_NODE = 0.4  # from here on, nodes of different names are one
@@ -18,13 +20,14 @@ SAME_ENUM = 0.5
 SAME_FIELD = 0.6
 
 Score = Callable[[object, object], float]
+Keys = Callable[[object], Iterable[object]]
 
 
 def match(old: Icd, new: Icd) -> Match:
     """Both ICDs side by side."""
     found = Match(old, new)
     nodes, left = _by_name(old.nodes, new.nodes)
-    nodes += _alike(*left, _node_score, SAME_NODE)
+    nodes += _alike(*left, _node_score, SAME_NODE, _node_keys)
     found.nodes = [NodePair(one, other, sure) for one, other, sure in nodes]
     found.nodes += [NodePair(one, None) for one in left[0] if not _taken(nodes, 0, one)]
     found.nodes += [NodePair(None, one) for one in left[1] if not _taken(nodes, 1, one)]
@@ -53,12 +56,19 @@ def _by_name(old: Iterable, new: Iterable) -> tuple[list[tuple], tuple[list, lis
     return pairs, (left, [one for rest in by_name.values() for one in rest])
 
 
-def _alike(old: Sequence, new: Sequence, score: Score, least: float) -> list[tuple]:
-    """The best pairs of what is left, greedily; ties go to those that stand at like places."""
+def _alike(old: Sequence, new: Sequence, score: Score, least: float, keys: Keys) -> list[tuple]:
+    """The best pairs of what is left, greedily; ties go to those that stand at like places.
+
+    Only pairs that have one of their ``keys`` in common are looked at: no others may have a score of ``least`` or more.
+    """
+    of_key: dict[object, list[int]] = {}
+    for j, other in enumerate(new):
+        for key in keys(other):
+            of_key.setdefault(key, []).append(j)
     found = []
     for i, one in enumerate(old):
-        for j, other in enumerate(new):
-            value = score(one, other)
+        for j in {j for key in keys(one) for j in of_key.get(key, ())}:
+            value = score(one, new[j])
             if value >= least:
                 found.append((-value, abs(i - j), i + j, i, j))
     found.sort()
@@ -71,51 +81,92 @@ def _alike(old: Sequence, new: Sequence, score: Score, least: float) -> list[tup
     return pairs
 
 
+def _node_keys(node: Node) -> frozenset:
+    return frozenset((m.name, m.kind, m.ids) for m in node.messages)
+
+
 def _node_score(one: Node, other: Node) -> float:
-    keys = [frozenset((m.name, m.kind, m.ids) for m in node.messages) for node in (one, other)]
+    keys = _node_keys(one), _node_keys(other)
     return 0.9 * overlap(*keys) + 0.1 * likeness(one.name, other.name) if any(keys) else 0.0
+
+
+@dataclass(eq=False)
+class _Left:
+    """A message or an enumeration that has no counterpart of its name, with what is compared more than once."""
+
+    home: NodePair
+    one: Enum | Message
+
+    @cached_property
+    def shape(self) -> frozenset[tuple[int, int, str]]:
+        """Of a message: where its fields lie, and how they are read."""
+        return frozenset((f.at, f.bits, kind(f)) for f in self.one.fields)
+
+    @cached_property
+    def field_names(self) -> frozenset[str]:
+        return frozenset(f.name for f in self.one.fields)
+
+    @cached_property
+    def members(self) -> frozenset[tuple[int, str]]:
+        """Of an enumeration."""
+        return frozenset((m.value, m.name) for m in self.one.members)
 
 
 # Enumerations
 
 
 def _enums(found: Match) -> None:
-    _pair_up(found, "enums", lambda enum: enum.name, (_moved_enum, _renamed_enum), SAME_ENUM, _add_enum)
+    _pair_up(
+        found,
+        "enums",
+        lambda enum: enum.name,
+        ((_moved_enum, _name), (_renamed_enum, _member_keys)),
+        SAME_ENUM,
+        _add_enum,
+    )
 
 
-def _pair_up(found: Match, what: str, rank: Callable, scores: Iterable[Score], least: float, add: Callable) -> None:
+def _pair_up(
+    found: Match, what: str, rank: Callable, scores: Iterable[tuple[Score, Keys]], least: float, add: Callable
+) -> None:
     """Pairs what nodes declare: by name within a node, then by each of the scores."""
-    left_old: list[tuple[NodePair, object]] = []
-    left_new: list[tuple[NodePair, object]] = []
+    left_old: list[_Left] = []
+    left_new: list[_Left] = []
     for node in found.nodes:
         pairs, (old, new) = _by_name(getattr(node.old, what, ()), getattr(node.new, what, ()))
         for one, other, sure in pairs:
             add(found, node, node, one, other, sure)
-        left_old += [(node, one) for one in sorted(old, key=rank)]
-        left_new += [(node, one) for one in sorted(new, key=rank)]
-    for score in scores:
-        for (home, one), (node, other), sure in _alike(left_old, left_new, score, least):
-            add(found, home, node, one, other, sure)
-            left_old = [item for item in left_old if item[1] is not one]
-            left_new = [item for item in left_new if item[1] is not other]
-    for node, one in left_old:
-        add(found, node, node, one, None, 1.0)
-    for node, one in left_new:
-        add(found, node, node, None, one, 1.0)
+        left_old += [_Left(node, one) for one in sorted(old, key=rank)]
+        left_new += [_Left(node, one) for one in sorted(new, key=rank)]
+    for score, keys in scores:
+        taken = set()
+        for one, other, sure in _alike(left_old, left_new, score, least, keys):
+            add(found, one.home, other.home, one.one, other.one, sure)
+            taken |= {one, other}
+        left_old = [left for left in left_old if left not in taken]
+        left_new = [left for left in left_new if left not in taken]
+    for left in left_old:
+        add(found, left.home, left.home, left.one, None, 1.0)
+    for left in left_new:
+        add(found, left.home, left.home, None, left.one, 1.0)
 
 
-def _moved_enum(one: tuple[NodePair, Enum], other: tuple[NodePair, Enum]) -> float:
-    return 1.0 if one[1].name == other[1].name and _members_alike(one[1], other[1]) >= 0.3 else 0.0
+def _name(left: _Left) -> Iterable[str]:
+    return (left.one.name,)
 
 
-def _renamed_enum(one: tuple[NodePair, Enum], other: tuple[NodePair, Enum]) -> float:
-    if one[0] is not other[0]:
+def _moved_enum(one: _Left, other: _Left) -> float:
+    return 1.0 if one.one.name == other.one.name and overlap(one.members, other.members) >= 0.3 else 0.0
+
+
+def _member_keys(left: _Left) -> Iterable[tuple]:
+    return [(left.home, *member) for member in left.members] or [(left.home,)]
+
+
+def _renamed_enum(one: _Left, other: _Left) -> float:
+    if one.home is not other.home:
         return 0.0
-    return 0.85 * _members_alike(one[1], other[1]) + 0.15 * likeness(one[1].name, other[1].name)
-
-
-def _members_alike(one: Enum, other: Enum) -> float:
-    return overlap(*(frozenset((m.value, m.name) for m in enum.members) for enum in (one, other)))
+    return 0.85 * overlap(one.members, other.members) + 0.15 * likeness(one.one.name, other.one.name)
 
 
 def _add_enum(found: Match, home: NodePair, node: NodePair, old: Enum | None, new: Enum | None, sure: float) -> None:
@@ -145,26 +196,40 @@ def _members(pair: EnumPair) -> Iterable[MemberPair]:
 
 
 def _messages(found: Match) -> None:
-    _pair_up(found, "messages", _rank, (_moved_message, _renamed_message), SAME_MESSAGE, _add_message)
+    _pair_up(
+        found,
+        "messages",
+        _rank,
+        ((_moved_message, _name), (_renamed_message, _message_keys)),
+        SAME_MESSAGE,
+        _add_message,
+    )
 
 
 def _rank(message: Message) -> tuple:
     return message.kind, message.ids, message.name
 
 
-def _moved_message(one: tuple[NodePair, Message], other: tuple[NodePair, Message]) -> float:
-    same = one[1].name == other[1].name and one[1].kind == other[1].kind
-    return 1.0 if same and (one[1].ids == other[1].ids or _layouts_alike(one[1], other[1]) > 0.5) else 0.0
+def _moved_message(one: _Left, other: _Left) -> float:
+    same = one.one.name == other.one.name and one.one.kind == other.one.kind
+    return 1.0 if same and (one.one.ids == other.one.ids or _layouts_alike(one, other) > 0.5) else 0.0
 
 
-def _renamed_message(one: tuple[NodePair, Message], other: tuple[NodePair, Message]) -> float:
+def _message_keys(left: _Left) -> Iterable[tuple]:
+    """An id, the name of a field (or that there is none), or the whole layout together with the letters of the name."""
+    yield from ((left.home, place, id) for place, id in enumerate(_ids(left.one)) if id is not None)
+    yield from ((left.home, name) for name in left.field_names or (None,))
+    yield left.home, left.shape, letters(left.one.name)
+
+
+def _renamed_message(one: _Left, other: _Left) -> float:
     """The same layout under another name, or name and id."""
-    (home, old), (node, new) = one, other
-    if home is not node or not _same_direction(old, new):
+    old, new = one.one, other.one
+    if one.home is not other.home or not _same_direction(old, new):
         return 0.0
     same_id = any(a is not None and a == b for a, b in zip(_ids(old), _ids(new), strict=True))
-    names = overlap(*(frozenset(f.name for f in m.fields) for m in (old, new)))
-    layout = 0.4 * _layouts_alike(old, new) + 0.2 * names + 0.25 * same_id
+    names = overlap(one.field_names, other.field_names)
+    layout = 0.4 * _layouts_alike(one, other) + 0.2 * names + 0.25 * same_id
     if layout + 0.15 < SAME_MESSAGE:
         return 0.0  # no likeness of names, which takes long to tell, can make up for it
     alike = likeness(old.name, new.name)
@@ -181,9 +246,10 @@ def _ids(message: Message) -> tuple[int | None, int | None]:
     return message.telecommand_id, message.telemetry_id
 
 
-def _layouts_alike(old: Message, new: Message) -> float:
-    shapes = [frozenset((f.at, f.bits, kind(f)) for f in m.fields) for m in (old, new)]
-    return overlap(*shapes) if any(shapes) else 0.75 if old.length == new.length else 0.0
+def _layouts_alike(one: _Left, other: _Left) -> float:
+    if one.shape or other.shape:
+        return overlap(one.shape, other.shape)
+    return 0.75 if one.one.length == other.one.length else 0.0
 
 
 def _add_message(
@@ -222,12 +288,19 @@ def _renamed_fields(pair: MessagePair, known: list[tuple], old: list[Field], new
     spans = {id(f): span for f, span in zip((*old, *new), (*spans_old, *spans_new), strict=True)}
     shifts = _Shifts(known)
 
+    def sense(one: Field) -> tuple:
+        return one.type, one.scale, one.unit, one.limits
+
+    def keys(one: Field) -> Iterable[object]:
+        """Where it lies, or what it holds."""
+        return spans[id(one)], (one.bits, sense(one))
+
     def score(one: Field, other: Field) -> float:
         same_kind, same_span = kind(one) == kind(other), spans[id(one)] == spans[id(other)]
         if not same_span and (one.bits != other.bits or not same_kind):
             return 0.0
         alike = likeness(one.name, other.name)
-        same_sense = (one.type, one.scale, one.unit, one.limits) == (other.type, other.scale, other.unit, other.limits)
+        same_sense = sense(one) == sense(other)
         if same_span:
             if same_kind:
                 return 0.6 + 0.15 * alike + 0.2 * same_sense
@@ -238,7 +311,7 @@ def _renamed_fields(pair: MessagePair, known: list[tuple], old: list[Field], new
             return 0.6 + 0.3 * alike
         return 0.8 * alike if alike >= 0.75 else 0.0
 
-    return _alike(old, new, score, SAME_FIELD)
+    return _alike(old, new, score, SAME_FIELD, keys)
 
 
 class _Shifts:

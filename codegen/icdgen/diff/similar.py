@@ -11,12 +11,13 @@ _SHORTEST = 5  # letters of a word in which a slip of the pen is told from anoth
 
 def likeness(one: str, other: str) -> float:
     """0: nothing in common, 1: the same words. Symmetric: the share of pairs of letters that both have."""
-    first, second = _pairs(one), _pairs(other)
+    first, second = letters(one), letters(other)
     return 2 * len(first & second) / (len(first) + len(second)) if first or second else 1.0
 
 
-@lru_cache(maxsize=8192)
-def _pairs(name: str) -> frozenset[str]:
+@lru_cache(maxsize=1 << 18)
+def letters(name: str) -> frozenset[str]:
+    """The pairs of letters of a name's words, by which `likeness` goes."""
     text = f" {' '.join(words(name))} "
     return frozenset(text[i : i + 2] for i in range(len(text) - 1)) if text.strip() else frozenset()
 
@@ -26,7 +27,7 @@ def overlap(one: frozenset, other: frozenset) -> float:
     return len(one & other) / len(one | other) if one or other else 0.5
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=1 << 18)
 def same_sense(one: str, other: str) -> bool:
     """Whether the names differ only in spelling: case, punctuation, spaces, or one slip of the pen in a long word.
 

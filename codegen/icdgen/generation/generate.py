@@ -39,11 +39,11 @@ class Outcome:
 
 
 def run(job: Job) -> Outcome:
-    """Writes nothing if the ICDs have errors or ``job.check`` is set. Raises `UserError`, `backends.UnknownBackend`."""
+    """Writes nothing if the ICDs have errors or ``job.check`` is set. Raises `UserError`."""
     chosen = [backends.get(name) for name in dict.fromkeys(job.languages)]
     if job.templates is not None and not os.path.isdir(job.templates):
         raise UserError(f"there is no folder {job.templates}", "--templates names a folder of templates")
-    outcome = Outcome(load_checked(job.icds))
+    outcome = Outcome(load_checked(job.icds, [backend for backend in chosen if backend.name not in backends.names()]))
     if not outcome.loaded.ok:
         return outcome
     outcome.inputs = outcome.loaded.inputs | job.configs

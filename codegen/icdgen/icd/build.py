@@ -64,7 +64,7 @@ class Builder:
             protocol=plain_mapping(protocol) if isinstance(protocol, Map) else {},
             loggable=tuple(self.each("loggable", self.loggable)),
             missing=tuple(self.each("missing", self.missing)),
-            errata=tuple(self.applied.entries),
+            errata=(*self.applied.entries, *self.applied.notes),
             digest=digest,
             file=self.tree.place.file,
             source=self.tree,

@@ -1,4 +1,4 @@
-"""Errata overlays: decisions about the manual's faults, laid over the vendor's data before the model is built."""
+"""Errata overlays: decisions about the manual's faults, laid over the vendor's data before the model is built, and notes."""
 
 from __future__ import annotations
 
@@ -17,13 +17,14 @@ class Applied:
 
     def __init__(self) -> None:
         self.entries: list[Erratum] = []
+        self.notes: list[Erratum] = []
         self.of: dict[int, list[Erratum]] = {}  # id(mapping) -> entries that concern it
         self.accepts: list[tuple[str, Place, Map, str, Place]] = []  # code, file's place, mapping, erratum id, place
         self.findings: list[Finding] = []
 
     def about(self, item: object) -> tuple[Erratum, ...]:
-        """The entries that concern the object read from this mapping."""
-        return tuple(self.of.get(id(item), ()))
+        """The entries, then the notes, that concern the object read from this mapping."""
+        return tuple(sorted(self.of.get(id(item), ()), key=lambda erratum: erratum.is_note))
 
 
 def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> Applied:
@@ -42,7 +43,8 @@ def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> App
         )  # fmt: skip
         return applied
     seen: dict[str, Place] = {}
-    for entry in _maps(overlay.get("entries")):
+    notes = list(_maps(overlay.get("notes")))  # first: what they speak of is what the vendor prints
+    for entry in (*notes, *_maps(overlay.get("entries"))):
         if _is_broken(entry, broken):
             continue
         if entry["id"] in seen:
@@ -58,7 +60,7 @@ def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> App
 def _apply_entry(tree: Map, entry: Map, applied: Applied) -> None:
     printed, held = entry.get("printed") or {}, entry.get("held") or {}
     erratum = _erratum(entry)
-    applied.entries.append(erratum)
+    (applied.notes if erratum.is_note else applied.entries).append(erratum)
     where = entry.get("where")
     wheres = where if isinstance(where, Seq) else [where] if where else []
     matched = 0
@@ -104,13 +106,14 @@ def _erratum(entry: Map) -> Erratum:
     return Erratum(
         id=entry["id"],
         title=str(entry.get("title", "")),
-        why=str(entry.get("why", "")),
+        why=str(entry.get("what" if "what" in entry else "why", "")),
         evidence=str(entry.get("evidence", "")),
-        confidence=str(entry.get("confidence", "open")),
+        confidence=str(entry.get("confidence", "")),
         tables=tuple(t for t in entry.get("tables") or () if isinstance(t, int)),
         printed=tuple((entry.get("printed") or {}).items()),
         held=tuple((entry.get("held") or {}).items()),
         changes=bool(entry.get("held")),
+        is_note="what" in entry,
     )
 
 
@@ -177,7 +180,7 @@ def _stale(entry: Map, target: Map, printed: Map) -> Finding:
             now = target.get(key)
             place = target.at(key)
             message = (
-                f"stale erratum {entry['id']}: it was written for `{key}: {_show(value)}`, "
+                f"stale {_erratum(entry).label.lower()} {entry['id']}: it was written for `{key}: {_show(value)}`, "
                 f"the ICD now has `{key}: {_show(now)}` ({place})"
             )
             return Finding(STALE, message, printed.at(key), _AGAIN)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import os
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from icdgen import fingerprints
 from icdgen.diagnostics import Finding, Findings, Place, in_order
@@ -14,11 +16,17 @@ from icdgen.icd.loaded import Loaded
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Icd, Node
 
+if TYPE_CHECKING:
+    from icdgen.backends import Backend
+
 INCLUDE = "ICD004"
 
 
-def load(paths: list[Path], check: bool = True) -> Loaded:
-    """The ICDs of ``paths`` (files, or folders of files) with all that they include. Never raises for bad input."""
+def load(paths: list[Path], check: bool = True, plug_ins: Sequence[Backend] = ()) -> Loaded:
+    """The ICDs of ``paths`` (files, or folders of files) with all that they include. Never raises for bad input.
+
+    Names must do for the languages of icdgen and for ``plug_ins``.
+    """
     loader = _Loader()
     for path in paths:
         for file in loader.folder(path) if os.path.isdir(path) else [path]:
@@ -28,7 +36,7 @@ def load(paths: list[Path], check: bool = True) -> Loaded:
     if check and not loader.unreadable:
         from icdgen.icd import rules
 
-        findings = findings + rules.check(icd, loader.applied, complete=not loader.broken)
+        findings = findings + rules.check(icd, loader.applied, complete=not loader.broken, plug_ins=plug_ins)
     return Loaded(icd, in_order(findings), loader.inputs, loader.texts)
 
 

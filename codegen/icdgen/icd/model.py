@@ -23,17 +23,28 @@ CAN_PACKETS = 256  # of an extended message
 
 @dataclass(frozen=True, slots=True)
 class Erratum:
-    """One decision about a fault of the manual. ``changes`` is False for a note."""
+    """A decision about a fault of the manual; or a note, which holds and accepts nothing: ``why`` is what it says."""
 
     id: str
     title: str
     why: str
     evidence: str
-    confidence: str  # "certain" | "likely" | "open"
+    confidence: str  # "certain" | "likely" | "open"; a note may do without: ""
     tables: tuple[int, ...] = ()
     printed: tuple[tuple[str, object], ...] = ()
     held: tuple[tuple[str, object], ...] = ()
     changes: bool = False
+    is_note: bool = False
+
+    @property
+    def label(self) -> str:
+        """What it is called in comments and on pages."""
+        return "Note" if self.is_note else "Erratum"
+
+    @property
+    def sureness(self) -> str:
+        """Its confidence in brackets behind a name, if it has one."""
+        return f" ({self.confidence})" if self.confidence else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,7 +215,7 @@ class Node:
     protocol: dict[str, Any] = field(default_factory=dict, hash=False)
     loggable: tuple[Loggable, ...] = ()
     missing: tuple[Missing, ...] = ()
-    errata: tuple[Erratum, ...] = ()  # all entries of its overlay, in order
+    errata: tuple[Erratum, ...] = ()  # all entries of its overlay, in order, then all notes
     digest: str = ""  # SHA-256 over the file, its overlay and what it includes
     file: str = ""
     source: Map = field(default_factory=unread, compare=False, repr=False)

@@ -103,6 +103,9 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
     elif name == "dependentRequired":
         message = f"{what} lacks a key that another of its keys needs"
         help = "`held` needs `printed`, and `printed` needs `where`"
+    elif name == "anyOf":
+        keys = (f"`{key}`" for choice in rule["anyOf"] for key in choice["required"])
+        message = f"{what} has neither {' nor '.join(keys)}"
     else:
         message = f"{what} does not fit the format ({name})"
     return [Finding(CODE, message, place, help or "see docs/icd-format.md")]

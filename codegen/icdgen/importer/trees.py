@@ -39,12 +39,27 @@ def tree(node: NodeParts, document: Document, profile: Profile, prose: bool, tro
         made["enums"] = [_enum(one, prose) for one in node.enums]
     if node.messages:
         made["messages"] = [_message(one, prose) for one in node.messages]
+        if announced := _announced(made["messages"]):
+            made["formula_for"] = announced
     if node.logs:
         made["loggable"] = [
             {"bit": b.bit, "id": b.id, **({"name": b.name} if b.name else {})} for log in node.logs for b in log.bits
         ]
     if missing := [entry for row in node.missing if (entry := _missing(row))]:
         made["missing"] = missing
+    return made
+
+
+def _announced(messages: list[dict]) -> dict[str, str]:
+    """What is announced of every formula of a kind of messages is taken out of the fields, to be said once."""
+    made = {}
+    for kind in dict.fromkeys(message["kind"] for message in messages):
+        fields = [f for m in messages if m["kind"] == kind for f in m.get("fields", ()) if "formula" in f]
+        words = {field.get("formula_for") for field in fields}
+        if len(fields) > 1 and len(words) == 1 and None not in words:
+            made[kind] = words.pop()
+            for field in fields:
+                del field["formula_for"]
     return made
 
 

@@ -36,10 +36,26 @@ def update(text: str, name: str, tree: dict) -> Updated:
     made = Updated("")
     for key, kind in (("enums", "enumeration"), ("messages", "message"), ("loggable", "loggable")):
         _section(root, key, kind, tree.get(key, []), made.changes)
+    _announced(root, tree.get("formula_for"), made.changes)
     _added(root, "units", "symbol", tree.get("units", []), made.changes)
     _added(root, "missing", "name", tree.get("missing", []), made.changes)
     made.text = emit.of(root)
     return made
+
+
+def _announced(root: Branch, words: dict | None, changes: list[str]) -> None:
+    """What the manual announces of all formulas of a kind of messages."""
+    old = _child(root, "formula_for")
+    before = _plain(old.value) if old is not None else None
+    if before == words:
+        return
+    changes.append(
+        f"~ formula_for {_shown(before) if before else '(absent)'} -> {_shown(words) if words else '(absent)'}"
+    )
+    if old is not None:
+        root.children.remove(old)
+    if words:
+        root.children.append(Child(Text("formula_for", "formula_for"), emit.branch(words)))
 
 
 def _section(root: Branch, key: str, kind: str, items: list[dict], changes: list[str]) -> None:

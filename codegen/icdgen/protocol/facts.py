@@ -232,6 +232,18 @@ class Files:
     steps: dict[str, Step]
     numbers: dict[str, int]  # ``download.silence_ms`` and the like; truth values as 0 and 1
     packet_ids: dict[str, int]  # bus -> id that heads a download packet there
+    destinations: tuple[int, ...]  # of uploads; none: all
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """What a telecommand starts; its frame says when it is done: ``busy`` is clear, or ``ready`` is set."""
+
+    request: Step
+    progress: Step
+    poll_interval: int
+    timeout: int
+    programs: tuple[int, ...]  # that it may be asked for; none: all
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,10 +282,18 @@ class Facts:
     index: Index | None
     hole_map: HoleMap | None
     files: Files | None
+    program_copy: Operation | None
+    program_information: Operation | None
     identification: Step | None
     statistics: Step | None
     boot_ms: int | None
     assumptions: tuple[Assumption, ...]
+
+    @property
+    def owners(self) -> list[str]:
+        """The nodes whose messages the node has: itself first, then those that it includes."""
+        others = {message.node for message in (*self.telecommands.values(), *self.telemetry.values())}
+        return [self.node.name, *sorted(others - {self.node.name})]
 
     @property
     def longest_telecommand(self) -> int:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from icdgen.icd.model import Icd
-from icdgen.protocol import can, crc, facts, files, i2c, logs, scripts, times, uart
+from icdgen.protocol import can, crc, facts, files, i2c, logs, scripts, times, transfer, uart
 from icdgen.protocol.asked import Refusal, Request, flag, mappings, number, octets, rows, text
 from icdgen.protocol.asked import hex_bytes as _hex
 from icdgen.protocol.facts import Facts
@@ -26,13 +26,13 @@ def answer(icd: Icd, request: Request) -> dict:
         return {"ok": False, "error": "unsupported"}
     except i2c.WrongLength as error:
         return {"ok": False, "error": "length", "expected": error.expected, "actual": error.actual}
-    except can.TooLong as error:
+    except (can.TooLong, transfer.TooLarge) as error:
         return {"ok": False, "error": "too-long", "expected": error.most, "actual": error.actual}
     except i2c.ChecksumError as error:
         return {"ok": False, "error": "checksum", "expected": error.expected, "actual": error.actual}
     except times.OutOfRange as error:
         return {"ok": False, "error": "range", "field": error.part}
-    except (files.NoSuchPacket, OverflowError):
+    except (files.NoSuchPacket, transfer.NotAllowed, OverflowError):
         return {"ok": False, "error": "range"}
 
 

@@ -25,6 +25,7 @@ from icdgen.protocol.facts import (
     LogFile,
     LogMask,
     LogMessage,
+    Operation,
     Polled,
     Step,
     TimePart,
@@ -69,6 +70,8 @@ class Reader:
             index=self.index(),
             hole_map=self.hole_map(),
             files=self.files(),
+            program_copy=self.operation("program_copy"),
+            program_information=self.operation("program_information"),
             identification=self.step(self.section("identification")),
             statistics=self.step(self.section("statistics")),
             boot_ms=None if boot is None else boot * 1000,
@@ -239,7 +242,10 @@ class Reader:
             return None
         steps, numbers, packet_ids = {}, {}, {}
         for part in ("list", "download", "upload", "erase", "format"):
-            for key, value in self.section("file_transfer", part).items():
+            section = self.section("file_transfer", part)
+            if self.node.name not in section.get("nodes", [self.node.name]):
+                continue
+            for key, value in section.items():
                 if isinstance(value, int):
                     numbers[f"{part}.{key}"] = int(value)
                 elif isinstance(value, dict) and "message" in value:
@@ -260,7 +266,16 @@ class Reader:
             steps,
             numbers,
             packet_ids,
+            tuple(self.section("file_transfer", "upload").get("destinations", ())),
         )
+
+    def operation(self, name: str) -> Operation | None:
+        given = self.section(name)
+        request, progress = self.step(given.get("request", {})), self.step(given.get("progress", {}))
+        if request is None or progress is None:
+            return None
+        programs = tuple(given.get("programs", ()))
+        return Operation(request, progress, given["poll_interval_ms"], given["timeout_s"] * 1000, programs)
 
     def step(self, given: dict) -> Step | None:
         message = self.messages.get(given.get("message", ""))

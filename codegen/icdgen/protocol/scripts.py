@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from icdgen.protocol import can, transfer
+from icdgen.protocol import can, programs, transfer
 from icdgen.protocol.asked import Refusal, flag, hex_bytes, mappings, number, octets, text
 from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Machine, NotNow, Request, UnknownId
 from icdgen.protocol.facts import CAN, I2C, UART, Client, Facts
 from icdgen.protocol.i2c import WrongLength
 
 BUSES = (UART, I2C, CAN)
+LONGEST = 1 << 20  # how often the bytes of an upload are repeated at most
 
 
 def client(known: Facts, request: dict) -> dict:
@@ -99,6 +100,8 @@ def file(known: Facts, request: dict) -> dict:
         answer["entries"] = procedure.entries
     elif isinstance(procedure, transfer.Upload):
         answer["sent"] = procedure.sent
+    elif isinstance(procedure, programs.ProgramInformation):
+        answer |= {"size": procedure.size, "checksum": procedure.checksum}
     return answer
 
 
@@ -136,11 +139,16 @@ def procedure_of(known: Facts, request: dict) -> transfer.Procedure:
             known, bus, number(request, "type", 0, 255), number(request, "counter", 0, 255), size, block
         )
     if name == "upload":
-        return transfer.Upload(known, number(request, "destination", 0, 255), octets(request), block)
+        times = number(request, "times", 1, LONGEST, 1)
+        return transfer.Upload(known, number(request, "destination", 0, 255), octets(request) * times, block)
     if name == "erase":
         return transfer.Erase(
             known, number(request, "type", 0, 255), number(request, "counter", 0, 255), flag(request, "all")
         )
     if name == "format":
         return transfer.Format(known)
+    if name == "program_copy":
+        return programs.ProgramCopy(known, number(request, "program", 0, 255))
+    if name == "program_information":
+        return programs.ProgramInformation(known, number(request, "program", 0, 255))
     raise Refusal("request", detail="there is no such procedure")

@@ -31,11 +31,23 @@ class Wait:
 Run = Generator["Request | Wait", "dict | None", None]
 
 
+class NotAllowed(ValueError):
+    """A destination or program that the ICD does not have among those that can be chosen."""
+
+
+class TooLarge(ValueError):
+    """A destination holds ``most`` bytes, and not ``actual``."""
+
+    def __init__(self, most: int, actual: int) -> None:
+        super().__init__(most, actual)
+        self.most, self.actual = most, actual
+
+
 class Procedure:
     """What all procedures share. ``result``: None while it runs, then "done" or why it failed."""
 
     def __init__(self, known: Facts) -> None:
-        self.known, self.files = known, need(known.files, "file_transfer")
+        self.known = known
         self.now = 0
         self.result: str | None = None
         self.asked = False  # a request was given out, its outcome is waited for
@@ -104,11 +116,11 @@ class Procedure:
 
     def step(self, name: str) -> Step:
         """The message of a step and its fields by role. Raises `icdgen.protocol.facts.Unsupported`."""
-        return need(self.files.steps.get(name), f"file_transfer.{name}")
+        raise NotImplementedError
 
     def number(self, name: str) -> int:
         """A number of the ICD by its path. Raises `icdgen.protocol.facts.Unsupported`."""
-        return need(self.files.numbers.get(name), f"file_transfer.{name}")
+        raise NotImplementedError
 
     def request(self, step: str, repeat: bool = True, /, **values: int | bytes) -> Request:
         """The telecommand of a step."""
@@ -132,20 +144,35 @@ class Procedure:
         return {role: raw[name] for role, name in part.fields.items()}, frame
 
     def poll(
-        self, step: str, role: str, wanted: int, interval: str, timeout: int
+        self, step: str, role: str, wanted: int, interval: str, timeout: int, program: int | None = None
     ) -> Generator[Request | Wait, dict | None, tuple[dict, bytes]]:
-        """Requests the frame until the flag is as wanted."""
+        """Requests the frame until the flag is as wanted, of that program if the frame says of which one."""
         end = self.now + timeout
         while True:
             values, frame = yield from self.telemetry(step)
-            if values[role] == wanted or values.get("error"):
+            meant = program is None or values.get("program", program) == program
+            if (values[role] == wanted and meant) or values.get("error"):
                 return values, frame
             if self.now >= end:
                 raise Failed("timeout")
             yield from self.wait(self.number(interval))
 
 
-class List(Procedure):
+class Transfer(Procedure):
+    """A procedure of file transfer."""
+
+    def __init__(self, known: Facts) -> None:
+        super().__init__(known)
+        self.files = need(known.files, "file_transfer")
+
+    def step(self, name: str) -> Step:
+        return need(self.files.steps.get(name), f"file_transfer.{name}")
+
+    def number(self, name: str) -> int:
+        return need(self.files.numbers.get(name), f"file_transfer.{name}")
+
+
+class List(Transfer):
     """The files of the node, one after the other, in ``entries``: values of the information frame by role."""
 
     def __init__(self, known: Facts) -> None:
@@ -173,7 +200,7 @@ class List(Procedure):
                 raise Failed("refused")
 
 
-class Download(Procedure):
+class Download(Transfer):
     """A file from the node, block by block, in ``blocks``. ``size`` None: as much as there is, as of the index file."""
 
     def __init__(
@@ -287,11 +314,20 @@ class Download(Procedure):
         return -(-self.count // (need(self.known.hole_map, "file_transfer.hole_map").message_bytes * 8))
 
 
-class Upload(Procedure):
-    """A file to the node, block by block. ``sent``: bytes that are committed."""
+class Upload(Transfer):
+    """A file to the node, block by block. ``sent``: bytes that are committed.
+
+    Raises `icdgen.protocol.facts.Unsupported`, `NotAllowed` and `TooLarge`.
+    """
 
     def __init__(self, known: Facts, destination: int, data: bytes, block: int | None = None) -> None:
         super().__init__(known)
+        self.step("upload.initiate")
+        if self.files.destinations and destination not in self.files.destinations:
+            raise NotAllowed(destination)
+        most = self.files.numbers.get("upload.destination_bytes")
+        if most is not None and len(data) > most:
+            raise TooLarge(most, len(data))
         self.destination, self.data = destination, data
         self.block = min(block or self.files.block_bytes, self.files.block_bytes)
         self.sent = 0
@@ -353,7 +389,7 @@ class Upload(Procedure):
         return [number - self.files.first_packet for number in lost]
 
 
-class Erase(Procedure):
+class Erase(Transfer):
     """Deletes a file, or all of them: then it is done when the node is no longer busy."""
 
     def __init__(self, known: Facts, type: int, counter: int, all: bool) -> None:
@@ -367,7 +403,7 @@ class Erase(Procedure):
             yield from self.poll("erase.progress", "busy", 0, "erase.poll_interval_ms", timeout)
 
 
-class Format(Procedure):
+class Format(Transfer):
     """Formats the medium."""
 
     def run(self) -> Run:

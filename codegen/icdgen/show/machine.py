@@ -34,7 +34,8 @@ def _node(node: Node) -> _Object:
         units=[_present(**unit._asdict()) for unit in node.units],
         protocol=node.protocol,
         missing=[{"kind": m.kind, "id": m.id, "name": m.name, "why": m.why} for m in node.missing],
-        errata=_errata(node),
+        errata=_errata(node, is_note=False),
+        notes=_errata(node, is_note=True),
         digest=node.digest,
     ) | {
         "includes": list(node.includes),
@@ -59,7 +60,7 @@ def _message(message: Message) -> _Object:
         summary=message.summary,
         acknowledge=None if message.acknowledge else "reset" if message.expects_reset else False,
         contains=[{"message": part.message, "offset": part.at} for part in message.contains],
-        errata=_ids(message.errata),
+        **_ids(message.errata),
     ) | {"fields": [_field(f) for f in message.fields]}
 
 
@@ -80,7 +81,7 @@ def _field(field: Field) -> _Object:
         special=[{"value": s.value, "meaning": s.meaning} for s in field.special],
         limits=_limits(field.limits),
         summary=field.summary,
-        errata=_ids(field.errata),
+        **_ids(field.errata),
     )
 
 
@@ -90,17 +91,17 @@ def _enum(enum: Enum) -> _Object:
         identifier=enum.identifier,
         table=enum.table,
         summary=enum.summary,
-        errata=_ids(enum.errata),
+        **_ids(enum.errata),
     ) | {
         "members": [
-            _present(value=m.value, name=m.name, identifier=m.identifier, summary=m.summary, errata=_ids(m.errata))
+            _present(value=m.value, name=m.name, identifier=m.identifier, summary=m.summary, **_ids(m.errata))
             for m in enum.members
         ]
     }
 
 
 def _loggable(row: Loggable) -> _Object:
-    return _present(bit=row.bit, id=row.id, name=row.name, errata=_ids(row.errata))
+    return _present(bit=row.bit, id=row.id, name=row.name, **_ids(row.errata))
 
 
 def _limits(limits: Limits | None) -> dict[str, str] | None:
@@ -111,7 +112,7 @@ def _limits(limits: Limits | None) -> dict[str, str] | None:
     return {key: str(bound) for key, bound in bounds.items() if bound is not None}
 
 
-def _errata(node: Node) -> list[_Object]:
+def _errata(node: Node, is_note: bool) -> list[_Object]:
     places: dict[str, list[_Object]] = {}
     for place, errata in _places(node):
         for erratum in errata:
@@ -120,7 +121,7 @@ def _errata(node: Node) -> list[_Object]:
         _present(
             id=e.id,
             title=e.title,
-            why=e.why,
+            **{"what" if is_note else "why": e.why},
             evidence=e.evidence,
             confidence=e.confidence,
             tables=list(e.tables),
@@ -128,8 +129,9 @@ def _errata(node: Node) -> list[_Object]:
             held=_plain(dict(e.held)),
             places=places.get(e.id, []),
         )
-        | {"changes": e.changes}
+        | ({} if is_note else {"changes": e.changes})
         for e in node.errata
+        if e.is_note == is_note
     ]
 
 
@@ -147,8 +149,11 @@ def _places(node: Node) -> Iterator[tuple[_Object, tuple[Erratum, ...]]]:
         yield {"loggable": row.bit}, row.errata
 
 
-def _ids(errata: tuple[Erratum, ...]) -> list[str]:
-    return [erratum.id for erratum in errata]
+def _ids(errata: tuple[Erratum, ...]) -> dict[str, list[str]]:
+    return {
+        "errata": [erratum.id for erratum in errata if not erratum.is_note],
+        "notes": [erratum.id for erratum in errata if erratum.is_note],
+    }
 
 
 def _plain(value: object) -> object:

@@ -21,6 +21,7 @@ _NODES = [
     Column("settings", right=True, fixed=True),
     Column("fields", right=True, fixed=True),
     Column("errata", right=True, fixed=True),
+    Column("notes", right=True, fixed=True),
     Column("includes"),
 ]
 _MESSAGES = [
@@ -56,7 +57,8 @@ def _nodes(icd: Icd, width: int | None) -> str:
             _number(node.interface_version),
             *(str(sum(m.kind == kind for m in node.messages)) for kind in (TELECOMMAND, TELEMETRY, CONFIGURATION)),
             str(sum(len(m.fields) for m in node.messages)),
-            str(len(node.errata)),
+            str(sum(not e.is_note for e in node.errata)),
+            str(sum(e.is_note for e in node.errata)),
             ", ".join(node.includes),
         )
         for node in icd.nodes
@@ -70,7 +72,7 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
         f"interface version {node.interface_version}" if node.interface_version is not None else "",
         f"{node.byte_order}-endian, {node.bit_order}",
         f"includes {', '.join(node.includes)}" if node.includes else "",
-        f"{len(node.errata)} errata" if node.errata else "",
+        _count(node),
     ]
     text = _lines([f"{node.name}: {node.title}", "; ".join(filter(None, facts)), node.summary], width)
     messages = [m for m in icd.messages_of(node) if kind in (None, m.kind)]
@@ -145,8 +147,14 @@ def _enum(enum: Enum, width: int | None) -> str:
     return _lines([head, enum.summary], width) + table + errata
 
 
+def _count(node: Node) -> str:
+    notes = sum(e.is_note for e in node.errata)
+    found = ((len(node.errata) - notes, "erratum", "errata"), (notes, "note", "notes"))
+    return ", ".join(f"{number} {one if number == 1 else more}" for number, one, more in found if number)
+
+
 def _erratum(erratum: Erratum, width: int | None) -> str:
-    lines = [f"Erratum {erratum.id} ({erratum.confidence}): {erratum.title}", erratum.why, erratum.evidence]
+    lines = [f"{erratum.label} {erratum.id}{erratum.sureness}: {erratum.title}", erratum.why, erratum.evidence]
     if erratum.changes:
         printed = dict(erratum.printed)
         changes = [f"{key} {_value(printed.get(key))} -> {_value(held)}" for key, held in erratum.held]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
 from icdgen.protocol import facts, i2c, logs
+from icdgen.sim.programs import Programs
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import Storage
 from icdgen.sim.transfers import Raw, Refused, Transfers
@@ -32,6 +33,8 @@ class Program:
         self.values = Values(icd, node)
         form = self.known.files
         self.transfers = Transfers(self.known, form, storage, settings.busy_ms) if form else None
+        self.programs = self._programs(storage)
+        self.unsupported = self._unsupported()
         self.counts: dict[str, int] = {}  # statistics by role
         self.last = (0, True, 0, 0)  # id, processed, code and parameter of the last telecommand
         self.free_at = now  # when the last telecommand is processed
@@ -81,6 +84,7 @@ class Program:
             buses = self.transfers.form.packet_ids
             if message.telemetry_id in (buses.get("i2c"), buses.get("can")):
                 return self._fetched(message)
+        raw |= self.programs.answer(now, message)
         raw |= self._statistics(message) | self._acknowledged(now, message)
         return self.values.encode(message, {**self.values.raw(message), **raw}) if raw else self.values.frame(message)
 
@@ -105,8 +109,8 @@ class Program:
 
     def _take(self, now: int, message: bytes, bus: str) -> Outcome:
         known = self.known.telecommands.get(message[0])
-        if known is None:
-            return self._refusal("unknown_id")
+        if known is None or known.name in self.unsupported:
+            return Outcome(self._refusal("unknown_id").code, 0, known is None or known.acknowledge)
         data, form = message[1:], self.known.checksum
         if form and bus in form.telecommand_buses and len(data) == known.length + form.bytes:
             data, given = data[: known.length], data[known.length :]
@@ -126,16 +130,30 @@ class Program:
                 return self._refusal("parameter", index)
         if known.kind == CONFIGURATION:
             self.values.put(known, data)
-        if self.transfers:
-            try:
+        try:
+            if self.transfers:
                 self.transfers.telecommand(now, known, raw, data)
-            except Refused as refused:
-                return self._refusal("parameter", refused.index)
+            self.programs.telecommand(now, known, raw)
+        except Refused as refused:
+            return self._refusal("parameter", refused.index)
         if known.name == self._log_role().get("message"):
             self._plan_log(now)
         if known.expects_reset:
             return Outcome(self.known.errors.get("none", 0), 0, False, known)
         return Outcome(self.known.errors.get("none", 0), 0, known.acknowledge)
+
+    def _programs(self, storage: Storage) -> Programs:
+        protocol = self.icd.protocol_of(self.node)
+        copy_to = protocol.get("program_copy", {}).get("destination")
+        room = protocol.get("boot", {}).get("internal_flash", {}).get("application_bytes")
+        return Programs(self.known, storage, self.settings.busy_ms, copy_to, room)
+
+    def _unsupported(self) -> set[str]:
+        """Telecommands of a procedure that the ICD gives to other nodes only."""
+        given = self.icd.protocol_of(self.node).get("file_transfer", {}).get("upload", {})
+        if self.node.name in given.get("nodes", [self.node.name]):
+            return set()
+        return {step["message"] for step in given.values() if isinstance(step, dict) and "message" in step}
 
     def _decoded(self, message: Message, data: bytes) -> Raw:
         from icdgen import codec

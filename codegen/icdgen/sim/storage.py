@@ -46,9 +46,15 @@ class Storage:
         checksum = checksum_of(known.crc16, file.data)
         return IndexEntry(key[0], key[1], checksum, len(file.data), file.time, meta[:size].ljust(size, b"\0"))
 
-    def write(self, destination: int, offset: int, data: bytes) -> bool:
+    def put(self, destination: int, data: bytes) -> None:
+        """Stores a whole program."""
+        self.programs[destination] = bytearray(data)
+        if self.on_upload:
+            self.on_upload(destination, data)
+
+    def write(self, destination: int, offset: int, data: bytes, room: int | None = None) -> bool:
         """Commits a block of a program; whether there is room for it."""
-        if offset + len(data) > LARGEST:
+        if offset + len(data) > (LARGEST if room is None else min(LARGEST, room)):
             return False
         program = self.programs.setdefault(destination, bytearray())
         program.extend(bytes(max(0, offset - len(program))))

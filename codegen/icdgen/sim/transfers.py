@@ -172,10 +172,16 @@ class Transfers:
         return Packet(self.form.first_packet + position, data)
 
     def _initiate(self, now: int, values: Raw) -> None:
-        self.storage.programs[int(values["destination"])] = bytearray()  # type: ignore[arg-type]
+        self.storage.programs[self._destination(values)] = bytearray()
         self.received, self.failed = {}, False
         self._clear_map()
         self._work("upload.initiate", now)
+
+    def _destination(self, values: Raw) -> int:
+        destination = int(values["destination"])
+        if self.form.destinations and destination not in self.form.destinations:
+            raise Refused()
+        return destination
 
     def _begin(self, now: int, _: Raw) -> None:
         self.received = {}
@@ -203,10 +209,11 @@ class Transfers:
         return {"checksum": checksum_of(self.known.crc16, self._upload_block())}
 
     def _finalize(self, now: int, values: Raw) -> None:
-        self._work("upload.finalize", now)
         block, length = self._upload_block(), int(values["length"])  # type: ignore[arg-type]
-        destination, offset = int(values["destination"]), int(values["offset"])  # type: ignore[arg-type]
-        self.failed = length > len(block) or not self.storage.write(destination, offset, block[:length])
+        destination, offset = self._destination(values), int(values["offset"])  # type: ignore[arg-type]
+        room = self.form.numbers.get("upload.destination_bytes")
+        self.failed = length > len(block) or not self.storage.write(destination, offset, block[:length], room)
+        self._work("upload.finalize", now)
 
     def _erase(self, now: int, values: Raw) -> None:
         if values.get("all"):

@@ -11,7 +11,7 @@ from icdgen import __version__
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts, ops
 from icdgen.protocol.facts import Facts
-from icdgen.vectors.wire import clients, files, i2c, logs, packets, procedures, streams
+from icdgen.vectors.wire import clients, files, i2c, logs, operations, packets, procedures, streams
 
 FORMAT = 1
 
@@ -66,3 +66,4 @@ def _requests(known: Facts) -> Iterator[tuple[str, dict]]:
     yield from files.requests(known, source)
     yield from clients.scripts(known)
     yield from procedures.scripts(known)
+    yield from operations.scripts(known)

@@ -10,6 +10,8 @@
 
 #include "../icdgen_wire.h"
 
+/** The node whose messages these are. */
+#define BOOTLOADER_NODE "bootloader"
 /** Bytes of the longest message of either direction, with id and checksum. */
 #define BOOTLOADER_LONGEST 23u
 /** Bytes that joining CAN packets takes for each sender at once. */
@@ -21,15 +23,19 @@
 /** Bytes of a bit for each packet of such a block. */
 #define BOOTLOADER_BLOCK_BITMAP_BYTES 128u
 
-/* Ids for ICD_REQUEST(). */
-#define BOOTLOADER_BOOTLOADER_STATE_TELEMETRY 132u
-#define BOOTLOADER_PROGRAM_INFORMATION_TELEMETRY 232u
-#define BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_TELEMETRY 233u
+/* Messages for ICD_REQUEST(): whose they are, and their ids. */
+#define BOOTLOADER_BOOTLOADER_STATE_TELEMETRY BOOTLOADER_NODE, 132u
+#define BOOTLOADER_PROGRAM_INFORMATION_TELEMETRY BOOTLOADER_NODE, 232u
+#define BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_TELEMETRY BOOTLOADER_NODE, 233u
 
 /** What the wire layer needs to know about Bootloader. */
 static inline const icd_link_t *bootloader_link(void)
 {
     /* clang-format off */
+    static const char *const nodes[] = {
+        "bootloader",
+        "common",
+    };
     static const icd_message_t telecommands[] = {
         /*
          * Reset. Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for,
@@ -107,8 +113,8 @@ static inline const icd_link_t *bootloader_link(void)
         {ICD_REASON_CHECKSUM, 4u},
     };
     /**
-     * Assumed escaped_in: That the id is escaped like the data is not said. It matters for telecommand 31 only, and for
-     * the id in its acknowledge.
+     * Assumed escaped_in: By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of
+     * 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in its acknowledge.
      */
     static const icd_framing_t framing = {
         0x1fu, /* escape */
@@ -309,6 +315,9 @@ static inline const icd_link_t *bootloader_link(void)
         {ICD_ROLE_BUSY, 0u, 1u},  /* Busy */
         {ICD_ROLE_ERROR, 1u, 1u}, /* Error */
     };
+    static const uint8_t destinations[] = {
+        3u, 4u, 5u, 6u, 7u, 8u, 9u,
+    };
     /**
      * Assumed poll_interval_ms: No time is given. Assumed rounds: Nothing is said about giving up. Assumed
      * checksum_covers_fill: Not said. The node learns the length of the block only when the block is committed, after
@@ -329,6 +338,8 @@ static inline const icd_link_t *bootloader_link(void)
         5000u,                                            /* finalize_timeout_ms */
         32u,                                              /* rounds */
         true,                                             /* the checksum covers the fill */
+        524288u,                                          /* bytes of a destination */
+        destinations, 7u,                                 /* destinations */
     };
     static const icd_place_t erase_request_places[] = {
         {ICD_ROLE_TYPE, 0u, 8u},    /* File Type */
@@ -358,6 +369,43 @@ static inline const icd_link_t *bootloader_link(void)
         200u,                                            /* poll_interval_ms */
         60000u,                                          /* timeout_ms */
     };
+    static const icd_place_t program_copy_request_places[] = {
+        {ICD_ROLE_PROGRAM, 0u, 8u}, /* Source Program Index */
+    };
+    static const icd_place_t program_copy_progress_places[] = {
+        {ICD_ROLE_BUSY, 0u, 1u},  /* Busy */
+        {ICD_ROLE_ERROR, 1u, 1u}, /* Error */
+    };
+    static const uint8_t program_copy_programs[] = {
+        3u, 4u, 5u, 6u, 7u, 8u, 9u,
+    };
+    /**
+     * Assumed programs: A copy is described from external flash only. What the other programs of the enumeration would
+     * do is not said. Assumed poll_interval_ms: No time is given. Assumed timeout_s: No time is given. The same area is
+     * erased as for an upload, which takes up to 8 s, and then written.
+     */
+    static const icd_operation_form_t program_copy = {
+        {103, -1, 2u, 1u, program_copy_request_places, NULL},  /* Copy Program to Internal Flash */
+        {-1, 233, 1u, 2u, program_copy_progress_places, NULL}, /* Copy To Internal Flash Progress */
+        50u, 10000u,                                           /* poll_interval_ms, timeout_ms */
+        program_copy_programs, 7u,                             /* program_copy_programs */
+    };
+    static const icd_place_t program_information_request_places[] = {
+        {ICD_ROLE_PROGRAM, 0u, 8u}, /* Program Index */
+    };
+    static const icd_place_t program_information_progress_places[] = {
+        {ICD_ROLE_PROGRAM, 0u, 8u},    /* Program Index */
+        {ICD_ROLE_BUSY, 8u, 1u},       /* Busy */
+        {ICD_ROLE_SIZE, 16u, 32u},     /* File Size */
+        {ICD_ROLE_CHECKSUM, 48u, 16u}, /* Checksum */
+    };
+    /** Assumed poll_interval_ms: No time is given. */
+    static const icd_operation_form_t program_information = {
+        {102, -1, 1u, 1u, program_information_request_places, NULL},  /* Read Program Information */
+        {-1, 232, 8u, 4u, program_information_progress_places, NULL}, /* Program Information */
+        50u, 2000u,                                                   /* poll_interval_ms, timeout_ms */
+        NULL, 0u,                                                     /* program_information_programs */
+    };
     static const icd_place_t identification_places[] = {
         {ICD_ROLE_NODE_TYPE, 0u, 8u},         /* Node type */
         {ICD_ROLE_INTERFACE_VERSION, 8u, 8u}, /* Interface version */
@@ -371,22 +419,24 @@ static inline const icd_link_t *bootloader_link(void)
      * given.
      */
     static const icd_link_t link = {
-        true,            /* byte order: little */
-        false,           /* bit 0 is the most significant one */
-        128u, 255u,      /* ids of telemetry */
+        nodes,
+        2u,                   /* how many */
+        true,                 /* byte order: little */
+        false,                /* bit 0 is the most significant one */
+        128u, 255u,           /* ids of telemetry */
         telecommands,
         telemetry,
-        31u, 30u,        /* how many */
-        23u, 23u, 23u,   /* longest telecommand, reply, any */
-        22u,             /* longest without id and checksum */
-        110,             /* node type */
-        3,               /* interface version */
+        31u, 30u,             /* how many */
+        23u, 23u, 23u,        /* longest telecommand, reply, any */
+        22u,                  /* longest without id and checksum */
+        110,                  /* node type */
+        3,                    /* interface version */
         {1000u, 3u, 20u, 5000u},
         errors,
-        5u, 0u,          /* how many; no error */
+        5u, 0u,               /* how many; no error */
         &framing,
         &acknowledge,
-        87,              /* I2C address */
+        87,                   /* I2C address */
         &polled,
         &can,
         NULL,
@@ -398,12 +448,14 @@ static inline const icd_link_t *bootloader_link(void)
         &index_entry,
         &hole_map,
         &files,
-        &list,           /* list */
-        &download,       /* download */
-        &upload,         /* upload */
-        &erase,          /* erase */
-        &format,         /* format */
-        &identification, /* identification */
+        &list,                /* list */
+        &download,            /* download */
+        &upload,              /* upload */
+        &erase,               /* erase */
+        &format,              /* format */
+        &program_copy,        /* program copy */
+        &program_information, /* program information */
+        &identification,      /* identification */
     };
     /* clang-format on */
     return &link;

@@ -7,7 +7,6 @@
  * @file
  * Boot Index and Status: telemetry 130, 2 bytes. Table 32.
  * Program selected for booting, and how the last attempt went.
- * @note Erratum COM-060 (open): The running program answers more than the text says, or less.
  */
 
 #include "../icdgen.h"
@@ -22,7 +21,7 @@
 typedef struct {
     /**
      * Program Index: bits 0 to 7.
-     * @note Erratum COM-069 (open): Program Index of the boot status can be the bootloader.
+     * @note Note COM-069 (open): Program Index of the boot status can be the bootloader.
      */
     common_boot_programs_list_t program_index;
     /** Boot Status: bits 8 to 15. */

@@ -6,7 +6,6 @@
 /**
  * @file
  * Cache enabled state: configuration, set by telecommand 3, got by telemetry 131, 1 byte. Table 48.
- * @note Erratum COM-107 (certain): Get ids do not follow from set ids.
  */
 
 #include "../icdgen.h"
@@ -22,7 +21,7 @@
 typedef struct {
     /**
      * Enabled state: bit 0.
-     * @note Erratum COM-108 (open): Cache enabled state: which cache, and the default.
+     * @note Note COM-108 (open): Cache enabled state: which cache, and the default.
      */
     bool enabled_state;
 } common_cache_enabled_state_t;

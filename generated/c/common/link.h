@@ -10,6 +10,8 @@
 
 #include "../icdgen_wire.h"
 
+/** The node whose messages these are. */
+#define COMMON_NODE "common"
 /** Bytes of the longest message of either direction, with id and checksum. */
 #define COMMON_LONGEST 23u
 /** Bytes that joining CAN packets takes for each sender at once. */
@@ -21,39 +23,42 @@
 /** Bytes of a bit for each packet of such a block. */
 #define COMMON_BLOCK_BITMAP_BYTES 128u
 
-/* Ids for ICD_REQUEST(). */
-#define COMMON_IDENTIFICATION_TELEMETRY 128u
-#define COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_TELEMETRY 129u
-#define COMMON_BOOT_INDEX_AND_STATUS_TELEMETRY 130u
-#define COMMON_LAST_LOGGED_EVENT_TELEMETRY 141u
-#define COMMON_SRAM_LATCHUP_COUNTERS_TELEMETRY 142u
-#define COMMON_EDAC_ERROR_COUNTERS_TELEMETRY 143u
-#define COMMON_COMMUNICATION_STATUS_TELEMETRY 144u
-#define COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_TELEMETRY 234u
-#define COMMON_TELECOMMAND_ACKNOWLEDGE_TELEMETRY 240u
-#define COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_TELEMETRY 241u
-#define COMMON_DOWNLOAD_BLOCK_READY_TELEMETRY 242u
-#define COMMON_FILE_INFORMATION_TELEMETRY 243u
-#define COMMON_INITIALIZE_UPLOAD_COMPLETE_TELEMETRY 244u
-#define COMMON_UPLOAD_BLOCK_COMPLETE_TELEMETRY 245u
-#define COMMON_BLOCK_CHECKSUM_TELEMETRY 246u
-#define COMMON_CACHE_ENABLED_STATE_TELEMETRY 131u
-#define COMMON_SRAM_SCRUB_PARAMETERS_TELEMETRY 134u
-#define COMMON_CURRENT_UNIX_TIME_TELEMETRY 140u
-#define COMMON_UNIX_TIME_SAVE_TO_FLASH_TELEMETRY 145u
-#define COMMON_HOLE_MAP_1_TELEMETRY 247u
-#define COMMON_HOLE_MAP_2_TELEMETRY 248u
-#define COMMON_HOLE_MAP_3_TELEMETRY 249u
-#define COMMON_HOLE_MAP_4_TELEMETRY 250u
-#define COMMON_HOLE_MAP_5_TELEMETRY 251u
-#define COMMON_HOLE_MAP_6_TELEMETRY 252u
-#define COMMON_HOLE_MAP_7_TELEMETRY 253u
-#define COMMON_HOLE_MAP_8_TELEMETRY 254u
+/* Messages for ICD_REQUEST(): whose they are, and their ids. */
+#define COMMON_IDENTIFICATION_TELEMETRY COMMON_NODE, 128u
+#define COMMON_BOOT_AND_RUNNING_PROGRAM_STATUS_TELEMETRY COMMON_NODE, 129u
+#define COMMON_BOOT_INDEX_AND_STATUS_TELEMETRY COMMON_NODE, 130u
+#define COMMON_LAST_LOGGED_EVENT_TELEMETRY COMMON_NODE, 141u
+#define COMMON_SRAM_LATCHUP_COUNTERS_TELEMETRY COMMON_NODE, 142u
+#define COMMON_EDAC_ERROR_COUNTERS_TELEMETRY COMMON_NODE, 143u
+#define COMMON_COMMUNICATION_STATUS_TELEMETRY COMMON_NODE, 144u
+#define COMMON_SD_CARD_FORMAT_ERASE_PROGRESS_TELEMETRY COMMON_NODE, 234u
+#define COMMON_TELECOMMAND_ACKNOWLEDGE_TELEMETRY COMMON_NODE, 240u
+#define COMMON_FILE_DOWNLOAD_BUFFER_WITH_FILE_CONTENTS_TELEMETRY COMMON_NODE, 241u
+#define COMMON_DOWNLOAD_BLOCK_READY_TELEMETRY COMMON_NODE, 242u
+#define COMMON_FILE_INFORMATION_TELEMETRY COMMON_NODE, 243u
+#define COMMON_INITIALIZE_UPLOAD_COMPLETE_TELEMETRY COMMON_NODE, 244u
+#define COMMON_UPLOAD_BLOCK_COMPLETE_TELEMETRY COMMON_NODE, 245u
+#define COMMON_BLOCK_CHECKSUM_TELEMETRY COMMON_NODE, 246u
+#define COMMON_CACHE_ENABLED_STATE_TELEMETRY COMMON_NODE, 131u
+#define COMMON_SRAM_SCRUB_PARAMETERS_TELEMETRY COMMON_NODE, 134u
+#define COMMON_CURRENT_UNIX_TIME_TELEMETRY COMMON_NODE, 140u
+#define COMMON_UNIX_TIME_SAVE_TO_FLASH_TELEMETRY COMMON_NODE, 145u
+#define COMMON_HOLE_MAP_1_TELEMETRY COMMON_NODE, 247u
+#define COMMON_HOLE_MAP_2_TELEMETRY COMMON_NODE, 248u
+#define COMMON_HOLE_MAP_3_TELEMETRY COMMON_NODE, 249u
+#define COMMON_HOLE_MAP_4_TELEMETRY COMMON_NODE, 250u
+#define COMMON_HOLE_MAP_5_TELEMETRY COMMON_NODE, 251u
+#define COMMON_HOLE_MAP_6_TELEMETRY COMMON_NODE, 252u
+#define COMMON_HOLE_MAP_7_TELEMETRY COMMON_NODE, 253u
+#define COMMON_HOLE_MAP_8_TELEMETRY COMMON_NODE, 254u
 
 /** What the wire layer needs to know about Common messages. */
 static inline const icd_link_t *common_link(void)
 {
     /* clang-format off */
+    static const char *const nodes[] = {
+        "common",
+    };
     static const icd_message_t telecommands[] = {
         /*
          * Reset. Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for,
@@ -123,8 +128,8 @@ static inline const icd_link_t *common_link(void)
         {ICD_REASON_CHECKSUM, 4u},
     };
     /**
-     * Assumed escaped_in: That the id is escaped like the data is not said. It matters for telecommand 31 only, and for
-     * the id in its acknowledge.
+     * Assumed escaped_in: By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of
+     * 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in its acknowledge.
      */
     static const icd_framing_t framing = {
         0x1fu, /* escape */
@@ -302,50 +307,6 @@ static inline const icd_link_t *common_link(void)
         32u,                                            /* rounds */
         false,                                          /* the checksum covers the fill */
     };
-    static const icd_place_t upload_initiate_places[] = {
-        {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
-        {ICD_ROLE_BLOCK_SIZE, 8u, 8u},  /* BlockSize */
-    };
-    static const icd_place_t upload_initiated_places[] = {
-        {ICD_ROLE_BUSY, 0u, 1u}, /* Busy */
-    };
-    static const icd_place_t upload_packet_places[] = {
-        {ICD_ROLE_NUMBER, 0u, 16u},  /* Packet Number */
-        {ICD_ROLE_BYTES, 16u, 160u}, /* File Bytes */
-    };
-    static const icd_place_t upload_checksum_places[] = {
-        {ICD_ROLE_CHECKSUM, 0u, 16u}, /* Checksum */
-    };
-    static const icd_place_t upload_finalize_places[] = {
-        {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
-        {ICD_ROLE_OFFSET, 8u, 32u},     /* Offset */
-        {ICD_ROLE_LENGTH, 40u, 16u},    /* Block Length */
-    };
-    static const icd_place_t upload_finalized_places[] = {
-        {ICD_ROLE_BUSY, 0u, 1u},  /* Busy */
-        {ICD_ROLE_ERROR, 1u, 1u}, /* Error */
-    };
-    /**
-     * Assumed poll_interval_ms: No time is given. Assumed rounds: Nothing is said about giving up. Assumed
-     * checksum_covers_fill: Not said. The node learns the length of the block only when the block is committed, after
-     * the checksum. Assumed finalize: The procedure ends with the checksum and does not name the telecommand that
-     * commits the block. Assumed finalize_timeout_ms: No time is given.
-     */
-    static const icd_upload_form_t upload = {
-        {114, -1, 2u, 2u, upload_initiate_places, NULL},  /* Initiate File Upload */
-        {-1, 244, 1u, 1u, upload_initiated_places, NULL}, /* Initialize Upload Complete */
-        {117, -1, 0u, 0u, NULL, NULL},                    /* Reset Upload Block */
-        {115, -1, 22u, 2u, upload_packet_places, NULL},   /* File Upload Packet */
-        {-1, 246, 2u, 1u, upload_checksum_places, NULL},  /* Block Checksum */
-        {116, -1, 7u, 3u, upload_finalize_places, NULL},  /* Finalize Upload Block */
-        {-1, 245, 1u, 2u, upload_finalized_places, NULL}, /* Upload Block Complete */
-        0u,                                               /* block_size */
-        50u,                                              /* poll_interval_ms */
-        8000u,                                            /* erase_timeout_ms */
-        5000u,                                            /* finalize_timeout_ms */
-        32u,                                              /* rounds */
-        true,                                             /* the checksum covers the fill */
-    };
     static const icd_place_t erase_request_places[] = {
         {ICD_ROLE_TYPE, 0u, 8u},    /* File Type */
         {ICD_ROLE_COUNTER, 8u, 8u}, /* File Counter */
@@ -387,6 +348,8 @@ static inline const icd_link_t *common_link(void)
      * given.
      */
     static const icd_link_t link = {
+        nodes,
+        1u,              /* how many */
         true,            /* byte order: little */
         false,           /* bit 0 is the most significant one */
         128u, 255u,      /* ids of telemetry */
@@ -416,9 +379,11 @@ static inline const icd_link_t *common_link(void)
         &files,
         &list,           /* list */
         &download,       /* download */
-        &upload,         /* upload */
+        NULL,            /* upload */
         &erase,          /* erase */
         &format,         /* format */
+        NULL,            /* program copy */
+        NULL,            /* program information */
         &identification, /* identification */
     };
     /* clang-format on */

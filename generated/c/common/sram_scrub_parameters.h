@@ -6,7 +6,6 @@
 /**
  * @file
  * SRAM Scrub Parameters: configuration, set by telecommand 8, got by telemetry 134, 2 bytes. Table 49.
- * @note Erratum COM-107 (certain): Get ids do not follow from set ids.
  */
 
 #include "../icdgen.h"
@@ -22,7 +21,7 @@
 typedef struct {
     /**
      * Scrub Size: bits 0 to 15, raw 0 to 65535.
-     * @note Erratum COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit.
+     * @note Note COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit.
      */
     uint16_t scrub_size;
 } common_sram_scrub_parameters_t;

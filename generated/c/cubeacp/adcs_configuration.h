@@ -15,9 +15,8 @@
  * Tracking Controller Gain Parameters from byte 310. Repeats Moment of Inertia Matrix from byte 323. Repeats Estimation
  * Parameters from byte 347. Repeats Augmented-SGP4 Parameters from byte 378. Repeats User-coded Controller and
  * Estimator Parameters from byte 408.
- * @note Erratum ACP-020 (open): Reserved bits.
- * @note Erratum ACP-158 (certain): ADCS configuration in list order, not in id order.
- * @note Erratum ACP-159 (open): The current configuration is not all of it.
+ * @note Note ACP-020 (open): Reserved bits.
+ * @note Note ACP-159 (open): The current configuration is not all of it.
  */
 
 #include "../icdgen.h"
@@ -56,24 +55,15 @@ typedef struct {
     cubeacp_axis_select_t gyro2_configuration;
     /** Gyro3 Configuration: bits 72 to 79. */
     cubeacp_axis_select_t gyro3_configuration;
-    /**
-     * X-Rate Sensor Offset: bits 80 to 95, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** X-Rate Sensor Offset: bits 80 to 95, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s. */
     int16_t x_rate_sensor_offset;
-    /**
-     * Y-Rate Sensor Offset: bits 96 to 111, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** Y-Rate Sensor Offset: bits 96 to 111, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s. */
     int16_t y_rate_sensor_offset;
-    /**
-     * Z-Rate Sensor Offset: bits 112 to 127, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** Z-Rate Sensor Offset: bits 112 to 127, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s. */
     int16_t z_rate_sensor_offset;
     /**
      * RateSensorMult: bits 128 to 135, raw 0 to 255. Factor on the rate sensor measurements.
-     * @note Erratum ACP-130 (open): RateSensorMult has no scale and no blanks.
+     * @note Note ACP-130 (open): RateSensorMult has no scale and no blanks.
      */
     uint8_t rate_sensor_mult;
     /** CSS1 Configuration: bits 136 to 143. */
@@ -96,77 +86,44 @@ typedef struct {
     cubeacp_axis_select_t css9_configuration;
     /** CSS10 Configuration: bits 208 to 215. */
     cubeacp_axis_select_t css10_configuration;
-    /**
-     * CSS1 Relative Scale: bits 216 to 223, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS1 Relative Scale: bits 216 to 223, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css1_relative_scale;
-    /**
-     * CSS2 Relative Scale: bits 224 to 231, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS2 Relative Scale: bits 224 to 231, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css2_relative_scale;
-    /**
-     * CSS3 Relative Scale: bits 232 to 239, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS3 Relative Scale: bits 232 to 239, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css3_relative_scale;
-    /**
-     * CSS4 Relative Scale: bits 240 to 247, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS4 Relative Scale: bits 240 to 247, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css4_relative_scale;
-    /**
-     * CSS5 Relative Scale: bits 248 to 255, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS5 Relative Scale: bits 248 to 255, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css5_relative_scale;
-    /**
-     * CSS6 Relative Scale: bits 256 to 263, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS6 Relative Scale: bits 256 to 263, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css6_relative_scale;
-    /**
-     * CSS7 Relative Scale: bits 264 to 271, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS7 Relative Scale: bits 264 to 271, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css7_relative_scale;
-    /**
-     * CSS8 Relative Scale: bits 272 to 279, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS8 Relative Scale: bits 272 to 279, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css8_relative_scale;
-    /**
-     * CSS9 Relative Scale: bits 280 to 287, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS9 Relative Scale: bits 280 to 287, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css9_relative_scale;
-    /**
-     * CSS10 Relative Scale: bits 288 to 295, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS10 Relative Scale: bits 288 to 295, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css10_relative_scale;
     /**
      * CSS Threshold: bits 296 to 303, raw 0 to 255.
-     * @note Erratum ACP-133 (open): CSS threshold has no description.
+     * @note Note ACP-133 (open): CSS threshold has no description.
      */
     uint8_t css_threshold;
     /**
      * Cam1 Sensor Mounting Transform Alpha Angle: bits 304 to 319, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t cam1_sensor_mounting_transform_alpha_angle;
     /**
      * Cam1 Sensor Mounting Transform Beta Angle: bits 320 to 335, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t cam1_sensor_mounting_transform_beta_angle;
     /**
      * Cam1 Sensor Mounting Transform Gamma Angle: bits 336 to 351, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t cam1_sensor_mounting_transform_gamma_angle;
     /** Cam1 detection threshold: bits 352 to 359, raw 0 to 255. */
@@ -178,33 +135,26 @@ typedef struct {
     /**
      * Cam1 Boresight X: bits 384 to 399, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels. Where the boresight
      * meets the image.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-149 (open): Boresight ends at 655 pixels.
      */
     uint16_t cam1_boresight_x;
     /**
      * Cam1 Boresight Y: bits 400 to 415, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels. Where the boresight
      * meets the image.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-149 (open): Boresight ends at 655 pixels.
      */
     uint16_t cam1_boresight_y;
     /**
      * Cam2 Sensor Mounting Transform Alpha Angle: bits 416 to 431, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t cam2_sensor_mounting_transform_alpha_angle;
     /**
      * Cam2 Sensor Mounting Transform Beta Angle: bits 432 to 447, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t cam2_sensor_mounting_transform_beta_angle;
     /**
      * Cam2 Sensor Mounting Transform Gamma Angle: bits 448 to 463, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t cam2_sensor_mounting_transform_gamma_angle;
     /** Cam2 detection threshold: bits 464 to 471, raw 0 to 255. */
@@ -216,15 +166,11 @@ typedef struct {
     /**
      * Cam2 Boresight X: bits 496 to 511, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels. Where the boresight
      * meets the image.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-149 (open): Boresight ends at 655 pixels.
      */
     uint16_t cam2_boresight_x;
     /**
      * Cam2 Boresight Y: bits 512 to 527, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 pixels. Where the boresight
      * meets the image.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-149 (open): Boresight ends at 655 pixels.
      */
     uint16_t cam2_boresight_y;
     /**
@@ -236,7 +182,6 @@ typedef struct {
     /**
      * Nadir Max Bad Edges: bits 536 to 543, raw 0 to 255. Most edges that may deviate further. Above 50 the test is
      * off.
-     * @note Erratum ACP-152 (open): More than 50 bad edges disable the check.
      */
     uint8_t nadir_max_bad_edges;
     /**
@@ -332,226 +277,193 @@ typedef struct {
     /**
      * Magnetometer Mounting Transform Alpha Angle: bits 1200 to 1215, raw -32768 to 32767; physical `raw*0.01`, -327.68
      * to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_mounting_transform_alpha_angle;
     /**
      * Magnetometer Mounting Transform Beta Angle: bits 1216 to 1231, raw -32768 to 32767; physical `raw*0.01`, -327.68
      * to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_mounting_transform_beta_angle;
     /**
      * Magnetometer Mounting Transform Gamma Angle: bits 1232 to 1247, raw -32768 to 32767; physical `raw*0.01`, -327.68
      * to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_mounting_transform_gamma_angle;
     /**
      * Magnetometer Channel 1 Offset: bits 1248 to 1263, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_channel_1_offset;
     /**
      * Magnetometer Channel 2 Offset: bits 1264 to 1279, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_channel_2_offset;
     /**
      * Magnetometer Channel 3 Offset: bits 1280 to 1295, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_channel_3_offset;
     /**
      * Magnetometer Sensitivity Matrix S11: bits 1296 to 1311, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_sensitivity_matrix_s11;
     /**
      * Magnetometer Sensitivity Matrix S22: bits 1312 to 1327, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_sensitivity_matrix_s22;
     /**
      * Magnetometer Sensitivity Matrix S33: bits 1328 to 1343, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_sensitivity_matrix_s33;
     /**
      * Magnetometer Sensitivity Matrix S12: bits 1344 to 1359, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_sensitivity_matrix_s12;
     /**
      * Magnetometer Sensitivity Matrix S13: bits 1360 to 1375, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_sensitivity_matrix_s13;
     /**
      * Magnetometer Sensitivity Matrix S21: bits 1376 to 1391, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_sensitivity_matrix_s21;
     /**
      * Magnetometer Sensitivity Matrix S23: bits 1392 to 1407, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_sensitivity_matrix_s23;
     /**
      * Magnetometer Sensitivity Matrix S31: bits 1408 to 1423, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_sensitivity_matrix_s31;
     /**
      * Magnetometer Sensitivity Matrix S32: bits 1424 to 1439, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t magnetometer_sensitivity_matrix_s32;
     /**
      * Redundant Magnetometer Mounting Transform Alpha Angle: bits 1440 to 1455, raw -32768 to 32767; physical
      * `raw*0.01`, -327.68 to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_mounting_transform_alpha_angle;
     /**
      * Redundant Magnetometer Mounting Transform Beta Angle: bits 1456 to 1471, raw -32768 to 32767; physical
      * `raw*0.01`, -327.68 to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_mounting_transform_beta_angle;
     /**
      * Redundant Magnetometer Mounting Transform Gamma Angle: bits 1472 to 1487, raw -32768 to 32767; physical
      * `raw*0.01`, -327.68 to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_mounting_transform_gamma_angle;
     /**
      * Redundant Magnetometer Channel 1 Offset: bits 1488 to 1503, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_channel_1_offset;
     /**
      * Redundant Magnetometer Channel 2 Offset: bits 1504 to 1519, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_channel_2_offset;
     /**
      * Redundant Magnetometer Channel 3 Offset: bits 1520 to 1535, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_channel_3_offset;
     /**
      * Redundant Magnetometer Sensitivity Matrix S11: bits 1536 to 1551, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s11;
     /**
      * Redundant Magnetometer Sensitivity Matrix S22: bits 1552 to 1567, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s22;
     /**
      * Redundant Magnetometer Sensitivity Matrix S33: bits 1568 to 1583, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s33;
     /**
      * Redundant Magnetometer Sensitivity Matrix S12: bits 1584 to 1599, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s12;
     /**
      * Redundant Magnetometer Sensitivity Matrix S13: bits 1600 to 1615, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s13;
     /**
      * Redundant Magnetometer Sensitivity Matrix S21: bits 1616 to 1631, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s21;
     /**
      * Redundant Magnetometer Sensitivity Matrix S23: bits 1632 to 1647, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s23;
     /**
      * Redundant Magnetometer Sensitivity Matrix S31: bits 1648 to 1663, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s31;
     /**
      * Redundant Magnetometer Sensitivity Matrix S32: bits 1664 to 1679, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s32;
     /**
      * StarTracker Mounting Transform Alpha Angle: bits 1680 to 1695, raw -32768 to 32767; physical `raw*0.01`, -327.68
      * to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t star_tracker_mounting_transform_alpha_angle;
     /**
      * StarTracker Mounting Transform Beta Angle: bits 1696 to 1711, raw -32768 to 32767; physical `raw*0.01`, -327.68
      * to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t star_tracker_mounting_transform_beta_angle;
     /**
      * StarTracker Mounting Transform Gamma Angle: bits 1712 to 1727, raw -32768 to 32767; physical `raw*0.01`, -327.68
      * to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int16_t star_tracker_mounting_transform_gamma_angle;
     /**
      * StarTracker exposure time: bits 1728 to 1743, raw 0 to 65535. Register value.
-     * @note Erratum ACP-145 (open): Exposure and gain are register values.
+     * @note Note ACP-145 (open): Exposure and gain are register values.
      */
     uint16_t star_tracker_exposure_time;
     /**
      * StarTracker analog gain: bits 1744 to 1759, raw 0 to 65535. Register value.
-     * @note Erratum ACP-145 (open): Exposure and gain are register values.
+     * @note Note ACP-145 (open): Exposure and gain are register values.
      */
     uint16_t star_tracker_analog_gain;
     /**
      * StarTracker detection threshold: bits 1760 to 1767, raw 0 to 255.
-     * @note Erratum ACP-146 (open): Thresholds and counts of the star tracker have no description.
+     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
      */
     uint8_t star_tracker_detection_threshold;
     /**
      * StarTracker star threshold: bits 1768 to 1775, raw 0 to 255.
-     * @note Erratum ACP-146 (open): Thresholds and counts of the star tracker have no description.
+     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
      */
     uint8_t star_tracker_star_threshold;
     /**
      * Maximum Star Matched: bits 1776 to 1783, raw 0 to 255. Most stars that are matched.
-     * @note Erratum ACP-146 (open): Thresholds and counts of the star tracker have no description.
+     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
      */
     uint8_t maximum_star_matched;
     /**
      * Detection Timeout duration: bits 1784 to 1799, raw 0 to 65535.
-     * @note Erratum ACP-141 (open): Detection timeout has no unit.
+     * @note Note ACP-141 (open): Detection timeout has no unit.
      */
     uint16_t detection_timeout_duration;
     /** Maximum Star Pixel: bits 1800 to 1807, raw 0 to 255. Most pixels of a star. */
@@ -561,8 +473,7 @@ typedef struct {
     /**
      * Star Tracker Error Margin: bits 1816 to 1823, raw 0 to 255; physical `raw*0.01`, 0 to 2.55 %. Of the star
      * identification.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
+     * @note Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
      */
     uint8_t star_tracker_error_margin;
     /**
@@ -584,39 +495,37 @@ typedef struct {
     float star_tracker_focal_length;
     /**
      * K1 radial distortion coefficient: bits 1936 to 1967, 32-bit float, in gain.
-     * @note Erratum ACP-144 (certain): gain is no unit.
+     * @note Note ACP-144 (certain): gain is no unit.
      */
     float k1_radial_distortion_coefficient;
     /**
      * K2 radial distortion coefficient: bits 1968 to 1999, 32-bit float, in gain.
-     * @note Erratum ACP-144 (certain): gain is no unit.
+     * @note Note ACP-144 (certain): gain is no unit.
      */
     float k2_radial_distortion_coefficient;
     /**
      * P1 tangential distortion coefficient: bits 2000 to 2031, 32-bit float, in gain.
-     * @note Erratum ACP-144 (certain): gain is no unit.
+     * @note Note ACP-144 (certain): gain is no unit.
      */
     float p1_tangential_distortion_coefficient;
     /**
      * P2 tangential distortion coefficient: bits 2032 to 2063, 32-bit float, in gain.
-     * @note Erratum ACP-144 (certain): gain is no unit.
+     * @note Note ACP-144 (certain): gain is no unit.
      */
     float p2_tangential_distortion_coefficient;
     /**
      * Star tracking window width: bits 2064 to 2071, raw 0 to 255.
-     * @note Erratum ACP-146 (open): Thresholds and counts of the star tracker have no description.
+     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
      */
     uint8_t star_tracking_window_width;
     /**
      * Star Tracking Margin: bits 2072 to 2079, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-143 (open): Margins and search width have no unit.
+     * @note Note ACP-143 (open): Margins and search width have no unit.
      */
     uint8_t star_tracking_margin;
     /**
      * Star Validation Margin: bits 2080 to 2087, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-143 (open): Margins and search width have no unit.
+     * @note Note ACP-143 (open): Margins and search width have no unit.
      */
     uint8_t star_validation_margin;
     /** Star Tracking Module Enable: bit 2088. */
@@ -625,8 +534,7 @@ typedef struct {
     bool star_tracking_location_prediction_enable;
     /**
      * Star Tracking Search Width: bits 2096 to 2103, raw 0 to 255; physical `raw/5.0`, 0 to 51.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-143 (open): Margins and search width have no unit.
+     * @note Note ACP-143 (open): Margins and search width have no unit.
      */
     uint8_t star_tracking_search_width;
     /** Detumbling Spin Gain: bits 2104 to 2135, 32-bit float. Ks. */
@@ -636,8 +544,7 @@ typedef struct {
     /**
      * Reference spin rate: bits 2168 to 2183, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
      * wy-ref. Must be below 0 deg/s.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-162 (certain): Limits of a sign in words only.
+     * @note Note ACP-162 (certain): Limits of a sign in words only.
      */
     int16_t reference_spin_rate;
     /** Fast BDot Detumbling Gain: bits 2184 to 2215, 32-bit float. Kdf. */
@@ -652,7 +559,7 @@ typedef struct {
     float y_momentum_derivative_gain;
     /**
      * Reference Wheel Momentum: bits 2344 to 2375, 32-bit float, in Nms. H-ref. Must be below 0 Nms.
-     * @note Erratum ACP-162 (certain): Limits of a sign in words only.
+     * @note Note ACP-162 (certain): Limits of a sign in words only.
      */
     float reference_wheel_momentum;
     /** RWheel Proportional Gain: bits 2376 to 2407, 32-bit float. Kp2. */
@@ -661,10 +568,7 @@ typedef struct {
     float rwheel_derivative_gain;
     /** Y-Wheel Bias Momentum: bits 2440 to 2471, 32-bit float, in Nms. H-bias. */
     float y_wheel_bias_momentum;
-    /**
-     * Sun-pointing Facet: bits 2472 to 2478. Body axis that is turned towards the sun.
-     * @note Erratum ACP-166 (certain): Facets have 7 bits and 8 bits.
-     */
+    /** Sun-pointing Facet: bits 2472 to 2478. Body axis that is turned towards the sun. */
     cubeacp_axis_select_t sun_pointing_facet;
     /**
      * Automatic Control Transition due to Wheel Errors: bit 2479. From the wheel modes to Y-Thomson on a wheel error.
@@ -696,19 +600,19 @@ typedef struct {
     /**
      * Product Of Inertia - Ixy: bits 2680 to 2711, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
-     * @note Erratum ACP-201 (open): Products of inertia: the sign is not given.
+     * @note Note ACP-201 (open): Products of inertia: the sign is not given.
      */
     float product_of_inertia_ixy;
     /**
      * Product Of Inertia - Ixz: bits 2712 to 2743, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
-     * @note Erratum ACP-201 (open): Products of inertia: the sign is not given.
+     * @note Note ACP-201 (open): Products of inertia: the sign is not given.
      */
     float product_of_inertia_ixz;
     /**
      * Product Of Inertia - Iyz: bits 2744 to 2775, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
-     * @note Erratum ACP-201 (open): Products of inertia: the sign is not given.
+     * @note Note ACP-201 (open): Products of inertia: the sign is not given.
      */
     float product_of_inertia_iyz;
     /** Magnetometer Rate Filter System Noise: bits 2776 to 2807, 32-bit float. */
@@ -739,7 +643,7 @@ typedef struct {
     bool automatic_magnetometer_recovery;
     /**
      * Magnetometer Mode: bits 3006 to 3007. The magnetometer that estimation and control use.
-     * @note Erratum ACP-049 (open): Magnetometer mode can be set in two places.
+     * @note Note ACP-049 (open): Magnetometer mode can be set in two places.
      */
     cubeacp_mag_mode_val_t magnetometer_mode;
     /**
@@ -767,43 +671,36 @@ typedef struct {
     /**
      * Incl. coefficient: bits 3024 to 3039, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535. Of the filter of the
      * inclination.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     uint16_t incl_coefficient;
     /**
      * Raan coefficient: bits 3040 to 3055, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535. Of the filter of the
      * RAAN.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     uint16_t raan_coefficient;
     /**
      * Ecc coefficient: bits 3056 to 3071, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535. Of the filter of the
      * eccentricity.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     uint16_t ecc_coefficient;
     /**
      * Aop coefficient: bits 3072 to 3087, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535. Of the filter of the
      * argument of perigee.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     uint16_t aop_coefficient;
     /**
      * Time coefficient: bits 3088 to 3103, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535. Of the filter of the
      * time.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     uint16_t time_coefficient;
     /**
      * Pos coefficient: bits 3104 to 3119, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535. Of the filter of the
      * position.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     uint16_t pos_coefficient;
     /**
      * Maximum position error: bits 3120 to 3127, raw 0 to 255; physical `raw*0.1`, 0 to 25.5. ASGP4 stops working
      * beyond it.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     uint8_t maximum_position_error;
     /** ASGP4 filter: bits 3128 to 3135. */
@@ -811,13 +708,11 @@ typedef struct {
     /**
      * xp coefficient: bits 3136 to 3167, raw -2147483648 to 2147483647; physical `raw*0.0000001`, -214.7483648 to
      * 214.7483647. Polar coefficient.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int32_t xp_coefficient;
     /**
      * yp coefficient: bits 3168 to 3199, raw -2147483648 to 2147483647; physical `raw*0.0000001`, -214.7483648 to
      * 214.7483647. Polar coefficient.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     int32_t yp_coefficient;
     /** GPS roll over: bits 3200 to 3207, raw 0 to 255. */
@@ -825,13 +720,11 @@ typedef struct {
     /**
      * Position sd: bits 3208 to 3215, raw 0 to 255; physical `raw*0.1`, 0 to 25.5. Largest standard deviation with
      * which ASGP4 works.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     uint8_t position_sd;
     /**
      * Velocity sd: bits 3216 to 3223, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. Largest standard deviation with
      * which ASGP4 works.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     uint8_t velocity_sd;
     /** Min. satellites: bits 3224 to 3231, raw 0 to 255. Fewest satellites with which ASGP4 works. */
@@ -839,25 +732,23 @@ typedef struct {
     /**
      * Time gain: bits 3232 to 3239, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. Of the compensation of the time
      * offset.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     uint8_t time_gain;
     /**
      * Max. lag: bits 3240 to 3247, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. Largest lag of the time stamps that
      * are still used.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
      */
     uint8_t max_lag;
     /** Min. samples: bits 3248 to 3263, raw 0 to 65535. Fewest samples for an ASGP4 run. */
     uint16_t min_samples;
     /**
      * User Coded Controller Settings: bytes 408 to 455.
-     * @note Erratum ACP-178 (open): User coded settings: content of the arrays.
+     * @note Note ACP-178 (open): User coded settings: content of the arrays.
      */
     uint8_t user_coded_controller_settings[48];
     /**
      * User Coded Estimator Settings: bytes 456 to 503.
-     * @note Erratum ACP-178 (open): User coded settings: content of the arrays.
+     * @note Note ACP-178 (open): User coded settings: content of the arrays.
      */
     uint8_t user_coded_estimator_settings[48];
 } cubeacp_adcs_configuration_t;
@@ -3710,7 +3601,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_star_tracking_search_w
     return icdgen_set_u8(&message->star_tracking_search_width, value, 1, 0, 5, UINT8_MAX);
 }
 
-/** Reference spin rate in deg/s: -32.768 to 32.767. */
+/** Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s. */
 static inline double cubeacp_adcs_configuration_reference_spin_rate_deg_per_s(
     const cubeacp_adcs_configuration_t *message)
 {

@@ -6,7 +6,7 @@
 /**
  * @file
  * Commanded Attitude Angles: configuration, set by telecommand 15, got by telemetry 199, 6 bytes. Table 186.
- * @note Erratum ACP-066 (open): Attitude angles: order of rotation and frame.
+ * @note Note ACP-066 (open): Attitude angles: order of rotation and frame.
  */
 
 #include "../icdgen.h"
@@ -20,20 +20,11 @@
 
 /** Raw values. */
 typedef struct {
-    /**
-     * Commanded Roll Angle: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** Commanded Roll Angle: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg. */
     int16_t commanded_roll_angle;
-    /**
-     * Commanded Pitch Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** Commanded Pitch Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg. */
     int16_t commanded_pitch_angle;
-    /**
-     * Commanded Yaw Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** Commanded Yaw Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg. */
     int16_t commanded_yaw_angle;
 } cubeacp_commanded_attitude_angles_t;
 

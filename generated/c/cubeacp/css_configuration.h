@@ -41,59 +41,29 @@ typedef struct {
     cubeacp_axis_select_t css9_configuration;
     /** CSS10 Configuration: bits 72 to 79. */
     cubeacp_axis_select_t css10_configuration;
-    /**
-     * CSS1 Relative Scale: bits 80 to 87, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS1 Relative Scale: bits 80 to 87, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css1_relative_scale;
-    /**
-     * CSS2 Relative Scale: bits 88 to 95, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS2 Relative Scale: bits 88 to 95, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css2_relative_scale;
-    /**
-     * CSS3 Relative Scale: bits 96 to 103, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS3 Relative Scale: bits 96 to 103, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css3_relative_scale;
-    /**
-     * CSS4 Relative Scale: bits 104 to 111, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS4 Relative Scale: bits 104 to 111, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css4_relative_scale;
-    /**
-     * CSS5 Relative Scale: bits 112 to 119, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS5 Relative Scale: bits 112 to 119, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css5_relative_scale;
-    /**
-     * CSS6 Relative Scale: bits 120 to 127, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS6 Relative Scale: bits 120 to 127, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css6_relative_scale;
-    /**
-     * CSS7 Relative Scale: bits 128 to 135, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS7 Relative Scale: bits 128 to 135, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css7_relative_scale;
-    /**
-     * CSS8 Relative Scale: bits 136 to 143, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS8 Relative Scale: bits 136 to 143, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css8_relative_scale;
-    /**
-     * CSS9 Relative Scale: bits 144 to 151, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS9 Relative Scale: bits 144 to 151, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css9_relative_scale;
-    /**
-     * CSS10 Relative Scale: bits 152 to 159, raw 0 to 255; physical `raw*0.01`, 0 to 2.55.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     */
+    /** CSS10 Relative Scale: bits 152 to 159, raw 0 to 255; physical `raw*0.01`, 0 to 2.55. */
     uint8_t css10_relative_scale;
     /**
      * CSS Threshold: bits 160 to 167, raw 0 to 255.
-     * @note Erratum ACP-133 (open): CSS threshold has no description.
+     * @note Note ACP-133 (open): CSS threshold has no description.
      */
     uint8_t css_threshold;
 } cubeacp_css_configuration_t;

@@ -10,6 +10,8 @@
 
 #include "../icdgen_wire.h"
 
+/** The node whose messages these are. */
+#define CUBEACP_NODE "cubeacp"
 /** Bytes of the longest message of either direction, with id and checksum. */
 #define CUBEACP_LONGEST 506u
 /** Bytes that joining CAN packets takes for each sender at once. */
@@ -23,111 +25,115 @@
 /** Bytes of a bit for each packet of such a block. */
 #define CUBEACP_BLOCK_BITMAP_BYTES 128u
 
-/* Ids for ICD_REQUEST(). */
-#define CUBEACP_CURRENT_ADCS_STATE_TELEMETRY 132u
-#define CUBEACP_JPG_CONVERSION_PROGRESS_TELEMETRY 133u
-#define CUBEACP_CUBEACP_STATE_TELEMETRY 135u
-#define CUBEACP_ESTIMATED_ATTITUDE_ANGLES_TELEMETRY 146u
-#define CUBEACP_ESTIMATED_ANGULAR_RATES_TELEMETRY 147u
-#define CUBEACP_SATELLITE_POSITION_ECI_TELEMETRY 148u
-#define CUBEACP_SATELLITE_VELOCITY_ECI_TELEMETRY 149u
-#define CUBEACP_SATELLITE_POSITION_LLH_TELEMETRY 150u
-#define CUBEACP_MAGNETIC_FIELD_VECTOR_TELEMETRY 151u
-#define CUBEACP_COARSE_SUN_VECTOR_TELEMETRY 152u
-#define CUBEACP_FINE_SUN_VECTOR_TELEMETRY 153u
-#define CUBEACP_NADIR_VECTOR_TELEMETRY 154u
-#define CUBEACP_RATE_SENSOR_RATES_TELEMETRY 155u
-#define CUBEACP_WHEEL_SPEED_TELEMETRY 156u
-#define CUBEACP_MAGNETORQUER_COMMAND_TELEMETRY 157u
-#define CUBEACP_WHEEL_SPEED_COMMANDS_TELEMETRY 158u
-#define CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_TELEMETRY 159u
-#define CUBEACP_MODELLED_SUN_VECTOR_TELEMETRY 160u
-#define CUBEACP_ESTIMATED_GYRO_BIAS_TELEMETRY 161u
-#define CUBEACP_ESTIMATION_INNOVATION_VECTOR_TELEMETRY 162u
-#define CUBEACP_QUATERNION_ERROR_VECTOR_TELEMETRY 163u
-#define CUBEACP_QUATERNION_COVARIANCE_TELEMETRY 164u
-#define CUBEACP_ANGULAR_RATE_COVARIANCE_TELEMETRY 165u
-#define CUBEACP_RAW_CAM2_SENSOR_TELEMETRY 166u
-#define CUBEACP_RAW_CAM1_SENSOR_TELEMETRY 167u
-#define CUBEACP_RAW_CSS_1_TO_6_TELEMETRY 168u
-#define CUBEACP_RAW_CSS_7_TO_10_TELEMETRY 169u
-#define CUBEACP_RAW_MAGNETOMETER_TELEMETRY 170u
-#define CUBEACP_CUBESENSE1_CURRENT_MEASUREMENTS_TELEMETRY 171u
-#define CUBEACP_CUBECONTROL_CURRENT_MEASUREMENTS_TELEMETRY 172u
-#define CUBEACP_WHEEL_CURRENTS_TELEMETRY 173u
-#define CUBEACP_ADCS_TEMPERATURES_TELEMETRY 174u
-#define CUBEACP_RATE_SENSOR_TEMPERATURES_TELEMETRY 175u
-#define CUBEACP_RAW_GPS_STATUS_TELEMETRY 176u
-#define CUBEACP_RAW_GPS_TIME_TELEMETRY 177u
-#define CUBEACP_RAW_GPS_X_TELEMETRY 178u
-#define CUBEACP_RAW_GPS_Y_TELEMETRY 179u
-#define CUBEACP_RAW_GPS_Z_TELEMETRY 180u
-#define CUBEACP_STAR_1_BODY_VECTOR_TELEMETRY 181u
-#define CUBEACP_STAR_2_BODY_VECTOR_TELEMETRY 182u
-#define CUBEACP_STAR_3_BODY_VECTOR_TELEMETRY 183u
-#define CUBEACP_STAR_1_ORBIT_VECTOR_TELEMETRY 184u
-#define CUBEACP_STAR_2_ORBIT_VECTOR_TELEMETRY 185u
-#define CUBEACP_STAR_3_ORBIT_VECTOR_TELEMETRY 186u
-#define CUBEACP_STAR_MAGNITUDE_TELEMETRY 187u
-#define CUBEACP_STAR_PERFORMANCE1_TELEMETRY 188u
-#define CUBEACP_STAR_TIMING_TELEMETRY 189u
-#define CUBEACP_ADCS_STATE_TELEMETRY 190u
-#define CUBEACP_ADCS_MEASUREMENTS_TELEMETRY 191u
-#define CUBEACP_ACTUATOR_COMMANDS_TELEMETRY 192u
-#define CUBEACP_ESTIMATION_DATA_TELEMETRY 193u
-#define CUBEACP_RAW_SENSOR_MEASUREMENTS_TELEMETRY 194u
-#define CUBEACP_POWER_AND_TEMPERATURE_MEASUREMENTS_TELEMETRY 195u
-#define CUBEACP_ADCS_EXECUTION_TIMES_TELEMETRY 196u
-#define CUBEACP_ADCS_MISC_CURRENT_MEASUREMENTS_TELEMETRY 198u
-#define CUBEACP_FINE_ESTIMATED_ANGULAR_RATES_TELEMETRY 201u
-#define CUBEACP_RAW_GPS_MEASUREMENTS_TELEMETRY 210u
-#define CUBEACP_RAW_STAR_TRACKER_TELEMETRY 211u
-#define CUBEACP_STAR_1_RAW_DATA_TELEMETRY 212u
-#define CUBEACP_STAR_2_RAW_DATA_TELEMETRY 213u
-#define CUBEACP_STAR_3_RAW_DATA_TELEMETRY 214u
-#define CUBEACP_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS_TELEMETRY 215u
-#define CUBEACP_RAW_RATE_SENSOR_TELEMETRY 216u
-#define CUBEACP_ESTIMATED_QUATERNION_TELEMETRY 218u
-#define CUBEACP_ECEF_POSITION_TELEMETRY 219u
-#define CUBEACP_ACP_EXECUTION_STATE_TELEMETRY 220u
-#define CUBEACP_CURRENT_ADCS_STATE_2_TELEMETRY 224u
-#define CUBEACP_ASGP4_TLES_TELEMETRY 228u
-#define CUBEACP_CUBESTAR_ESTIMATED_RATES_TELEMETRY 229u
-#define CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_TELEMETRY 230u
-#define CUBEACP_STAR_PERFORMANCE2_TELEMETRY 231u
-#define CUBEACP_CUBESENSE2_CURRENT_MEASUREMENTS_TELEMETRY 232u
-#define CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_TELEMETRY 233u
-#define CUBEACP_SET_MAGNETORQUER_CONFIGURATION_TELEMETRY 136u
-#define CUBEACP_SET_WHEEL_CONFIGURATION_TELEMETRY 137u
-#define CUBEACP_SET_RATE_GYRO_CONFIGURATION_TELEMETRY 138u
-#define CUBEACP_CSS_CONFIGURATION_TELEMETRY 139u
-#define CUBEACP_ADCS_POWER_CONTROL_TELEMETRY 197u
-#define CUBEACP_COMMANDED_ATTITUDE_ANGLES_TELEMETRY 199u
-#define CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_TELEMETRY 200u
-#define CUBEACP_SET_STAR_TRACKER_CONFIGURATION_TELEMETRY 202u
-#define CUBEACP_CUBESENSE_CONFIGURATION_TELEMETRY 203u
-#define CUBEACP_MAGNETOMETER_CONFIGURATION_TELEMETRY 204u
-#define CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_TELEMETRY 205u
-#define CUBEACP_ADCS_CONFIGURATION_TELEMETRY 206u
-#define CUBEACP_SGP4_ORBIT_PARAMETERS_TELEMETRY 207u
-#define CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_TELEMETRY 208u
-#define CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_TELEMETRY 209u
-#define CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_TELEMETRY 217u
-#define CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_TELEMETRY 221u
-#define CUBEACP_MOMENT_OF_INERTIA_MATRIX_TELEMETRY 222u
-#define CUBEACP_ESTIMATION_PARAMETERS_TELEMETRY 223u
-#define CUBEACP_ADCS_SYSTEM_CONFIGURATION_TELEMETRY 225u
-#define CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_TELEMETRY 226u
-#define CUBEACP_AUGMENTED_SGP4_PARAMETERS_TELEMETRY 227u
-#define CUBEACP_SD_LOG1_CONFIGURATION_TELEMETRY 235u
-#define CUBEACP_SD_LOG2_CONFIGURATION_TELEMETRY 236u
-#define CUBEACP_UART_LOG_CONFIGURATION_TELEMETRY 237u
-#define CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_TELEMETRY 238u
+/* Messages for ICD_REQUEST(): whose they are, and their ids. */
+#define CUBEACP_CURRENT_ADCS_STATE_TELEMETRY CUBEACP_NODE, 132u
+#define CUBEACP_JPG_CONVERSION_PROGRESS_TELEMETRY CUBEACP_NODE, 133u
+#define CUBEACP_CUBEACP_STATE_TELEMETRY CUBEACP_NODE, 135u
+#define CUBEACP_ESTIMATED_ATTITUDE_ANGLES_TELEMETRY CUBEACP_NODE, 146u
+#define CUBEACP_ESTIMATED_ANGULAR_RATES_TELEMETRY CUBEACP_NODE, 147u
+#define CUBEACP_SATELLITE_POSITION_ECI_TELEMETRY CUBEACP_NODE, 148u
+#define CUBEACP_SATELLITE_VELOCITY_ECI_TELEMETRY CUBEACP_NODE, 149u
+#define CUBEACP_SATELLITE_POSITION_LLH_TELEMETRY CUBEACP_NODE, 150u
+#define CUBEACP_MAGNETIC_FIELD_VECTOR_TELEMETRY CUBEACP_NODE, 151u
+#define CUBEACP_COARSE_SUN_VECTOR_TELEMETRY CUBEACP_NODE, 152u
+#define CUBEACP_FINE_SUN_VECTOR_TELEMETRY CUBEACP_NODE, 153u
+#define CUBEACP_NADIR_VECTOR_TELEMETRY CUBEACP_NODE, 154u
+#define CUBEACP_RATE_SENSOR_RATES_TELEMETRY CUBEACP_NODE, 155u
+#define CUBEACP_WHEEL_SPEED_TELEMETRY CUBEACP_NODE, 156u
+#define CUBEACP_MAGNETORQUER_COMMAND_TELEMETRY CUBEACP_NODE, 157u
+#define CUBEACP_WHEEL_SPEED_COMMANDS_TELEMETRY CUBEACP_NODE, 158u
+#define CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_TELEMETRY CUBEACP_NODE, 159u
+#define CUBEACP_MODELLED_SUN_VECTOR_TELEMETRY CUBEACP_NODE, 160u
+#define CUBEACP_ESTIMATED_GYRO_BIAS_TELEMETRY CUBEACP_NODE, 161u
+#define CUBEACP_ESTIMATION_INNOVATION_VECTOR_TELEMETRY CUBEACP_NODE, 162u
+#define CUBEACP_QUATERNION_ERROR_VECTOR_TELEMETRY CUBEACP_NODE, 163u
+#define CUBEACP_QUATERNION_COVARIANCE_TELEMETRY CUBEACP_NODE, 164u
+#define CUBEACP_ANGULAR_RATE_COVARIANCE_TELEMETRY CUBEACP_NODE, 165u
+#define CUBEACP_RAW_CAM2_SENSOR_TELEMETRY CUBEACP_NODE, 166u
+#define CUBEACP_RAW_CAM1_SENSOR_TELEMETRY CUBEACP_NODE, 167u
+#define CUBEACP_RAW_CSS_1_TO_6_TELEMETRY CUBEACP_NODE, 168u
+#define CUBEACP_RAW_CSS_7_TO_10_TELEMETRY CUBEACP_NODE, 169u
+#define CUBEACP_RAW_MAGNETOMETER_TELEMETRY CUBEACP_NODE, 170u
+#define CUBEACP_CUBESENSE1_CURRENT_MEASUREMENTS_TELEMETRY CUBEACP_NODE, 171u
+#define CUBEACP_CUBECONTROL_CURRENT_MEASUREMENTS_TELEMETRY CUBEACP_NODE, 172u
+#define CUBEACP_WHEEL_CURRENTS_TELEMETRY CUBEACP_NODE, 173u
+#define CUBEACP_ADCS_TEMPERATURES_TELEMETRY CUBEACP_NODE, 174u
+#define CUBEACP_RATE_SENSOR_TEMPERATURES_TELEMETRY CUBEACP_NODE, 175u
+#define CUBEACP_RAW_GPS_STATUS_TELEMETRY CUBEACP_NODE, 176u
+#define CUBEACP_RAW_GPS_TIME_TELEMETRY CUBEACP_NODE, 177u
+#define CUBEACP_RAW_GPS_X_TELEMETRY CUBEACP_NODE, 178u
+#define CUBEACP_RAW_GPS_Y_TELEMETRY CUBEACP_NODE, 179u
+#define CUBEACP_RAW_GPS_Z_TELEMETRY CUBEACP_NODE, 180u
+#define CUBEACP_STAR_1_BODY_VECTOR_TELEMETRY CUBEACP_NODE, 181u
+#define CUBEACP_STAR_2_BODY_VECTOR_TELEMETRY CUBEACP_NODE, 182u
+#define CUBEACP_STAR_3_BODY_VECTOR_TELEMETRY CUBEACP_NODE, 183u
+#define CUBEACP_STAR_1_ORBIT_VECTOR_TELEMETRY CUBEACP_NODE, 184u
+#define CUBEACP_STAR_2_ORBIT_VECTOR_TELEMETRY CUBEACP_NODE, 185u
+#define CUBEACP_STAR_3_ORBIT_VECTOR_TELEMETRY CUBEACP_NODE, 186u
+#define CUBEACP_STAR_MAGNITUDE_TELEMETRY CUBEACP_NODE, 187u
+#define CUBEACP_STAR_PERFORMANCE1_TELEMETRY CUBEACP_NODE, 188u
+#define CUBEACP_STAR_TIMING_TELEMETRY CUBEACP_NODE, 189u
+#define CUBEACP_ADCS_STATE_TELEMETRY CUBEACP_NODE, 190u
+#define CUBEACP_ADCS_MEASUREMENTS_TELEMETRY CUBEACP_NODE, 191u
+#define CUBEACP_ACTUATOR_COMMANDS_TELEMETRY CUBEACP_NODE, 192u
+#define CUBEACP_ESTIMATION_DATA_TELEMETRY CUBEACP_NODE, 193u
+#define CUBEACP_RAW_SENSOR_MEASUREMENTS_TELEMETRY CUBEACP_NODE, 194u
+#define CUBEACP_POWER_AND_TEMPERATURE_MEASUREMENTS_TELEMETRY CUBEACP_NODE, 195u
+#define CUBEACP_ADCS_EXECUTION_TIMES_TELEMETRY CUBEACP_NODE, 196u
+#define CUBEACP_ADCS_MISC_CURRENT_MEASUREMENTS_TELEMETRY CUBEACP_NODE, 198u
+#define CUBEACP_FINE_ESTIMATED_ANGULAR_RATES_TELEMETRY CUBEACP_NODE, 201u
+#define CUBEACP_RAW_GPS_MEASUREMENTS_TELEMETRY CUBEACP_NODE, 210u
+#define CUBEACP_RAW_STAR_TRACKER_TELEMETRY CUBEACP_NODE, 211u
+#define CUBEACP_STAR_1_RAW_DATA_TELEMETRY CUBEACP_NODE, 212u
+#define CUBEACP_STAR_2_RAW_DATA_TELEMETRY CUBEACP_NODE, 213u
+#define CUBEACP_STAR_3_RAW_DATA_TELEMETRY CUBEACP_NODE, 214u
+#define CUBEACP_SECONDARY_MAGNETOMETER_RAW_MEASUREMENTS_TELEMETRY CUBEACP_NODE, 215u
+#define CUBEACP_RAW_RATE_SENSOR_TELEMETRY CUBEACP_NODE, 216u
+#define CUBEACP_ESTIMATED_QUATERNION_TELEMETRY CUBEACP_NODE, 218u
+#define CUBEACP_ECEF_POSITION_TELEMETRY CUBEACP_NODE, 219u
+#define CUBEACP_ACP_EXECUTION_STATE_TELEMETRY CUBEACP_NODE, 220u
+#define CUBEACP_CURRENT_ADCS_STATE_2_TELEMETRY CUBEACP_NODE, 224u
+#define CUBEACP_ASGP4_TLES_TELEMETRY CUBEACP_NODE, 228u
+#define CUBEACP_CUBESTAR_ESTIMATED_RATES_TELEMETRY CUBEACP_NODE, 229u
+#define CUBEACP_CUBESTAR_ESTIMATED_QUATERNION_TELEMETRY CUBEACP_NODE, 230u
+#define CUBEACP_STAR_PERFORMANCE2_TELEMETRY CUBEACP_NODE, 231u
+#define CUBEACP_CUBESENSE2_CURRENT_MEASUREMENTS_TELEMETRY CUBEACP_NODE, 232u
+#define CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_TELEMETRY CUBEACP_NODE, 233u
+#define CUBEACP_SET_MAGNETORQUER_CONFIGURATION_TELEMETRY CUBEACP_NODE, 136u
+#define CUBEACP_SET_WHEEL_CONFIGURATION_TELEMETRY CUBEACP_NODE, 137u
+#define CUBEACP_SET_RATE_GYRO_CONFIGURATION_TELEMETRY CUBEACP_NODE, 138u
+#define CUBEACP_CSS_CONFIGURATION_TELEMETRY CUBEACP_NODE, 139u
+#define CUBEACP_ADCS_POWER_CONTROL_TELEMETRY CUBEACP_NODE, 197u
+#define CUBEACP_COMMANDED_ATTITUDE_ANGLES_TELEMETRY CUBEACP_NODE, 199u
+#define CUBEACP_TRACKING_CONTROLLER_TARGET_REFERENCE_TELEMETRY CUBEACP_NODE, 200u
+#define CUBEACP_SET_STAR_TRACKER_CONFIGURATION_TELEMETRY CUBEACP_NODE, 202u
+#define CUBEACP_CUBESENSE_CONFIGURATION_TELEMETRY CUBEACP_NODE, 203u
+#define CUBEACP_MAGNETOMETER_CONFIGURATION_TELEMETRY CUBEACP_NODE, 204u
+#define CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_TELEMETRY CUBEACP_NODE, 205u
+#define CUBEACP_ADCS_CONFIGURATION_TELEMETRY CUBEACP_NODE, 206u
+#define CUBEACP_SGP4_ORBIT_PARAMETERS_TELEMETRY CUBEACP_NODE, 207u
+#define CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_TELEMETRY CUBEACP_NODE, 208u
+#define CUBEACP_SET_Y_WHEEL_CONTROL_PARAMETERS_TELEMETRY CUBEACP_NODE, 209u
+#define CUBEACP_SET_REACTION_WHEEL_CONTROL_PARAMETERS_TELEMETRY CUBEACP_NODE, 217u
+#define CUBEACP_SET_TRACKING_CONTROLLER_GAIN_PARAMETERS_TELEMETRY CUBEACP_NODE, 221u
+#define CUBEACP_MOMENT_OF_INERTIA_MATRIX_TELEMETRY CUBEACP_NODE, 222u
+#define CUBEACP_ESTIMATION_PARAMETERS_TELEMETRY CUBEACP_NODE, 223u
+#define CUBEACP_ADCS_SYSTEM_CONFIGURATION_TELEMETRY CUBEACP_NODE, 225u
+#define CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_TELEMETRY CUBEACP_NODE, 226u
+#define CUBEACP_AUGMENTED_SGP4_PARAMETERS_TELEMETRY CUBEACP_NODE, 227u
+#define CUBEACP_SD_LOG1_CONFIGURATION_TELEMETRY CUBEACP_NODE, 235u
+#define CUBEACP_SD_LOG2_CONFIGURATION_TELEMETRY CUBEACP_NODE, 236u
+#define CUBEACP_UART_LOG_CONFIGURATION_TELEMETRY CUBEACP_NODE, 237u
+#define CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_TELEMETRY CUBEACP_NODE, 238u
 
 /** What the wire layer needs to know about CubeACP. */
 static inline const icd_link_t *cubeacp_link(void)
 {
     /* clang-format off */
+    static const char *const nodes[] = {
+        "cubeacp",
+        "common",
+    };
     static const icd_message_t telecommands[] = {
         /*
          * Reset. Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for,
@@ -338,8 +344,8 @@ static inline const icd_link_t *cubeacp_link(void)
         {ICD_REASON_CHECKSUM, 4u},
     };
     /**
-     * Assumed escaped_in: That the id is escaped like the data is not said. It matters for telecommand 31 only, and for
-     * the id in its acknowledge.
+     * Assumed escaped_in: By Table 4 an escape byte is followed by one of three bytes, wherever it stands; so an id of
+     * 0x1F is escaped, too. It matters for telecommand 31 only, and for the id in its acknowledge.
      */
     static const icd_framing_t framing = {
         0x1fu, /* escape */
@@ -406,8 +412,8 @@ static inline const icd_link_t *cubeacp_link(void)
     };
     /**
      * Assumed covers_id: Whether the id counts among the bytes of a command is not said. The extra byte of a frame can
-     * cover the frame only. Assumed telecommand: Checksums on CAN are not sent. In an extended message the receiver
-     * could not tell the checksum from the fill.
+     * cover the frame only. Assumed telecommand: The checksum is offered for commands in general, CAN included. None is
+     * sent there by choice, for in an extended message the receiver could not tell the checksum from the fill.
      */
     static const icd_checksum_form_t checksum = {
         {8u, true, true, true, 0x12u, 0x0u, 0x0u, 0xffu, crc8_table}, /* CRC */
@@ -545,8 +551,8 @@ static inline const icd_link_t *cubeacp_link(void)
         6u,       /* frames */
     };
     /**
-     * Assumed framed: Start, end and escapes of these messages are not described. They are taken to be those of every
-     * other message.
+     * Assumed framed: Section 5.2 has start, end and escapes for all that goes over the UART, and makes no exception
+     * for these messages.
      */
     static const icd_log_message_form_t log_message = {
         255u,    /* id */
@@ -656,50 +662,6 @@ static inline const icd_link_t *cubeacp_link(void)
         32u,                                            /* rounds */
         false,                                          /* the checksum covers the fill */
     };
-    static const icd_place_t upload_initiate_places[] = {
-        {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
-        {ICD_ROLE_BLOCK_SIZE, 8u, 8u},  /* BlockSize */
-    };
-    static const icd_place_t upload_initiated_places[] = {
-        {ICD_ROLE_BUSY, 0u, 1u}, /* Busy */
-    };
-    static const icd_place_t upload_packet_places[] = {
-        {ICD_ROLE_NUMBER, 0u, 16u},  /* Packet Number */
-        {ICD_ROLE_BYTES, 16u, 160u}, /* File Bytes */
-    };
-    static const icd_place_t upload_checksum_places[] = {
-        {ICD_ROLE_CHECKSUM, 0u, 16u}, /* Checksum */
-    };
-    static const icd_place_t upload_finalize_places[] = {
-        {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
-        {ICD_ROLE_OFFSET, 8u, 32u},     /* Offset */
-        {ICD_ROLE_LENGTH, 40u, 16u},    /* Block Length */
-    };
-    static const icd_place_t upload_finalized_places[] = {
-        {ICD_ROLE_BUSY, 0u, 1u},  /* Busy */
-        {ICD_ROLE_ERROR, 1u, 1u}, /* Error */
-    };
-    /**
-     * Assumed poll_interval_ms: No time is given. Assumed rounds: Nothing is said about giving up. Assumed
-     * checksum_covers_fill: Not said. The node learns the length of the block only when the block is committed, after
-     * the checksum. Assumed finalize: The procedure ends with the checksum and does not name the telecommand that
-     * commits the block. Assumed finalize_timeout_ms: No time is given.
-     */
-    static const icd_upload_form_t upload = {
-        {114, -1, 2u, 2u, upload_initiate_places, NULL},  /* Initiate File Upload */
-        {-1, 244, 1u, 1u, upload_initiated_places, NULL}, /* Initialize Upload Complete */
-        {117, -1, 0u, 0u, NULL, NULL},                    /* Reset Upload Block */
-        {115, -1, 22u, 2u, upload_packet_places, NULL},   /* File Upload Packet */
-        {-1, 246, 2u, 1u, upload_checksum_places, NULL},  /* Block Checksum */
-        {116, -1, 7u, 3u, upload_finalize_places, NULL},  /* Finalize Upload Block */
-        {-1, 245, 1u, 2u, upload_finalized_places, NULL}, /* Upload Block Complete */
-        0u,                                               /* block_size */
-        50u,                                              /* poll_interval_ms */
-        8000u,                                            /* erase_timeout_ms */
-        5000u,                                            /* finalize_timeout_ms */
-        32u,                                              /* rounds */
-        true,                                             /* the checksum covers the fill */
-    };
     static const icd_place_t erase_request_places[] = {
         {ICD_ROLE_TYPE, 0u, 8u},    /* File Type */
         {ICD_ROLE_COUNTER, 8u, 8u}, /* File Counter */
@@ -741,6 +703,8 @@ static inline const icd_link_t *cubeacp_link(void)
      * given.
      */
     static const icd_link_t link = {
+        nodes,
+        2u,               /* how many */
         true,             /* byte order: little */
         false,            /* bit 0 is the most significant one */
         128u, 255u,       /* ids of telemetry */
@@ -770,9 +734,11 @@ static inline const icd_link_t *cubeacp_link(void)
         &files,
         &list,            /* list */
         &download,        /* download */
-        &upload,          /* upload */
+        NULL,             /* upload */
         &erase,           /* erase */
         &format,          /* format */
+        NULL,             /* program copy */
+        NULL,             /* program information */
         &identification,  /* identification */
     };
     /* clang-format on */

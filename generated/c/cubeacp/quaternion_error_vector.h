@@ -7,7 +7,7 @@
  * @file
  * Quaternion Error Vector: telemetry 163, 6 bytes. Table 119.
  * Bit 39 of the log mask.
- * @note Erratum ACP-075 (open): Quaternions: the fourth component.
+ * @note Note ACP-075 (open): Quaternions: the fourth component.
  */
 
 #include "../icdgen.h"
@@ -19,20 +19,11 @@
 
 /** Raw values. */
 typedef struct {
-    /**
-     * Quaternion Error - Q1: bits 0 to 15, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767.
-     * @note Erratum ACP-073 (certain): One factor, several notations.
-     */
+    /** Quaternion Error - Q1: bits 0 to 15, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767. */
     int16_t quaternion_error_q1;
-    /**
-     * Quaternion Error - Q2: bits 16 to 31, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767.
-     * @note Erratum ACP-073 (certain): One factor, several notations.
-     */
+    /** Quaternion Error - Q2: bits 16 to 31, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767. */
     int16_t quaternion_error_q2;
-    /**
-     * Quaternion Error - Q3: bits 32 to 47, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767.
-     * @note Erratum ACP-073 (certain): One factor, several notations.
-     */
+    /** Quaternion Error - Q3: bits 32 to 47, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to 3.2767. */
     int16_t quaternion_error_q3;
 } cubeacp_quaternion_error_vector_t;
 

@@ -7,7 +7,7 @@
  * @file
  * Redundant Magnetometer Configuration: configuration, set by telecommand 36, got by telemetry 205, 30 bytes. Table
  * 191\.
- * @note Erratum ACP-051 (certain): Magnetometers have four names for two.
+ * @note Note ACP-051 (certain): Magnetometers have four names for two.
  */
 
 #include "../icdgen.h"
@@ -24,106 +24,82 @@ typedef struct {
     /**
      * Redundant Magnetometer Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`,
      * -327.68 to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-157 (open): Mounting angles: order of rotation.
+     * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
     int16_t redundant_magnetometer_mounting_transform_alpha_angle;
     /**
      * Redundant Magnetometer Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
      * -327.68 to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-157 (open): Mounting angles: order of rotation.
+     * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
     int16_t redundant_magnetometer_mounting_transform_beta_angle;
     /**
      * Redundant Magnetometer Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
      * -327.68 to 327.67 deg.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-157 (open): Mounting angles: order of rotation.
+     * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
     int16_t redundant_magnetometer_mounting_transform_gamma_angle;
     /**
      * Redundant Magnetometer Channel 1 Offset: bits 48 to 63, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-155 (open): Magnetometer offsets have no unit.
+     * @note Note ACP-155 (open): Magnetometer offsets have no unit.
      */
     int16_t redundant_magnetometer_channel_1_offset;
     /**
      * Redundant Magnetometer Channel 2 Offset: bits 64 to 79, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-155 (open): Magnetometer offsets have no unit.
+     * @note Note ACP-155 (open): Magnetometer offsets have no unit.
      */
     int16_t redundant_magnetometer_channel_2_offset;
     /**
      * Redundant Magnetometer Channel 3 Offset: bits 80 to 95, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-155 (open): Magnetometer offsets have no unit.
+     * @note Note ACP-155 (open): Magnetometer offsets have no unit.
      */
     int16_t redundant_magnetometer_channel_3_offset;
     /**
      * Redundant Magnetometer Sensitivity Matrix S11: bits 96 to 111, raw -32768 to 32767; physical `raw*0.001`, -32.768
      * to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s11;
     /**
      * Redundant Magnetometer Sensitivity Matrix S22: bits 112 to 127, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s22;
     /**
      * Redundant Magnetometer Sensitivity Matrix S33: bits 128 to 143, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s33;
     /**
      * Redundant Magnetometer Sensitivity Matrix S12: bits 144 to 159, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s12;
     /**
      * Redundant Magnetometer Sensitivity Matrix S13: bits 160 to 175, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s13;
     /**
      * Redundant Magnetometer Sensitivity Matrix S21: bits 176 to 191, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s21;
     /**
      * Redundant Magnetometer Sensitivity Matrix S23: bits 192 to 207, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s23;
     /**
      * Redundant Magnetometer Sensitivity Matrix S31: bits 208 to 223, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s31;
     /**
      * Redundant Magnetometer Sensitivity Matrix S32: bits 224 to 239, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
-     * @note Erratum ACP-001 (certain): Formula announced as giving the raw value gives the physical one.
-     * @note Erratum ACP-156 (certain): Sensitivity matrix: diagonal first.
      */
     int16_t redundant_magnetometer_sensitivity_matrix_s32;
 } cubeacp_redundant_magnetometer_configuration_t;

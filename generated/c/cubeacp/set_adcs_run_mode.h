@@ -7,7 +7,6 @@
  * @file
  * ADCS Run Mode: telecommand 10, 1 byte. Table 74.
  * Switches the control loop and chooses how it runs.
- * @note Erratum ACP-018 (certain): ADCS Run Mode is a message and an enumeration.
  */
 
 #include "../icdgen.h"
@@ -22,7 +21,7 @@
 typedef struct {
     /**
      * Enabled: bits 0 to 7. While off, the control program leaves the ADCS I2C bus alone.
-     * @note Erratum ACP-017 (certain): A run mode called Enabled.
+     * @note Note ACP-017 (certain): A run mode called Enabled.
      */
     cubeacp_adcs_run_mode_t enabled;
 } cubeacp_set_adcs_run_mode_t;

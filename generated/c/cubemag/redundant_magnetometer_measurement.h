@@ -6,8 +6,7 @@
 /**
  * @file
  * Redundant Magnetometer Measurement: telemetry 193, 13 bytes. Table 64.
- * @note Erratum MAG-005 (certain): Ids 188, 190, 193 and 197 are other frames elsewhere.
- * @note Erratum MAG-015 (open): Deployment Status and measurements end in unexplained bits.
+ * @note Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
  */
 
 #include "../icdgen.h"
@@ -21,29 +20,26 @@
 typedef struct {
     /**
      * X_axis: bits 0 to 31, 32-bit float, in nT.
-     * @note Erratum MAG-016 (likely): FLOAT is not defined.
-     * @note Erratum MAG-017 (open): Axes of the measurements are not defined.
-     * @note Erratum MAG-018 (certain): nT here, uT there.
+     * @note Note MAG-016 (likely): FLOAT is not defined.
+     * @note Note MAG-017 (open): Axes of the measurements are not defined.
+     * @note Note MAG-018 (certain): nT here, uT there.
      */
     float x_axis;
     /**
      * Y_axis: bits 32 to 63, 32-bit float, in nT.
-     * @note Erratum MAG-016 (likely): FLOAT is not defined.
-     * @note Erratum MAG-017 (open): Axes of the measurements are not defined.
-     * @note Erratum MAG-018 (certain): nT here, uT there.
+     * @note Note MAG-016 (likely): FLOAT is not defined.
+     * @note Note MAG-017 (open): Axes of the measurements are not defined.
+     * @note Note MAG-018 (certain): nT here, uT there.
      */
     float y_axis;
     /**
      * Z_axis: bits 64 to 95, 32-bit float, in nT.
-     * @note Erratum MAG-016 (likely): FLOAT is not defined.
-     * @note Erratum MAG-017 (open): Axes of the measurements are not defined.
-     * @note Erratum MAG-018 (certain): nT here, uT there.
+     * @note Note MAG-016 (likely): FLOAT is not defined.
+     * @note Note MAG-017 (open): Axes of the measurements are not defined.
+     * @note Note MAG-018 (certain): nT here, uT there.
      */
     float z_axis;
-    /**
-     * Data Valid: bit 96.
-     * @note Erratum MAG-019 (open): Measurements carry no time.
-     */
+    /** Data Valid: bit 96. */
     bool data_valid;
 } cubemag_redundant_magnetometer_measurement_t;
 

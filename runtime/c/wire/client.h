@@ -279,8 +279,19 @@ static inline icd_status_t icd_client_send(
     return icd_client_start(client, now, &request, on_event, context);
 }
 
-/** Requests the telemetry of that name, such as ICD_REQUEST(&client, now, NODE_IDENTIFICATION). */
-#define ICD_REQUEST(client, now, name) icd_client_request(client, now, ICDGEN_U8(name##_TELEMETRY))
+static inline icd_status_t icdgen_client_request_of(icd_client_t *client, uint32_t now, const char *node, unsigned id)
+{
+    if (!icd_has_messages_of(client->link, node)) {
+        return ICD_ERROR_UNKNOWN_ID;
+    }
+    return icd_client_request(client, now, ICDGEN_U8(id));
+}
+
+/**
+ * Requests the telemetry of that name, such as ICD_REQUEST(&client, now, NODE_IDENTIFICATION); ICD_ERROR_UNKNOWN_ID if
+ * it is a message of another node, whatever its id.
+ */
+#define ICD_REQUEST(client, now, name) icdgen_client_request_of(client, now, name##_TELEMETRY)
 
 /** The next bytes for the UART; false when there are none. They last until the next call. */
 static inline bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count)

@@ -249,8 +249,8 @@ static inline bool icdgen_client_awaits_transfer(const icd_client_t *client, uin
 }
 
 /**
- * I2C: takes what was read in the oldest transaction that was taken and not told of; `bytes` NULL: it failed. Of a write
- * without reading, anything but NULL. What a request owed that is over is ICD_EVENT_STRAY.
+ * I2C: takes what was read in the oldest transaction that was taken and not told of; `bytes` NULL: it failed. Of a
+ * write without reading, anything but NULL. What a request owed that is over is ICD_EVENT_STRAY.
  */
 static inline void icd_client_transferred(
     icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)

@@ -186,7 +186,8 @@ typedef enum {
     ICD_ROLE_INTERFACE_VERSION,
     ICD_ROLE_ID,
     ICD_ROLE_PROCESSED,
-    ICD_ROLE_PARAMETER
+    ICD_ROLE_PARAMETER,
+    ICD_ROLE_PROGRAM
 } icd_role_t;
 
 /** Where the field of a role lies, in bits. */
@@ -262,6 +263,9 @@ typedef struct {
     uint32_t finalize_timeout;
     uint32_t rounds;
     bool checksum_covers_fill;
+    uint32_t destination_bytes;  /**< That a destination holds, 0 if the ICD does not say. */
+    const uint8_t *destinations; /**< Those that are supported, NULL for all. */
+    uint16_t destination_count;
 } icd_upload_form_t;
 
 /** Erasing files, or formatting their medium. */
@@ -270,3 +274,12 @@ typedef struct {
     uint32_t poll_interval;
     uint32_t timeout;
 } icd_erase_form_t;
+
+/** What a telecommand starts for a stored program, and a frame tells the end of. */
+typedef struct {
+    icd_step_t request, progress;
+    uint32_t poll_interval;
+    uint32_t timeout;
+    const uint8_t *programs; /**< Those that it may be asked for, NULL for all. */
+    uint16_t program_count;
+} icd_operation_form_t;

@@ -8,6 +8,8 @@ typedef struct {
 
 /** Everything about the protocol of a node. What the ICD does not describe is NULL. */
 typedef struct {
+    const char *const *nodes; /**< Whose messages it has: its own, then those of the nodes that it includes. */
+    uint16_t node_count;
     bool little; /**< Byte order of numbers. */
     bool msb0;   /**< Bit 0 of a byte is the most significant one. */
     uint8_t telemetry_first, telemetry_last;
@@ -43,8 +45,30 @@ typedef struct {
     const icd_upload_form_t *upload;
     const icd_erase_form_t *erase;
     const icd_erase_form_t *format;
+    const icd_operation_form_t *program_copy;
+    const icd_operation_form_t *program_information;
     const icd_step_t *identification;
 } icd_link_t;
+
+static inline bool icdgen_same_name(const char *one, const char *other)
+{
+    while (*one != '\0' && *one == *other) {
+        ++one;
+        ++other;
+    }
+    return *one == *other;
+}
+
+/** Whether the node has the messages of that one, which is so of itself and of those that it includes. */
+static inline bool icd_has_messages_of(const icd_link_t *link, const char *node)
+{
+    for (size_t i = 0; i < link->node_count; ++i) {
+        if (icdgen_same_name(link->nodes[i], node)) {
+            return true;
+        }
+    }
+    return false;
+}
 
 /** The message of an id; NULL if the node has none. */
 static inline const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, unsigned id)
@@ -132,6 +156,12 @@ static inline void icdgen_put(
         below += link->little ? count : 0u;
         at += count;
     }
+}
+
+/* Whether a number is one of those that are allowed, of which NULL stands for all. */
+static inline bool icdgen_allowed(const uint8_t *allowed, size_t count, uint8_t number)
+{
+    return allowed == NULL || memchr(allowed, number, count) != NULL;
 }
 
 /** Who the node is. */

@@ -9,7 +9,8 @@ typedef enum {
     ICD_PARAMETER, /**< The node cannot load this block. */
     ICD_LENGTH,    /**< The block, or a frame, has another length than was asked for. */
     ICD_ROUNDS,    /**< Packets were still missing after so many rounds. */
-    ICD_CHECKSUM   /**< After so many rounds the checksum was still wrong. */
+    ICD_CHECKSUM,  /**< After so many rounds the checksum was still wrong. */
+    ICD_FAILED     /**< The node tells that what it was asked for failed. */
 } icd_result_t;
 
 #include "sizes.h"
@@ -33,6 +34,7 @@ struct icd_procedure {
     const icd_step_t *polled; /* the frame that is polled until a flag is as wanted */
     icd_role_t flag;
     bool wanted;
+    uint8_t program; /* of which the frame must be, if it says of which one it is */
     uint32_t interval;
     uint32_t poll_end;
     uint8_t state;
@@ -102,6 +104,14 @@ static inline void icdgen_poll(
     procedure->poll_end = procedure->now + timeout;
 }
 
+/* Whether the frame is about what was asked for. */
+static inline bool icdgen_is_meant(const icd_procedure_t *procedure, const uint8_t *frame)
+{
+    const icd_step_t *const step = procedure->polled;
+    return icdgen_place(step, ICD_ROLE_PROGRAM) == NULL ||
+        icdgen_get(procedure->link, step, frame, ICD_ROLE_PROGRAM) == procedure->program;
+}
+
 /* Whether polling goes on after this outcome. */
 static inline bool icdgen_polls_on(icd_procedure_t *procedure, const icd_event_t *outcome)
 {
@@ -115,7 +125,8 @@ static inline bool icdgen_polls_on(icd_procedure_t *procedure, const icd_event_t
         icdgen_end(procedure, ICD_LENGTH);
         return true;
     }
-    if ((icdgen_get(link, step, outcome->data, procedure->flag) != 0u) == procedure->wanted ||
+    if (((icdgen_get(link, step, outcome->data, procedure->flag) != 0u) == procedure->wanted &&
+         icdgen_is_meant(procedure, outcome->data)) ||
         icdgen_get(link, step, outcome->data, ICD_ROLE_ERROR) != 0u) {
         procedure->polled = NULL;
         return false;
@@ -236,5 +247,5 @@ static inline icd_status_t icdgen_procedure_init(
     procedure->link = link;
     procedure->resume = resume;
     procedure->result = ICD_RUNNING;
-    return supported && link->files != NULL ? ICD_OK : ICD_ERROR_UNSUPPORTED;
+    return supported ? ICD_OK : ICD_ERROR_UNSUPPORTED;
 }

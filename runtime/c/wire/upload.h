@@ -245,7 +245,8 @@ static inline void icdgen_upload_resume(icd_procedure_t *procedure, const icd_ev
 
 /**
  * The file must stay where it is. `block`: bytes a block, 0 for those of the ICD. `bitmap` holds icd_block_bitmap()
- * bytes.
+ * bytes. ICD_ERROR_UNSUPPORTED if the node takes no uploads, ICD_ERROR_RANGE if the destination is not supported,
+ * ICD_ERROR_LENGTH if it holds less.
  */
 static inline icd_status_t icd_upload_init(
     icd_upload_t *upload,
@@ -260,6 +261,12 @@ static inline icd_status_t icd_upload_init(
     memset(upload, 0, sizeof *upload);
     if (icdgen_procedure_init(&upload->procedure, link, known, icdgen_upload_resume) != ICD_OK) {
         return ICD_ERROR_UNSUPPORTED;
+    }
+    if (!icdgen_allowed(link->upload->destinations, link->upload->destination_count, destination)) {
+        return ICD_ERROR_RANGE;
+    }
+    if (link->upload->destination_bytes != 0u && size > link->upload->destination_bytes) {
+        return ICD_ERROR_LENGTH;
     }
     upload->destination = destination;
     upload->file = file;

@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Union
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    ClassVar,
+    Literal,
+    NamedTuple,
+    Optional,
+    TypeVar,
+    Union,
+)
 
 from ._enumeration import OpenEnum
 
-if TYPE_CHECKING:
-    from typing_extensions import Self
-
 Buffer = Union[bytes, bytearray, memoryview]
 EnumClass = type[OpenEnum]
+# Annotations of what users see can be evaluated with Python 3.9, which knows neither `int | None` nor `Self`.
+_MaybeEnum = Optional[EnumClass]
+_MaybeInt = Optional[int]
+_MaybeFloat = Optional[float]
+_M = TypeVar("_M", bound="Message")
 
 
 class FieldInfo(NamedTuple):
@@ -35,16 +46,16 @@ class FieldInfo(NamedTuple):
     """The property that holds the physical value; empty if the field has no scale."""
     scale: tuple[int, int, int] = (1, 0, 1)
     """``(p, c, q)``: the physical value is exactly ``(raw * p + c) / q``."""
-    enum: EnumClass | None = None
+    enum: _MaybeEnum = None
     """The enumeration of the values."""
-    const: int | None = None
+    const: _MaybeInt = None
     """The only valid raw value."""
     special: tuple[tuple[int, str], ...] = ()
     """Raw values with a meaning of their own."""
-    minimum: float | None = None
-    maximum: float | None = None
-    above: float | None = None
-    below: float | None = None
+    minimum: _MaybeFloat = None
+    maximum: _MaybeFloat = None
+    above: _MaybeFloat = None
+    below: _MaybeFloat = None
 
 
 class Message:
@@ -66,7 +77,7 @@ class Message:
         """Bytes of a frame, without the id."""
     IDS: ClassVar[tuple[int, ...]] = ()
     """Its ids: one, or the id to set it and the id to get it."""
-    TABLE: ClassVar[int | None] = None
+    TABLE: ClassVar[_MaybeInt] = None
     """The manual's table."""
     ACKNOWLEDGED: ClassVar[bool] = True
     """Whether the node acknowledges it, where it is a telecommand."""
@@ -76,7 +87,7 @@ class Message:
     BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]] = "lsb0"
 
     @classmethod
-    def from_bytes(cls, data: Buffer) -> Self:
+    def from_bytes(cls: type[_M], data: Buffer) -> _M:  # noqa: PYI019
         """The message in a frame. Raises `LengthError`."""
         raise NotImplementedError
 

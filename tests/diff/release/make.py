@@ -50,7 +50,7 @@ def make(folder: Path) -> Path:
     for path in sorted((SHIPPED / "errata").glob("*.yaml")):
         overlay = yaml.safe_load(path.read_text(encoding="utf-8"))
         for number, name in enumerate(longer.get(path.stem, ()), 1):
-            overlay["entries"] += yaml.safe_load(_LONGER.format(id=f"OLD-{number:03}", name=name))
+            overlay.setdefault("entries", []).extend(yaml.safe_load(_LONGER.format(id=f"OLD-{number:03}", name=name)))
         _write(folder / "errata" / path.name, overlay)
     _settle(folder)
     return folder
@@ -111,7 +111,7 @@ def _accept(folder: Path, fault: Finding, texts: dict[str, str]) -> None:
 
 def _mend(path: Path, lines: set[int]) -> None:
     """Leaves the entries with faults out; only those places where there are others, and counts `places` anew."""
-    texts = re.split(r"(?m)^(?=- )", path.read_text(encoding="utf-8"))
+    texts = re.split(r"(?m)^(?=- |[a-z])", path.read_text(encoding="utf-8"))
     line, kept = 1, []
     for text in texts:
         end = line + text.count("\n")
@@ -144,6 +144,6 @@ def _without_places(entry: str, hits: set[int]) -> str:
 
 
 def _write(path: Path, overlay: dict) -> None:
-    entries = overlay.pop("entries")
+    entries = overlay.pop("entries", [])
     dump = lambda value: yaml.safe_dump(value, sort_keys=False, allow_unicode=True, width=10_000)  # noqa: E731
     path.write_text(f"# {_MARK}\n{dump(overlay)}entries:\n{dump(entries)}", encoding="utf-8")

@@ -62,7 +62,7 @@ def _link(node: NodeDescription) -> Iterator[Identifier]:
     owner, source = f"the link of node `{node.name}`", node.node.source
     yield Identifier(FILES, f"{node.name}/link.h", owner, source)
     yield Identifier(FILE, f"{node.name}_link", owner, source)
-    for end in (*_SIZES, "LINK_H"):
+    for end in (*_SIZES, "NODE", "LINK_H"):
         yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source)
 
 

@@ -1,4 +1,4 @@
-"""The page of all errata."""
+"""The page of all errata and notes."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ _FEW = 6
 
 
 def values(atlas: Atlas) -> dict[str, object]:
-    """Values of the page: of each node that has some, its errata in their order."""
+    """Values of the page: of each node that has some, its errata and its notes in their order."""
     return {
         "groups": [
-            (node, [_entry(atlas, erratum) for erratum in node.errata]) for node in atlas.icd.nodes if node.errata
+            (node, [[_entry(atlas, e) for e in node.errata if e.is_note == kind] for kind in (False, True)])
+            for node in atlas.icd.nodes
+            if node.errata
         ],
     }
 

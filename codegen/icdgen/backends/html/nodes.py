@@ -19,13 +19,15 @@ def home(atlas: Atlas) -> dict[str, object]:
     """Values of the home page."""
     icd = atlas.icd
     messages = [message for node in icd.nodes for message in node.messages]
-    errata = [erratum for node in icd.nodes for erratum in node.errata]
+    errata = [erratum for node in icd.nodes for erratum in node.errata if not erratum.is_note]
+    notes = sum(erratum.is_note for node in icd.nodes for erratum in node.errata)
     totals = [
         (texts.count(len(icd.nodes), "node").split()[0], "nodes"),
         (f"{len(messages):,}", "messages"),
         (f"{sum(len(m.fields) for m in messages):,}", "fields"),
         (f"{sum(len(n.enums) for n in icd.nodes):,}", "enumerations"),
         (f"{len(errata):,}", "known errata"),
+        (f"{notes:,}", "notes"),
     ]
     example = next((m for m in messages if m.telemetry_id is not None and any(f.scale for f in m.fields)), None)
     return {
@@ -48,7 +50,8 @@ def _card(atlas: Atlas, node: Node) -> dict[str, object]:
             (sum(m.kind == kind for m in node.messages), title.lower() if kind != CONFIGURATION else "configuration")
             for kind, title in _KINDS.items()
         ],
-        "errata": len(node.errata),
+        "errata": sum(not erratum.is_note for erratum in node.errata),
+        "notes": sum(erratum.is_note for erratum in node.errata),
     }
 
 
@@ -84,7 +87,8 @@ def values(atlas: Atlas, node: Node) -> dict[str, object]:
             Place(one.title, atlas.links.node(one.name)) for one in atlas.speakers[node.name] if one is not node
         ],
         "printed": atlas.links.printed(node.name),
-        "errata_count": len(node.errata),
+        "errata_count": sum(not erratum.is_note for erratum in node.errata),
+        "notes_count": sum(erratum.is_note for erratum in node.errata),
         "own": len(node.messages),
         "fields_count": sum(len(m.fields) for m in node.messages),
     }

@@ -36,7 +36,7 @@ def entries(atlas: Atlas) -> Iterator[Entry]:
                 url = f"{links.enum(enum)}#{links.anchor(enum, str(member.value))}"
                 yield "member", member.name, f"{enum.name} = {member.value} · {node.title}", "", url
         for erratum in node.errata:
-            yield "erratum", f"{erratum.id} {erratum.title}", node.title, "", links.erratum(erratum)
+            yield erratum.label.lower(), f"{erratum.id} {erratum.title}", node.title, "", links.erratum(erratum)
 
 
 def script(atlas: Atlas) -> str:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from icdgen.backends.python import names
 from icdgen.backends.python.literals import Call, Noted, Verbatim, expression
 from icdgen.backends.python.text import prose
+from icdgen.describe import describe
 from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
 from icdgen.protocol import facts as read
-from icdgen.protocol.facts import Crc, Facts, Step
+from icdgen.protocol.facts import Crc, Facts, Operation, Step
 
 TYPES = "link"  # the module that declares the types of the facts
 
@@ -31,6 +31,7 @@ CHECKSUM = {"telecommand_buses": "telecommand", "telemetry_buses": "telemetry"}
 MASK = {"size": "bytes", "msb0": "bit_order", "slot_bytes": "frame_bytes"}
 LOG_MESSAGE = {"frames_at": "frames_byte"}
 FILES = {"counter_bytes": "packet_counter_bytes"}
+OPERATION = {"poll_interval": "poll_interval_ms", "timeout": "timeout_s"}
 HOLE_MAP = {"msb0": "bit_order"}
 
 
@@ -76,6 +77,8 @@ class Maker:
             "index_file": self.index(),
             "hole_map": self.hole_map(),
             "files": self.files(),
+            "program_copy": self.operation("program_copy", facts.program_copy),
+            "program_information": self.operation("program_information", facts.program_information),
             "identification": facts.identification and self.step(facts.identification),
             "statistics": facts.statistics and self.step(facts.statistics),
             "boot_time": facts.boot_ms,
@@ -166,6 +169,12 @@ class Maker:
         ids = {bus: self.in_procedure(f"download.{bus}", id) for bus, id in files.packet_ids.items()}
         return self.part("Files", files, "file_transfer", FILES, steps=steps, numbers=counts, packet_ids=ids)
 
+    def operation(self, section: str, form: Operation | None) -> object:
+        if form is None:
+            return None
+        steps = {"request": self.step(form.request), "progress": self.step(form.progress)}
+        return self.part("Operation", form, section, OPERATION, **steps)
+
     def in_procedure(self, path: str, value: object) -> object:
         """A value of a procedure of file transfer, by its path there."""
         procedure, _, key = path.partition(".")
@@ -189,8 +198,7 @@ class Maker:
 
     def attributes(self, message: Message) -> dict[str, str]:
         """Attributes of a message by the names of its fields."""
-        owner = self.icd.node(message.node)
-        return {field.name: names.attribute(field, owner) for field in message.fields}
+        return {one.field.name: one.name for one in describe(self.icd).message(message).fields}
 
 
 def made(name: str, part: object, **instead: object) -> Call:

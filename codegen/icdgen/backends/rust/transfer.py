@@ -135,6 +135,11 @@ def _upload(known: Facts) -> Struct | None:
     found.number("erase_timeout_s", "erase_timeout_ms", factor=1000)
     found.number("finalize_timeout_ms")
     found.number("rounds")
+    limits = known.files
+    assert limits
+    most = limits.numbers.get("upload.destination_bytes")
+    found.parts.append(Part("destination_bytes", Optional(most), "file_transfer.upload.destination_bytes"))
+    found.parts.append(Part("destinations", Rows(limits.destinations), "file_transfer.upload.destinations"))
     return found.struct("UploadForm")
 
 
@@ -145,3 +150,22 @@ def _erasure(known: Facts, name: str) -> Struct | None:
     found.number("poll_interval_ms")
     found.number("timeout_ms")
     return found.struct("ErasureForm")
+
+
+def operation(known: Facts, name: str) -> Struct | None:
+    """What a node does with a stored program."""
+    form = known.program_copy if name == "program_copy" else known.program_information
+    request = form and step(known, form.request, TELECOMMAND)
+    progress = form and step(known, form.progress, TELEMETRY)
+    if form is None or request is None or progress is None:
+        return None
+    return Struct(
+        "OperationForm",
+        (
+            Part("request", request, f"{name}.request"),
+            Part("progress", progress, f"{name}.progress"),
+            Part("poll_interval_ms", form.poll_interval, f"{name}.poll_interval_ms"),
+            Part("timeout_ms", form.timeout, f"{name}.timeout_s"),
+            Part("programs", Rows(form.programs), f"{name}.programs"),
+        ),
+    )

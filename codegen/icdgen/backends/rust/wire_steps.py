@@ -11,7 +11,7 @@ from icdgen.protocol.facts import Facts, Step
 ROLES = frozenset(
     (
         "all", "block_size", "busy", "checksum", "counter", "destination", "error", "ignore_hole_map", "interface_version",
-        "length", "node_type", "number", "offset", "ready", "size", "time", "type",
+        "length", "node_type", "number", "offset", "program", "ready", "size", "time", "type",
     )
 )  # fmt: skip
 NUMBER_BITS = 32  # of what the wire layer handles

@@ -11,7 +11,7 @@ from icdgen.diff.rule import rule
 from icdgen.icd.model import Erratum, Node
 from icdgen.icd.rules.wording import listing
 
-_PARTS = ("title", "why", "evidence", "confidence", "tables", "printed", "held")
+_PARTS = ("title", "why", "evidence", "confidence", "tables", "printed", "held", "is_note")
 
 
 def _entries(node: Node) -> dict[str, Erratum]:
@@ -22,10 +22,20 @@ def _found(pair: NodePair, entry: Erratum, text: str, was: str, now: str) -> Fou
     return Found(text, ("name",), was, now, where=pair.where()._replace(erratum=entry.id))
 
 
+def _name(entry: Erratum) -> str:
+    return f"{entry.label.lower()} {entry.id}"
+
+
 def _kind(entry: Erratum) -> str:
-    if not entry.changes:
+    if entry.is_note:
         return "a note"
+    if not entry.changes:
+        return "changes nothing"
     return f"holds {', '.join(f'{key}: {_plain(value)}' for key, value in entry.held)}"
+
+
+def _effect(entry: Erratum) -> str:
+    return "" if entry.is_note else f" ({_kind(entry)})"
 
 
 def _plain(value: object) -> str:
@@ -37,14 +47,18 @@ def _plain(value: object) -> str:
 def erratum_added(pair: NodePair, ctx: Context) -> Iterator[Found]:
     old, new = _entries(pair.old), _entries(pair.new)
     for key in [k for k in new if k not in old]:
-        yield _found(pair, new[key], f"erratum {key} is new ({_kind(new[key])}): {new[key].title}", "", new[key].title)
+        yield _found(
+            pair, new[key], f"{_name(new[key])} is new{_effect(new[key])}: {new[key].title}", "", new[key].title
+        )
 
 
 @rule("DIF404", "node", severity="note")
 def erratum_removed(pair: NodePair, ctx: Context) -> Iterator[Found]:
     old, new = _entries(pair.old), _entries(pair.new)
     for key in [k for k in old if k not in new]:
-        yield _found(pair, old[key], f"erratum {key} is gone ({_kind(old[key])}): {old[key].title}", old[key].title, "")
+        yield _found(
+            pair, old[key], f"{_name(old[key])} is gone{_effect(old[key])}: {old[key].title}", old[key].title, ""
+        )
 
 
 @rule("DIF405", "node", severity="note")
@@ -55,5 +69,5 @@ def erratum_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
         was, now = _kind(old[key]), _kind(new[key])
         if was == now:
             was, now = (str(getattr(entry, parts[0])) if parts else "" for entry in (old[key], new[key]))
-        text = f"erratum {key} says otherwise ({listing(parts) if parts else 'what it changes'}): {new[key].title}"
+        text = f"{_name(new[key])} says otherwise ({listing(parts) if parts else 'what it changes'}): {new[key].title}"
         yield _found(pair, new[key], text, was, now)

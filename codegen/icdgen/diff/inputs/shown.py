@@ -137,7 +137,7 @@ class _Reader:
             self.units.update((unit.symbol, unit) for unit in node.units)
         units = tuple(Unit(u["symbol"], u["identifier"], u["quantity"], u.get("summary", "")) for u in get("units", ()))
         self.units.update((unit.symbol, unit) for unit in units)
-        self.errata = {entry["id"]: _erratum(entry) for entry in get("errata", ())}
+        self.errata = {entry["id"]: _erratum(entry) for key in ("errata", "notes") for entry in get(key, ())}
         enums = tuple(self.enum(enum, item["name"]) for enum in item["enums"])
         self.enums.update((enum.name, enum) for enum in enums)
         return model.Node(
@@ -163,7 +163,7 @@ class _Reader:
         return [node for name, node in self.before.items() if name in wanted]
 
     def about(self, item: Map) -> tuple[model.Erratum, ...]:
-        return tuple(self.errata[key] for key in item.get("errata", ()) if key in self.errata)
+        return tuple(self.errata[id] for key in ("errata", "notes") for id in item.get(key, ()) if id in self.errata)
 
     def enum(self, item: Map, node: str) -> model.Enum:
         get = item.get
@@ -210,9 +210,11 @@ def _scale(item: Map) -> Scale | None:
 
 
 def _erratum(item: Map) -> model.Erratum:
+    is_note = "what" in item
     return model.Erratum(
-        item["id"], item["title"], item["why"], item["evidence"], item["confidence"], tuple(item.get("tables", ())),
-        tuple(item.get("printed", {}).items()), tuple(item.get("held", {}).items()), item["changes"],
+        item["id"], item["title"], item["what" if is_note else "why"], item["evidence"], item.get("confidence", ""),
+        tuple(item.get("tables", ())), tuple(item.get("printed", {}).items()), tuple(item.get("held", {}).items()),
+        item.get("changes", False), is_note,
     )  # fmt: skip
 
 

@@ -6,12 +6,14 @@ wrong, and where.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 from icdgen.diagnostics import Finding, in_order
 from icdgen.icd.errata import Applied
 from icdgen.icd.model import Icd
 from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its rules)
+    checksums,
     composites,
     duplicates,
     errata,
@@ -35,6 +37,9 @@ from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED, Rule
 from icdgen.icd.rules.wording import close_to
 
+if TYPE_CHECKING:
+    from icdgen.backends import Backend
+
 ALL: dict[str, Rule] = dict(sorted(REGISTERED.items()))
 _RUN = sorted(ALL.values(), key=lambda r: r.last)
 
@@ -43,12 +48,14 @@ class UnknownRule(LookupError):
     """No rule has that code; the message says which was probably meant."""
 
 
-def check(icd: Icd, applied: Iterable[Applied] = (), complete: bool = True) -> list[Finding]:
+def check(
+    icd: Icd, applied: Iterable[Applied] = (), complete: bool = True, plug_ins: Sequence[Backend] = ()
+) -> list[Finding]:
     """Everything that breaks a rule and that no erratum accepts, in the order of the files.
 
     ``complete`` is False where broken items were left out of the model: rules about what is absent stay silent then.
     """
-    context = Context(icd, applied, complete)
+    context = Context(icd, applied, complete, plug_ins)
     findings: list[Finding] = []
     accepted = {(code, id(owner)) for one in context.applied for code, _, owner, _, _ in one.accepts}
     for rule in _RUN:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
 from icdgen.icd.errata import Applied
 from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.icd.rules.rule import Fault
+
+if TYPE_CHECKING:
+    from icdgen.backends import Backend
 
 # Keys of a field that only few fields have.
 RARE = ("enum", "unit", "formula", "formula_for", "const", "special", "min", "max", "above", "below", "bitfields")
@@ -24,8 +27,15 @@ def mappings(items: object) -> Iterator[Map]:
 class Context:
     """The model and what was found so far. The model must have been read from files: rules look at ``source``."""
 
-    def __init__(self, icd: Icd, applied: Iterable[Applied] = (), complete: bool = True) -> None:
+    def __init__(
+        self,
+        icd: Icd,
+        applied: Iterable[Applied] = (),
+        complete: bool = True,
+        plug_ins: Sequence[Backend] = (),
+    ) -> None:
         self.icd = icd
+        self.plug_ins = plug_ins  # backends of other packages that are generated for
         self.applied = tuple(applied)
         self.complete = complete
         self.raised: list[tuple[str, Fault]] = []  # code and fault, of the rules that ran already

@@ -25,13 +25,12 @@ class Declared(NamedTuple):
 
 
 def declared(ctx: Context) -> list[Declared]:
-    """What each built-in backend declares, worked out once a run."""
+    """What each built-in backend declares, and each plug-in that is generated for; worked out once a run."""
     if ctx.declared is None:
         icd = _sound(ctx)
         ctx.declared = []
-        for name in backends.names() if icd.nodes else ():
-            backend = backends.get(name)
-            ctx.declared.append(Declared(name, backend.reserved, list(backend.identifiers(icd))))
+        for backend in (*map(backends.get, backends.names()), *ctx.plug_ins) if icd.nodes else ():
+            ctx.declared.append(Declared(backend.name, backend.reserved, list(backend.identifiers(icd))))
     return ctx.declared
 
 

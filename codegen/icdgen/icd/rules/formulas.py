@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.icd import exact, formula
+from icdgen.icd.located import Map
+from icdgen.icd.model import Field, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import Fault, rule
-from icdgen.icd.rules.wording import quote
+from icdgen.icd.rules.wording import count, quote
 
 SCALED = ("uint", "int")
 
@@ -42,7 +44,7 @@ def formula_direction(ctx: Context) -> Iterator[Fault]:
             message = f"{quote(field.name)} has `formula_for` and no formula"
             yield Fault(source, place, message, "add `formula` or remove it")
             continue
-        gives = "raw" if formula.is_inverse(source["formula"]) else "physical"
+        gives = _gives(field)
         if said != gives:
             message = f"the formula of {quote(field.name)} is announced for the {said} value and gives the {gives} one"
             help = "decide in the errata: hold `formula_for: null` if the formula is right, or hold the other formula"
@@ -50,6 +52,31 @@ def formula_direction(ctx: Context) -> Iterator[Fault]:
             message = f"the formula of {quote(field.name)} does give the {said} value: nothing contradicts it"
             help = "remove `formula_for`"
         yield Fault(source, place, message, help)
+    for node in ctx.icd.nodes:
+        stated = node.source.get("formula_for") if node.source else None
+        if isinstance(stated, Map):
+            yield from _stated(stated, node)
+
+
+def _stated(stated: Map, node: Node) -> Iterator[Fault]:
+    """What is said once for all messages of a kind."""
+    for kind, said in stated.items():
+        fields = [f for m in node.messages if m.kind == kind for f in m.fields if "formula_for" not in f.source]
+        against = [f for f in fields if "formula" in f.source and _gives(f) != said]
+        if against:
+            message = (
+                f"the formulas of {kind} messages are announced for the {said} value, "
+                f"and that of {quote(against[0].name)} gives the other one, as in {count(len(against), 'field')} altogether"
+            )
+            help = f"decide in the errata: hold `{kind}: null` if the formulas are right"
+        else:
+            message = f"no formula of a {kind} message gives anything but the {said} value: nothing contradicts it"
+            help = f"remove `{kind}`"
+        yield Fault(stated, stated.at(kind), message, help)
+
+
+def _gives(field: Field) -> str:
+    return "raw" if formula.is_inverse(field.source["formula"]) else "physical"
 
 
 @rule("ICD063")

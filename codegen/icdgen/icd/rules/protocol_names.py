@@ -14,13 +14,18 @@ from icdgen.icd.rules.wording import close_to, quote
 
 T = TypeVar("T")
 
-MESSAGES = ("message", "packet", "id_of", "stop_request", "set_by", "names")  # keys that name messages
-FIELDS = ("id", "until", "until_clear", "error", "parameter")  # keys that, beside `message`, name fields of it
+# keys that name messages
+MESSAGES = ("message", "packet", "id_of", "stop_request", "set_by", "names", "reset_by", "if_not_started")
+FIELDS = ("id", "until", "error", "parameter", "field")  # keys that, beside `message`, name fields of it
 # keys that name an enumeration, and the keys beside them that give its values
 MEMBERS = (
-    ("enum", ("value", "none", "unknown_id", "length", "parameter", "checksum")),
+    (
+        "enum",
+        ("value", "none", "unknown_id", "length", "parameter", "checksum", "selected", "success", "failed"),
+    ),
     ("failure_enum", ("failure",)),
     ("destination_enum", ("destinations",)),
+    ("program_enum", ("programs", "destination")),
 )
 # keys of `can.telecommand` and `can.telemetry` that name message types
 TYPES = ("request", "extended_request", "acknowledge", "response", "extended_response", "failure")

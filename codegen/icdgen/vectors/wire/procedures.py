@@ -7,8 +7,9 @@ from random import Random
 
 from icdgen.protocol import transfer
 from icdgen.protocol.facts import UART, Facts
-from icdgen.protocol.scripts import procedure_of
+from icdgen.protocol.scripts import LONGEST, procedure_of
 from icdgen.vectors.wire.node import FileNode
+from icdgen.vectors.wire.operations import neighbours
 
 Requests = Iterator[tuple[str, dict]]
 
@@ -48,6 +49,9 @@ def scripts(known: Facts) -> Requests:
         yield from _downloads(known)
     if "upload.packet" in form.steps:
         yield from _uploads(known)
+    else:
+        request = {"op": "file", "do": "upload", "destination": 3, "bytes": "00", "script": [{"at": 0}]}
+        yield "the node takes no uploads", request
     if {"erase.request", "erase.progress"} <= set(form.steps):
         for all_ in (False, True):
             yield from _recorded(known, "erased", {"do": "erase", "type": 2, "counter": 3, "all": all_}, 0.0)
@@ -112,11 +116,23 @@ class _Wrong(FileNode):
 
 def _uploads(known: Facts) -> Requests:
     assert known.files
-    size = known.files.packet_bytes
+    size, most = known.files.packet_bytes, known.files.numbers.get("upload.destination_bytes")
+    allowed = known.files.destinations
+    destination = allowed[0] if allowed else 3
+    first = {"op": "file", "do": "upload", "destination": destination, "bytes": "00", "script": [{"at": 0}]}
+    for number in allowed:
+        yield "a destination that is supported", {**first, "destination": number}
+    for number in neighbours(allowed):
+        yield "a destination that is not supported", {**first, "destination": number}
+    if most is not None and most < LONGEST:
+        yield "as much as a destination holds", {**first, "times": most}
+        yield "a byte more than a destination holds", {**first, "times": most + 1}
     data = Random(f"{known.node.name} program").randbytes(7 * size + 3)
+    if most is not None and most < len(data):
+        return
     for loss in (0.0, 0.3):
-        request = {"do": "upload", "destination": 3, "bytes": data.hex(), "block": 4 * size}
+        request = {"do": "upload", "destination": destination, "bytes": data.hex(), "block": 4 * size}
         yield from _recorded(known, "a program in two blocks", request, loss)
-    request = {"do": "upload", "destination": 3, "bytes": data[: 2 * size].hex()}
+    request = {"do": "upload", "destination": destination, "bytes": data[: 2 * size].hex()}
     script, _ = record(known, request, _Wrong(known, UART, Random(1)))
     yield "a checksum that is never right", {"op": "file", **request, "script": script}

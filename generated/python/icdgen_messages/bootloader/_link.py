@@ -100,7 +100,8 @@ LINK = link.Link(
         start=127,
         end=255,
         escaped=31,
-        # Assumed: That the id is escaped like the data is not said. It matters for
+        # Assumed: By Table 4 an escape byte is followed by one of three bytes,
+        #   wherever it stands; so an id of 0x1F is escaped, too. It matters for
         #   telecommand 31 only, and for the id in its acknowledge.
         escapes_id=True,
         ignores_other=False,
@@ -316,6 +317,7 @@ LINK = link.Link(
             "upload.checksum_covers_fill": 1,
             # Assumed: No time is given.
             "upload.finalize_timeout_ms": 5000,
+            "upload.destination_bytes": 524288,
             # Assumed: No time is given.
             "erase.poll_interval_ms": 200,
             # Assumed: No time is given.
@@ -334,6 +336,35 @@ LINK = link.Link(
             #   one by one as on I2C.
             "can": 241,
         },
+        destinations=(3, 4, 5, 6, 7, 8, 9),
+    ),
+    program_copy=link.Operation(
+        request=link.Step(telecommand=103, fields={"program": "source_program_index"}),
+        progress=link.Step(telemetry=233, fields={"busy": "busy", "error": "error"}),
+        # Assumed: No time is given.
+        poll_interval=50,
+        # Assumed: No time is given. The same area is erased as for an upload, which
+        #   takes up to 8 s, and then written.
+        timeout=10000,
+        # Assumed: A copy is described from external flash only. What the other
+        #   programs of the enumeration would do is not said.
+        programs=(3, 4, 5, 6, 7, 8, 9),
+    ),
+    program_information=link.Operation(
+        request=link.Step(telecommand=102, fields={"program": "program_index"}),
+        progress=link.Step(
+            telemetry=232,
+            fields={
+                "program": "program_index",
+                "busy": "busy",
+                "size": "file_size",
+                "checksum": "checksum",
+            },
+        ),
+        # Assumed: No time is given.
+        poll_interval=50,
+        timeout=2000,
+        programs=(),
     ),
     identification=link.Step(
         telemetry=128,
@@ -383,7 +414,8 @@ LINK = link.Link(
             key="escaped_in",
             value=("id", "data"),
             why=(
-                "That the id is escaped like the data is not said. It matters for "
+                "By Table 4 an escape byte is followed by one of three bytes, "
+                "wherever it stands; so an id of 0x1F is escaped, too. It matters for "
                 "telecommand 31 only, and for the id in its acknowledge."
             ),
         ),
@@ -619,6 +651,36 @@ LINK = link.Link(
                 "One attempt and two more are announced. But the status is raised "
                 "before each start, so it reads 3 Failed boot attempts before the "
                 "third, and at that value no start is said to follow."
+            ),
+        ),
+        link.Assumption(
+            section="program_information",
+            key="poll_interval_ms",
+            value=50,
+            why="No time is given.",
+        ),
+        link.Assumption(
+            section="program_copy",
+            key="programs",
+            value=(3, 4, 5, 6, 7, 8, 9),
+            why=(
+                "A copy is described from external flash only. What the other "
+                "programs of the enumeration would do is not said."
+            ),
+        ),
+        link.Assumption(
+            section="program_copy",
+            key="poll_interval_ms",
+            value=50,
+            why="No time is given.",
+        ),
+        link.Assumption(
+            section="program_copy",
+            key="timeout_s",
+            value=10,
+            why=(
+                "No time is given. The same area is erased as for an upload, which "
+                "takes up to 8 s, and then written."
             ),
         ),
         link.Assumption(

@@ -91,7 +91,8 @@ LINK = link.Link(
         start=127,
         end=255,
         escaped=31,
-        # Assumed: That the id is escaped like the data is not said. It matters for
+        # Assumed: By Table 4 an escape byte is followed by one of three bytes,
+        #   wherever it stands; so an id of 0x1F is escaped, too. It matters for
         #   telecommand 31 only, and for the id in its acknowledge.
         escapes_id=True,
         ignores_other=False,
@@ -230,34 +231,6 @@ LINK = link.Link(
                     "ignore_hole_map": "ignore_hole_map",
                 },
             ),
-            "upload.initiate": link.Step(
-                telecommand=114,
-                fields={"destination": "destination", "block_size": "block_size"},
-            ),
-            "upload.initiated": link.Step(telemetry=244, fields={"busy": "busy"}),
-            "upload.begin": link.Step(telecommand=117, fields={}),
-            "upload.packet": link.Step(
-                telecommand=115,
-                fields={"number": "packet_number", "bytes": "file_bytes"},
-            ),
-            "upload.checksum": link.Step(
-                telemetry=246,
-                fields={"checksum": "checksum"},
-            ),
-            # Assumed: The procedure ends with the checksum and does not name the
-            #   telecommand that commits the block.
-            "upload.finalize": link.Step(
-                telecommand=116,
-                fields={
-                    "destination": "destination",
-                    "offset": "offset",
-                    "length": "block_length",
-                },
-            ),
-            "upload.finalized": link.Step(
-                telemetry=245,
-                fields={"busy": "busy", "error": "error"},
-            ),
             "erase.request": link.Step(
                 telecommand=108,
                 fields={
@@ -296,17 +269,6 @@ LINK = link.Link(
             "download.silence_ms": 500,
             # Assumed: Nothing is said about giving up.
             "download.rounds": 32,
-            "upload.block_size": 0,
-            # Assumed: No time is given.
-            "upload.poll_interval_ms": 50,
-            "upload.erase_timeout_s": 8,
-            # Assumed: Nothing is said about giving up.
-            "upload.rounds": 32,
-            # Assumed: Not said. The node learns the length of the block only when the
-            #   block is committed, after the checksum.
-            "upload.checksum_covers_fill": 1,
-            # Assumed: No time is given.
-            "upload.finalize_timeout_ms": 5000,
             # Assumed: No time is given.
             "erase.poll_interval_ms": 200,
             # Assumed: No time is given.
@@ -325,6 +287,7 @@ LINK = link.Link(
             #   one by one as on I2C.
             "can": 241,
         },
+        destinations=(3, 4, 5, 6, 7, 8, 9),
     ),
     identification=link.Step(
         telemetry=128,
@@ -374,7 +337,8 @@ LINK = link.Link(
             key="escaped_in",
             value=("id", "data"),
             why=(
-                "That the id is escaped like the data is not said. It matters for "
+                "By Table 4 an escape byte is followed by one of three bytes, "
+                "wherever it stands; so an id of 0x1F is escaped, too. It matters for "
                 "telecommand 31 only, and for the id in its acknowledge."
             ),
         ),

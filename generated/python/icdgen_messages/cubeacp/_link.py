@@ -232,7 +232,8 @@ LINK = link.Link(
         start=127,
         end=255,
         escaped=31,
-        # Assumed: That the id is escaped like the data is not said. It matters for
+        # Assumed: By Table 4 an escape byte is followed by one of three bytes,
+        #   wherever it stands; so an id of 0x1F is escaped, too. It matters for
         #   telecommand 31 only, and for the id in its acknowledge.
         escapes_id=True,
         ignores_other=False,
@@ -294,8 +295,9 @@ LINK = link.Link(
         # Assumed: Whether the id counts among the bytes of a command is not said. The
         #   extra byte of a frame can cover the frame only.
         covers_id=False,
-        # Assumed: Checksums on CAN are not sent. In an extended message the receiver
-        #   could not tell the checksum from the fill.
+        # Assumed: The checksum is offered for commands in general, CAN included. None
+        #   is sent there by choice, for in an extended message the receiver could not
+        #   tell the checksum from the fill.
         telecommand_buses=("uart", "i2c"),
         telemetry_buses=("i2c",),
         bytes=1,
@@ -394,8 +396,8 @@ LINK = link.Link(
         frames_at=6,
         file_type=2,
     ),
-    # Assumed, framed: Start, end and escapes of these messages are not described.
-    #   They are taken to be those of every other message.
+    # Assumed, framed: Section 5.2 has start, end and escapes for all that goes over
+    #   the UART, and makes no exception for these messages.
     log_message=link.LogMessageForm(id=255, mask_at=1, frames_at=11),
     time={
         "second": link.TimePart(at=0, bits=5, factor=2, offset=0),
@@ -479,34 +481,6 @@ LINK = link.Link(
                     "ignore_hole_map": "ignore_hole_map",
                 },
             ),
-            "upload.initiate": link.Step(
-                telecommand=114,
-                fields={"destination": "destination", "block_size": "block_size"},
-            ),
-            "upload.initiated": link.Step(telemetry=244, fields={"busy": "busy"}),
-            "upload.begin": link.Step(telecommand=117, fields={}),
-            "upload.packet": link.Step(
-                telecommand=115,
-                fields={"number": "packet_number", "bytes": "file_bytes"},
-            ),
-            "upload.checksum": link.Step(
-                telemetry=246,
-                fields={"checksum": "checksum"},
-            ),
-            # Assumed: The procedure ends with the checksum and does not name the
-            #   telecommand that commits the block.
-            "upload.finalize": link.Step(
-                telecommand=116,
-                fields={
-                    "destination": "destination",
-                    "offset": "offset",
-                    "length": "block_length",
-                },
-            ),
-            "upload.finalized": link.Step(
-                telemetry=245,
-                fields={"busy": "busy", "error": "error"},
-            ),
             "erase.request": link.Step(
                 telecommand=108,
                 fields={
@@ -545,17 +519,6 @@ LINK = link.Link(
             "download.silence_ms": 500,
             # Assumed: Nothing is said about giving up.
             "download.rounds": 32,
-            "upload.block_size": 0,
-            # Assumed: No time is given.
-            "upload.poll_interval_ms": 50,
-            "upload.erase_timeout_s": 8,
-            # Assumed: Nothing is said about giving up.
-            "upload.rounds": 32,
-            # Assumed: Not said. The node learns the length of the block only when the
-            #   block is committed, after the checksum.
-            "upload.checksum_covers_fill": 1,
-            # Assumed: No time is given.
-            "upload.finalize_timeout_ms": 5000,
             # Assumed: No time is given.
             "erase.poll_interval_ms": 200,
             # Assumed: No time is given.
@@ -574,6 +537,7 @@ LINK = link.Link(
             #   one by one as on I2C.
             "can": 241,
         },
+        destinations=(3, 4, 5, 6, 7, 8, 9),
     ),
     identification=link.Step(
         telemetry=128,
@@ -623,7 +587,8 @@ LINK = link.Link(
             key="escaped_in",
             value=("id", "data"),
             why=(
-                "That the id is escaped like the data is not said. It matters for "
+                "By Table 4 an escape byte is followed by one of three bytes, "
+                "wherever it stands; so an id of 0x1F is escaped, too. It matters for "
                 "telecommand 31 only, and for the id in its acknowledge."
             ),
         ),
@@ -881,7 +846,8 @@ LINK = link.Link(
                 "buses": ("uart", "i2c"),
             },
             why=(
-                "Checksums on CAN are not sent. In an extended message the receiver "
+                "The checksum is offered for commands in general, CAN included. None "
+                "is sent there by choice, for in an extended message the receiver "
                 "could not tell the checksum from the fill."
             ),
         ),
@@ -923,8 +889,8 @@ LINK = link.Link(
             key="framed",
             value=True,
             why=(
-                "Start, end and escapes of these messages are not described. They are "
-                "taken to be those of every other message."
+                "Section 5.2 has start, end and escapes for all that goes over the "
+                "UART, and makes no exception for these messages."
             ),
         ),
         link.Assumption(

@@ -57,6 +57,8 @@ if TYPE_CHECKING:
     from .logs import LogWriter as LogWriter
     from .ports import serial_port as serial_port
     from .procedures import Procedure as Procedure
+    from .programs import ProgramCopy as ProgramCopy
+    from .programs import ProgramInformation as ProgramInformation
     from .session import Session as Session
     from .times import DosTime as DosTime
     from .times import dos_time_pack as dos_time_pack
@@ -103,6 +105,7 @@ _HOMES = {
     "logs": ("LogEntry", "LogFrame", "LogMessage", "LogReader", "LogWriter"),
     "ports": ("serial_port",),
     "procedures": ("Procedure",),
+    "programs": ("ProgramCopy", "ProgramInformation"),
     "session": ("Session",),
     "times": ("DosTime", "dos_time_pack", "dos_time_unpack"),
     "transfer": ("Download", "Erase", "FileEntry", "FileList", "Format", "Upload"),

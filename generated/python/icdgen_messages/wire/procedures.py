@@ -11,14 +11,14 @@ from .errors import need
 from .events import Done, Packet, Refused, Timeout
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
+    from collections.abc import Generator, Iterable
 
     from .._base import Message
     from .events import Event, Outcome
     from .link import Link, Step
 
 Result = Literal[
-    "done", "refused", "timeout", "parameter", "length", "rounds", "checksum"
+    "done", "refused", "timeout", "parameter", "length", "rounds", "checksum", "error"
 ]
 
 
@@ -43,6 +43,11 @@ if TYPE_CHECKING:
     Steps = Generator[Wanted, "Outcome | None", None]
 
 
+def one_of(numbers: Iterable[int]) -> str:
+    """Numbers that can be chosen, in words."""
+    return "one of " + ", ".join(map(str, numbers))
+
+
 class Procedure:
     """A procedure over a client; it knows neither clock nor bus.
 
@@ -51,7 +56,7 @@ class Procedure:
     """
 
     def __init__(self, link: Link) -> None:
-        self.link, self._files = link, need(link.files, "file_transfer")
+        self.link = link
         self.result: Result | None = None
         """None while it runs, then ``done`` or why it is not."""
         self._now: float = 0
@@ -109,17 +114,19 @@ class Procedure:
             self.result = end.result
 
     def _step(self, name: str) -> Step:
-        return need(self._files.steps.get(name), f"file_transfer.{name}")
+        """The message of a step."""
+        raise NotImplementedError
 
     def _number(self, name: str) -> int:
-        return need(self._files.numbers.get(name), f"file_transfer.{name}")
+        """A number of the ICD."""
+        raise NotImplementedError
 
     def _telecommand(
         self, name: str, values: Values | None = None, repeat: bool = True
     ) -> Request:
         """The telecommand of a step: a fresh message with values by role."""
         step = self._step(name)
-        id = need(step.telecommand, f"file_transfer.{name}")
+        id = need(step.telecommand, name)
         message = self.link.TELECOMMANDS[id]()
         for role, value in (values or {}).items():
             setattr(message, step.fields[role], value)
@@ -150,20 +157,30 @@ class Procedure:
     ) -> Generator[Wanted, Outcome | None, tuple[Values, bytes]]:
         """The frame of a step: its values by role, and its bytes."""
         step = self._step(name)
-        id = need(step.telemetry, f"file_transfer.{name}")
+        id = need(step.telemetry, name)
         done = yield from self._must(Request("telemetry", id, repeat=True))
         frame: Message = self.link.TELEMETRY[id].from_bytes(done.data)
         values = {role: getattr(frame, at) for role, at in step.fields.items()}
         return values, done.data
 
     def _poll(
-        self, name: str, role: str, wanted: bool, interval: str, timeout: float
+        self,
+        name: str,
+        role: str,
+        wanted: bool,
+        interval: str,
+        timeout: float,
+        program: int | None = None,
     ) -> Generator[Wanted, Outcome | None, tuple[Values, bytes]]:
-        """The frame of a step as soon as the flag is as wanted, or tells an error."""
+        """The frame of a step as soon as the flag is as wanted, or tells an error.
+
+        A frame that tells of which program it is must be of that one.
+        """
         end = self._now + timeout
         while True:
             values, frame = yield from self._frame(name)
-            if bool(values[role]) == wanted or values.get("error"):
+            is_meant = program is None or values.get("program", program) == program
+            if (bool(values[role]) == wanted and is_meant) or values.get("error"):
                 return values, frame
             if self._now >= end:
                 raise Ended("timeout")

@@ -5,19 +5,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from .._errors import RangeError
 from .client import Request
 from .crc import crc16
-from .errors import need
+from .errors import TooLongError, need
 from .events import Done, Refused
 from .files import HoleMap
-from .procedures import Ended, Procedure, Values, Wait
+from .procedures import Ended, Procedure, Values, Wait, one_of
 from .times import dos_time_unpack
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
     from .events import Outcome
-    from .link import Bus, Link
+    from .link import Bus, Link, Step
     from .procedures import Steps, Wanted
     from .times import DosTime
 
@@ -36,7 +37,21 @@ class FileEntry(NamedTuple):
         return dos_time_unpack(link, self.time)
 
 
-class FileList(Procedure):
+class FileProcedure(Procedure):
+    """What the procedures of file transfer share. Raises `UnsupportedError`."""
+
+    def __init__(self, link: Link) -> None:
+        super().__init__(link)
+        self._files = need(link.files, "file_transfer")
+
+    def _step(self, name: str) -> Step:
+        return need(self._files.steps.get(name), f"file_transfer.{name}")
+
+    def _number(self, name: str) -> int:
+        return need(self._files.numbers.get(name), f"file_transfer.{name}")
+
+
+class FileList(FileProcedure):
     """Finds the files of the node, which are in ``entries``."""
 
     def __init__(self, link: Link) -> None:
@@ -69,7 +84,7 @@ class FileList(Procedure):
                 raise Ended("refused")
 
 
-class Download(Procedure):
+class Download(FileProcedure):
     """Gets a file, block by block.
 
     ``size`` None: as much as there is, which the index file needs. ``block``: bytes of
@@ -216,13 +231,24 @@ class Download(Procedure):
             yield from self._must(Request("telecommand", id, data, repeat=True))
 
 
-class Upload(Procedure):
-    """Sends a file, block by block. ``sent``: bytes that are committed."""
+class Upload(FileProcedure):
+    """Sends a file, block by block. ``sent``: bytes that are committed.
+
+    Raises `RangeError` for a destination that is not supported, `TooLongError` if it
+    holds less, and `UnsupportedError`.
+    """
 
     def __init__(
         self, link: Link, destination: int, data: bytes, block: int | None = None
     ) -> None:
         super().__init__(link)
+        self._step("upload.initiate")
+        known = self._files.destinations
+        if known and destination not in known:
+            raise RangeError("destination", one_of(known), destination)
+        most = self._files.numbers.get("upload.destination_bytes")
+        if most is not None and len(data) > most:
+            raise TooLongError(most, len(data))
         self.sent = 0
         self._destination, self._data = destination, data
         self._block_bytes = min(
@@ -300,7 +326,7 @@ class Upload(Procedure):
         return not told["error"]
 
 
-class Erase(Procedure):
+class Erase(FileProcedure):
     """Deletes a file, or all files: then it is done when the node is no longer busy."""
 
     def __init__(
@@ -318,7 +344,7 @@ class Erase(Procedure):
             yield from self._poll("erase.progress", "busy", False, interval, timeout)
 
 
-class Format(Procedure):
+class Format(FileProcedure):
     """Formats the medium of the node."""
 
     def _run(self) -> Steps:

@@ -221,10 +221,23 @@ class Files(NamedTuple):
     steps: dict[str, Step]
     numbers: dict[str, int]
     packet_ids: dict[str, int]
+    destinations: tuple[int, ...] = ()
+    """Those of uploads; none: all."""
 
     def packets_of(self, size: int) -> int:
         """Packets of a block of so many bytes."""
         return -(-size // self.packet_bytes)
+
+
+class Operation(NamedTuple):
+    """What a telecommand starts, and a frame tells the end of. Times in milliseconds."""
+
+    request: Step
+    progress: Step
+    poll_interval: int
+    timeout: int
+    programs: tuple[int, ...] = ()
+    """Those that it may be asked for; none: all."""
 
 
 class Link(NamedTuple):
@@ -263,6 +276,8 @@ class Link(NamedTuple):
     index_file: Index | None = None
     hole_map: HoleMapForm | None = None
     files: Files | None = None
+    program_copy: Operation | None = None
+    program_information: Operation | None = None
     identification: Step | None = None
     statistics: Step | None = None
     boot_time: int | None = None

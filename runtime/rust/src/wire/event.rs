@@ -16,6 +16,8 @@ pub enum Event<'a> {
         attempts: u16,
         /// The frame.
         data: &'a [u8],
+        /// The nodes whose messages the node has; see [`super::Link::nodes`].
+        nodes: &'static [&'static str],
     },
     /// The node refused the request.
     Refused {
@@ -92,11 +94,14 @@ pub enum Event<'a> {
 }
 
 impl Event<'_> {
-    /// The frame as the message that was requested; None if the event is not that it came.
+    /// The frame as the message that was requested; None if the event is not that it came, or if it is a
+    /// message of another node.
     #[must_use]
     pub fn message<M: Telemetry>(&self) -> Option<M> {
         match self {
-            Self::Done { id, data, .. } if *id == M::TELEMETRY_ID => M::from_frame(data).ok(),
+            Self::Done {
+                id, data, nodes, ..
+            } if *id == M::TELEMETRY_ID && nodes.contains(&M::NODE) => M::from_frame(data).ok(),
             _ => None,
         }
     }

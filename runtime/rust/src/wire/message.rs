@@ -2,6 +2,8 @@
 
 /// A message that can be requested: telemetry, and configuration that is read back.
 pub trait Telemetry: Sized {
+    /// The node whose ICD has it.
+    const NODE: &'static str;
     /// The id that requests it.
     const TELEMETRY_ID: u8;
 
@@ -15,6 +17,8 @@ pub trait Telemetry: Sized {
 
 /// A message that can be sent: a telecommand, and configuration that is set.
 pub trait Telecommand {
+    /// The node whose ICD has it.
+    const NODE: &'static str;
     /// The id that sends it.
     const TELECOMMAND_ID: u8;
 

@@ -21,7 +21,7 @@ _REASONS = {"none", "unknown_id", "length", "parameter", "checksum"}
 
 
 class Alias(NamedTuple):
-    """A macro that stands for the id of a message in one direction."""
+    """A macro that stands for a message that can be requested: whose it is, and its id."""
 
     name: str
     value: str
@@ -32,6 +32,8 @@ def step_bytes(all_facts: Iterable[Facts]) -> int:
     sizes = [1]
     for known in all_facts:
         sizes += [step.message.length for step in (known.files.steps.values() if known.files else ())]
+        operations = [one for one in (known.program_copy, known.program_information) if one]
+        sizes += [step.message.length for one in operations for step in (one.request, one.progress)]
         sizes += [message.length for message in (known.hole_map.messages if known.hole_map else ())]
     return max(sizes)
 
@@ -53,13 +55,14 @@ def sizes(known: Facts) -> list[Macro]:
         packets = known.packets_of(files.block_bytes)
         rows.append(("BLOCK_BYTES", packets * files.packet_bytes, "Bytes of the largest block of a file."))
         rows.append(("BLOCK_BITMAP_BYTES", -(-packets // 8), "Bytes of a bit for each packet of such a block."))
-    return [Macro(comment([text]), f"{upper}_{end}", f"{value}u") for end, value, text in rows]
+    found = [Macro(comment([text]), f"{upper}_{end}", f"{value}u") for end, value, text in rows]
+    return [Macro(comment(["The node whose messages these are."]), f"{upper}_NODE", f'"{known.node.name}"'), *found]
 
 
 def aliases(messages: Iterable[MessageDescription]) -> list[Alias]:
-    """``DEMO_ANGLES_TELEMETRY``: the id under which a message is requested, whatever its kind."""
+    """``DEMO_ANGLES_TELEMETRY``: how a message is requested, whatever its kind."""
     return [
-        Alias(constant(one, "telemetry"), f"{one.message.telemetry_id}u")
+        Alias(constant(one, "telemetry"), f"{one.message.node.upper()}_NODE, {one.message.telemetry_id}u")
         for one in messages
         if one.message.telemetry_id is not None
     ]
@@ -73,6 +76,8 @@ class LinkTables(BusTables, LogTables, FileTables):
         known = self.known
         files = known.files
         parts = [
+            (self.owners(), ""),
+            (f"{len(known.owners)}u", "how many"),
             (boolean(known.little), "byte order: little"),
             (boolean(known.node.bit_order == "msb0"), "bit 0 is the most significant one"),
             (f"{known.telemetry_ids.first}u, {known.telemetry_ids.last}u", "ids of telemetry"),
@@ -108,10 +113,15 @@ class LinkTables(BusTables, LogTables, FileTables):
             (self.upload(files) if files else "NULL", "upload"),
             (self.erase(files, "erase") if files else "NULL", "erase"),
             (self.erase(files, "format") if files else "NULL", "format"),
+            (self.operation("program_copy", known.program_copy), "program copy"),
+            (self.operation("program_information", known.program_information), "program information"),
             (self.identification(), "identification"),
         ]
         self.add("link", "icd_link_t", [row_of(value, text) for value, text in parts], self.section_notes("client"))
         return self.tables
+
+    def owners(self) -> str:
+        return self.add("nodes[]", "char *const", [f'"{name}",' for name in self.known.owners])
 
     def messages(self, name: str, known: dict[int, Message]) -> str:
         rows = []

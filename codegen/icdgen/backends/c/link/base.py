@@ -14,7 +14,7 @@ from icdgen.protocol.facts import CAN, I2C, UART, Facts, Step
 BUSES = (UART, I2C, CAN)
 _ROLES = frozenset(
     "type counter offset length ready error checksum ignore_hole_map destination block_size busy number bytes all size "
-    "time node_type interface_version id processed parameter".split()
+    "time node_type interface_version id processed parameter program".split()
 )
 
 

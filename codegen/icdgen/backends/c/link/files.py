@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from icdgen.backends.c.link.base import BUSES, Tables
-from icdgen.backends.c.link.rows import boolean, or_none, row_of, wrapped
+from icdgen.backends.c.link.rows import boolean, lines, or_none, row_of, wrapped
 from icdgen.backends.c.text import plain
-from icdgen.protocol.facts import Files
+from icdgen.protocol.facts import Files, Operation
 
 
 class FileTables(Tables):
@@ -89,7 +89,28 @@ class FileTables(Tables):
         rest.append(
             row_of(boolean(bool(files.numbers.get("upload.checksum_covers_fill"))), "the checksum covers the fill")
         )
+        rest.append(row_of(f"{files.numbers.get('upload.destination_bytes', 0)}u", "bytes of a destination"))
+        rest.append(self.allowed("destinations", files.destinations))
         return self.add("upload", "icd_upload_form_t", [*rows, *rest], self.section_notes("file_transfer.upload"))
+
+    def allowed(self, name: str, numbers: Sequence[int]) -> str:
+        """The numbers that can be chosen, and how many they are."""
+        if not numbers:
+            return row_of("NULL, 0u", name)
+        table = self.add(f"{name}[]", "uint8_t", lines([f"{number}u," for number in numbers]))
+        return row_of(f"{table}, {len(numbers)}u", name)
+
+    def operation(self, name: str, one: Operation | None) -> str:
+        """What a node does with a stored program."""
+        if one is None:
+            return "NULL"
+        rows = [
+            row_of(self.step(f"{name}.request", one.request), plain(one.request.message.name)),
+            row_of(self.step(f"{name}.progress", one.progress), plain(one.progress.message.name)),
+            row_of(f"{one.poll_interval}u, {one.timeout}u", "poll_interval_ms, timeout_ms"),
+            self.allowed(f"{name}_programs", one.programs),
+        ]
+        return self.add(name, "icd_operation_form_t", rows, self.section_notes(name))
 
     def erase(self, files: Files, part: str) -> str:
         return self.procedure(files, part, "icd_erase_form_t", "request progress", "poll_interval_ms timeout_ms")

@@ -135,8 +135,9 @@ impl<const N: usize> Client<N> {
     ///
     /// # Errors
     ///
-    /// As [`Client::start`].
+    /// As [`Client::start`]; [`Error::UnknownId`] if it is a message of another node, whatever its id.
     pub fn request<M: Telemetry>(&mut self, now: u32) -> Result<(), Error> {
+        self.must_have(M::NODE, M::TELEMETRY_ID)?;
         self.start(now, &Request::telemetry(M::TELEMETRY_ID))?;
         Ok(())
     }
@@ -145,8 +146,10 @@ impl<const N: usize> Client<N> {
     ///
     /// # Errors
     ///
-    /// As [`Client::start`]; [`Error::Range`] if a value does not fit.
+    /// As [`Client::start`]; [`Error::UnknownId`] if it is a message of another node, whatever its id;
+    /// [`Error::Range`] if a value does not fit.
     pub fn send<M: Telecommand>(&mut self, now: u32, message: &M) -> Result<Started, Error> {
+        self.must_have(M::NODE, M::TELECOMMAND_ID)?;
         let mut buffer = [0; N];
         let size = message.write_frame(&mut buffer)?;
         let data = head(&buffer, size);
@@ -183,7 +186,14 @@ impl<const N: usize> Client<N> {
         };
         let (id, attempts, data) = (request.id, 1, &[]);
         if self.start(now, &request)? == Started::Done {
-            procedure.event(now, &Event::Done { id, attempts, data });
+            let nodes = self.machine.link.nodes;
+            let done = Event::Done {
+                id,
+                attempts,
+                data,
+                nodes,
+            };
+            procedure.event(now, &done);
         }
         Ok(true)
     }
@@ -291,6 +301,14 @@ impl<const N: usize> Client<N> {
         self.pass(now, &mut on_event); // may end that request
         let awaited = awaited && self.machine.awaits_transfer();
         self.machine.transferred(now, bytes, awaited, &mut on_event);
+    }
+
+    fn must_have(&self, node: &str, id: u8) -> Result<(), Error> {
+        if self.machine.link.has_messages_of(node) {
+            Ok(())
+        } else {
+            Err(Error::UnknownId { id })
+        }
     }
 
     fn pass(&mut self, now: u32, on_event: &mut dyn FnMut(Event<'_>)) {

@@ -22,6 +22,7 @@ mod index;
 mod list;
 mod poll;
 mod procedure;
+mod program;
 mod upload;
 
 pub use self::download::Download;
@@ -30,4 +31,5 @@ pub use self::hole_map::HoleMap;
 pub use self::index::{IndexEntries, IndexEntry};
 pub use self::list::{Entry, List};
 pub use self::procedure::{End, Procedure};
+pub use self::program::{ProgramCopy, ProgramInformation};
 pub use self::upload::Upload;

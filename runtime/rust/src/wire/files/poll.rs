@@ -12,6 +12,7 @@ pub(super) struct Poll {
     wanted: u32,
     interval: u32,
     end: u32,
+    program: Option<u32>, // of which the frame must be, if it says of which one it is
 }
 
 impl Poll {
@@ -30,6 +31,21 @@ impl Poll {
             wanted,
             interval,
             end: core.now.wrapping_add(timeout),
+            program: None,
+        }
+    }
+
+    /// The same for a frame about a program.
+    pub(super) const fn about(mut self, program: u32) -> Self {
+        self.program = Some(program);
+        self
+    }
+
+    /// Whether the frame is about what was asked for.
+    fn is_meant(&self, frame: &[u8]) -> bool {
+        match (self.program, self.step.get(Role::Program, frame)) {
+            (Some(asked), Some(told)) => asked == told,
+            _ => true,
         }
     }
 
@@ -47,7 +63,7 @@ impl Poll {
         let frame = core.frame(answer)?;
         let flag = self.step.get(self.role, frame);
         let failed = self.step.get(Role::Error, frame).unwrap_or(0) != 0;
-        if flag == Some(self.wanted) || failed {
+        if (flag == Some(self.wanted) && self.is_meant(frame)) || failed {
             return Some(frame);
         }
         if reached(core.now, self.end) {

@@ -5,6 +5,7 @@ use super::super::event::Event;
 use super::super::link::{Link, Role, Step};
 use super::super::links::STEP_BYTES;
 use super::super::request::{Direction, Request};
+use super::super::Error;
 
 /// How a procedure ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -24,6 +25,8 @@ pub enum End {
     Rounds,
     /// After so many rounds the checksum was still wrong.
     Checksum,
+    /// The node tells that what it was asked for failed.
+    Error,
 }
 
 /// A procedure, which says which request comes next and is told what became of it.
@@ -140,6 +143,15 @@ impl Core {
             None => {}
         }
         None
+    }
+}
+
+/// Whether a number is one of those that are allowed, of which none stands for all.
+pub(super) fn allowed(numbers: &[u8], number: u8, field: &'static str) -> Result<(), Error> {
+    if numbers.is_empty() || numbers.contains(&number) {
+        Ok(())
+    } else {
+        Err(Error::Range { field })
     }
 }
 

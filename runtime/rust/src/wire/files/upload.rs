@@ -7,7 +7,7 @@ use super::super::links::MAP_BYTES;
 use super::super::Error;
 use super::hole_map::HoleMap;
 use super::poll::Poll;
-use super::procedure::{Answer, Core, End, Run};
+use super::procedure::{allowed, Answer, Core, End, Run};
 
 #[derive(Clone, Debug)]
 enum State {
@@ -46,16 +46,28 @@ impl<'a> Upload<'a> {
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] if the ICD does not describe it.
+    /// [`Error::Unsupported`] if the node takes no uploads, [`Error::Range`] if the destination is not
+    /// supported, [`Error::TooLong`] if it holds less.
     pub fn new(link: &'static Link, destination: u8, data: &'a [u8]) -> Result<Self, Error> {
         let files = link.files.as_ref().ok_or(Error::Unsupported)?;
+        let form = files.upload.as_ref().ok_or(Error::Unsupported)?;
+        let map = files.hole_map.as_ref().ok_or(Error::Unsupported)?;
+        let crc = link.crc16.as_ref().ok_or(Error::Unsupported)?;
+        allowed(form.destinations, destination, "destination")?;
+        match form.destination_bytes {
+            Some(most) if data.len() > most => {
+                let actual = data.len();
+                return Err(Error::TooLong { most, actual });
+            }
+            _ => {}
+        }
         Ok(Self {
             core: Core::new(link),
             link,
             files,
-            form: files.upload.as_ref().ok_or(Error::Unsupported)?,
-            map: files.hole_map.as_ref().ok_or(Error::Unsupported)?,
-            crc: link.crc16.as_ref().ok_or(Error::Unsupported)?,
+            form,
+            map,
+            crc,
             destination,
             data,
             block: files.block_bytes,

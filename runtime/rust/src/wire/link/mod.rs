@@ -11,7 +11,7 @@ pub use self::can::{Can, CanPart, CanTypes, Extended};
 pub use self::logs::{IndexForm, LogBit, LogFile, LogMask, LogMessage, Span, TimeForm, TimePart};
 pub use self::steps::{Piece, Place, Role, Step};
 pub use self::transfer::{
-    DownloadForm, ErasureForm, Files, HoleMapForm, ListForm, MapMessage, UploadForm,
+    DownloadForm, ErasureForm, Files, HoleMapForm, ListForm, MapMessage, OperationForm, UploadForm,
 };
 
 pub(crate) use self::steps::get;
@@ -21,6 +21,8 @@ pub(crate) use self::steps::get;
 pub struct Link {
     /// The node, as the ICD calls it.
     pub node: &'static str,
+    /// Whose messages it has: its own, then those of the nodes that it includes.
+    pub nodes: &'static [&'static str],
     /// What the node answers when asked for its type.
     pub node_type: Option<u32>,
     /// Version of the interface that this code was generated from.
@@ -69,6 +71,10 @@ pub struct Link {
     pub index: Option<IndexForm>,
     /// File transfer.
     pub files: Option<Files>,
+    /// How a stored program is copied to where it can run.
+    pub program_copy: Option<OperationForm>,
+    /// How size and checksum of a stored program are read.
+    pub program_information: Option<OperationForm>,
     /// The frame that identifies the node.
     pub identification: Option<Step>,
     /// How long the bootloader waits before it starts the program.
@@ -76,6 +82,12 @@ pub struct Link {
 }
 
 impl Link {
+    /// Whether the node has the messages of that one, which is so of itself and of those that it includes.
+    #[must_use]
+    pub fn has_messages_of(&self, node: &str) -> bool {
+        self.nodes.contains(&node)
+    }
+
     /// The telecommand of that id.
     #[must_use]
     pub fn telecommand(&self, id: u8) -> Option<&'static Form> {

@@ -47,6 +47,8 @@ pub enum Role {
     Number,
     /// Where a block begins in its file.
     Offset,
+    /// A stored program.
+    Program,
     /// The block is ready.
     Ready,
     /// Size of a file.

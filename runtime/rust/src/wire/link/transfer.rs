@@ -132,6 +132,25 @@ pub struct UploadForm {
     pub finalize_timeout_ms: u32,
     /// Most rounds for a block.
     pub rounds: u32,
+    /// Bytes that a destination holds, if the ICD says so.
+    pub destination_bytes: Option<usize>,
+    /// The destinations that are supported; none: all.
+    pub destinations: &'static [u8],
+}
+
+/// What a telecommand starts for a stored program, and a frame tells the end of.
+#[derive(Clone, Copy, Debug)]
+pub struct OperationForm {
+    /// Begins it.
+    pub request: Step,
+    /// Tells that it is over.
+    pub progress: Step,
+    /// How long to wait between two polls.
+    pub poll_interval_ms: u32,
+    /// How long it may take.
+    pub timeout_ms: u32,
+    /// The programs that it may be asked for; none: all.
+    pub programs: &'static [u8],
 }
 
 /// Erasing, of files or of the whole medium.

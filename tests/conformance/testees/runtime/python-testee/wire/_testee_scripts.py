@@ -11,6 +11,7 @@ from .client import Client, Request
 from .errors import BusyError
 from .events import Done, LineError, Log, Malformed, Packet, Refused, Stray, Timeout
 from .link import Settings
+from .programs import ProgramCopy, ProgramInformation
 from .transfer import Download, Erase, FileList, Format, Upload
 
 if TYPE_CHECKING:
@@ -171,6 +172,8 @@ def file(link: Link, request: Answer) -> Answer:
         ]
     elif isinstance(procedure, Upload):
         answer["sent"] = procedure.sent
+    elif isinstance(procedure, ProgramInformation):
+        answer.update(size=procedure.size, checksum=procedure.checksum)
     return answer
 
 
@@ -206,9 +209,14 @@ def _procedure(link: Link, request: Answer) -> Procedure:
         return FileList(link)
     if name == "format":
         return Format(link)
+    if name == "program_copy":
+        return ProgramCopy(link, number(request, "program", 0, 255))
+    if name == "program_information":
+        return ProgramInformation(link, number(request, "program", 0, 255))
     if name == "upload":
         destination = number(request, "destination", 0, 255)
-        return Upload(link, destination, octets(request), block)
+        times = number(request, "times", 1, 1 << 20, 1)
+        return Upload(link, destination, octets(request) * times, block)
     if name == "erase":
         type, counter = (number(request, key, 0, 255) for key in ("type", "counter"))
         return Erase(link, type, counter, flag(request, "all"))

@@ -1,0 +1,57 @@
+"""Operations on the programs that a node stores: one is copied to where it can run, its size and checksum are read."""
+
+from __future__ import annotations
+
+from icdgen.protocol.facts import Facts, Operation, Step, need
+from icdgen.protocol.transfer import Failed, NotAllowed, Procedure, Run
+
+
+class ProgramOperation(Procedure):
+    """What a telecommand starts for a program, and a frame tells the end of.
+
+    Raises `icdgen.protocol.facts.Unsupported` and `icdgen.protocol.transfer.NotAllowed`.
+    """
+
+    def __init__(self, known: Facts, form: Operation | None, name: str, program: int) -> None:
+        super().__init__(known)
+        self.form, self.program = need(form, name), program
+        self.values: dict[str, int] = {}  # of the last frame, by role
+        if self.form.programs and program not in self.form.programs:
+            raise NotAllowed(program)
+
+    def step(self, name: str) -> Step:
+        return self.form.request if name == "request" else self.form.progress
+
+    def number(self, name: str) -> int:
+        return self.form.poll_interval
+
+    def run(self) -> Run:
+        yield from self.telecommand("request", program=self.program)
+        role, wanted = ("ready", 1) if "ready" in self.form.progress.fields else ("busy", 0)
+        self.values, _ = yield from self.poll(
+            "progress", role, wanted, "poll_interval", self.form.timeout, self.program
+        )
+        if self.values.get("error"):
+            raise Failed("error")
+
+
+class ProgramCopy(ProgramOperation):
+    """Copies a stored program to where it can run."""
+
+    def __init__(self, known: Facts, program: int) -> None:
+        super().__init__(known, known.program_copy, "program_copy", program)
+
+
+class ProgramInformation(ProgramOperation):
+    """Reads ``size`` and ``checksum`` of a stored program; None until then, or if the frame does not have them."""
+
+    def __init__(self, known: Facts, program: int) -> None:
+        super().__init__(known, known.program_information, "program_information", program)
+
+    @property
+    def size(self) -> int | None:
+        return self.values.get("size") if self.result == "done" else None
+
+    @property
+    def checksum(self) -> int | None:
+        return self.values.get("checksum") if self.result == "done" else None

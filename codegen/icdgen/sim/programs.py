@@ -1,0 +1,64 @@
+"""Stored programs, the device's end: one is copied to where it can run, its size and checksum are told."""
+
+from __future__ import annotations
+
+from icdgen.icd.model import Message
+from icdgen.protocol.facts import Facts, Operation
+from icdgen.sim.storage import Storage, checksum_of
+from icdgen.sim.transfers import Raw, Refused
+
+
+class Programs:
+    """The operations on the programs of the storage. ``copy_to``: the program that a copy becomes."""
+
+    def __init__(self, known: Facts, storage: Storage, busy_ms: int, copy_to: int | None, room: int | None) -> None:
+        self.known, self.storage, self.busy_ms = known, storage, busy_ms
+        self.copy_to, self.room = copy_to, room
+        self.asked = 0  # the program whose information is asked for
+        self.failed = False
+        self.busy: dict[str, int] = {}  # operation -> until when
+
+    def telecommand(self, now: int, message: Message, raw: Raw) -> None:
+        """Does what a telecommand about programs says; nothing for any other. Raises `Refused`."""
+        for name, form in self._forms():
+            if form.request.message.name != message.name:
+                continue
+            program = int(raw[form.request.fields["program"]])
+            if form.programs and program not in form.programs:
+                raise Refused(_index(message, form.request.fields["program"]))
+            self.busy[name] = now + self.busy_ms
+            if form is self.known.program_copy:
+                self.failed = not self._copy(program)
+            else:
+                self.asked = program
+
+    def answer(self, now: int, message: Message) -> Raw:
+        """Values of the fields that tell about an operation."""
+        for name, form in self._forms():
+            if form.progress.message.name == message.name:
+                busy = now < self.busy.get(name, now)
+                told: dict[str, int] = {"busy": int(busy), "ready": int(not busy)}
+                if form is self.known.program_copy:
+                    told["error"] = int(self.failed and not busy)
+                else:
+                    data = b"" if busy else bytes(self.storage.programs.get(self.asked, b""))
+                    checksum = checksum_of(self.known.crc16, data) if data else 0
+                    told |= {"program": self.asked, "size": len(data), "checksum": checksum}
+                return {field: told[role] for role, field in form.progress.fields.items() if role in told}
+        return {}
+
+    def _forms(self) -> list[tuple[str, Operation]]:
+        forms = {"program_copy": self.known.program_copy, "program_information": self.known.program_information}
+        return [(name, form) for name, form in forms.items() if form]
+
+    def _copy(self, program: int) -> bool:
+        """Whether there is such a program, and room for it."""
+        data = self.storage.programs.get(program)
+        if not data or self.copy_to is None or (self.room is not None and len(data) > self.room):
+            return False
+        self.storage.put(self.copy_to, bytes(data))
+        return True
+
+
+def _index(message: Message, field: str) -> int:
+    return next(index for index, one in enumerate(message.fields) if one.name == field)

@@ -1,0 +1,92 @@
+"""Scripts of the operations on stored programs: how each ends, and what they may be asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen import codec
+from icdgen.protocol.facts import Facts, Operation
+
+Requests = Iterator[tuple[str, dict]]
+
+ACKNOWLEDGED = {"event": "done", "bytes": ""}
+LARGEST = 255  # id of a program
+
+
+def scripts(known: Facts) -> Requests:
+    """Everything that is asked of them; an operation that the ICD does not have is refused."""
+    forms = {"program_copy": known.program_copy, "program_information": known.program_information}
+    for name, form in forms.items():
+        if form:
+            yield from _ends(known, name, form)
+            yield from _allowed(name, form)
+        else:
+            yield "there is no such operation", _asked(name, 1, [{"at": 0}])
+
+
+def _asked(name: str, program: int, script: list[dict]) -> dict:
+    return {"op": "file", "do": name, "program": program, "script": script}
+
+
+def neighbours(allowed: tuple[int, ...]) -> list[int]:
+    """What is next to the numbers that are allowed."""
+    near = {number + step for number in allowed for step in (-1, 1)}
+    return sorted(number for number in near - set(allowed) if 0 <= number <= LARGEST)
+
+
+def _allowed(name: str, form: Operation) -> Requests:
+    for program in form.programs:
+        yield "a program that it may be asked for", _asked(name, program, [{"at": 0}])
+    for program in neighbours(form.programs):
+        yield "a program that it may not be asked for", _asked(name, program, [{"at": 0}])
+
+
+class _Frames:
+    """Frames of the progress, by role."""
+
+    def __init__(self, known: Facts, form: Operation) -> None:
+        self.known, self.form = known, form
+        self.program = form.programs[0] if form.programs else 1
+
+    def row(self, at: int, done: bool, **values: int) -> dict:
+        step = self.form.progress
+        bits = {field.name: field.bits for field in step.message.fields}
+        told = {"busy": int(not done), "ready": int(done), "program": self.program, **values}
+        raw: dict[str, int | bytes] = {
+            field.name: bytes(field.bits // 8) if field.type == "bytes" else field.const or 0
+            for field in step.message.fields
+        }
+        raw |= {name: told.get(role, 0) & (1 << bits[name]) - 1 for role, name in step.fields.items()}
+        frame = codec.encode(self.known.node, step.message, raw)
+        return {"at": at, "event": {"event": "done", "bytes": frame.hex()}}
+
+
+def _ends(known: Facts, name: str, form: Operation) -> Requests:
+    frames, pause = _Frames(known, form), form.poll_interval
+    begin = [{"at": 0}, {"at": 1, "event": ACKNOWLEDGED}]
+    found = {"size": 0x12345678, "checksum": 0x9ABCDEF0}
+    program, end = frames.program, 1 + form.timeout
+
+    def case(why: str, *rows: dict) -> tuple[str, dict]:
+        return why, _asked(name, program, [*begin, *rows])
+
+    yield case("done at once", frames.row(2, True, **found))
+    yield case(
+        "done after two polls",
+        frames.row(2, False), {"at": 1 + pause}, {"at": 2 + pause},
+        frames.row(3 + pause, False), {"at": 3 + 2 * pause}, frames.row(4 + 2 * pause, True, **found),
+    )  # fmt: skip
+    yield case("it fails", frames.row(2, False), {"at": 2 + pause}, frames.row(3 + pause, True, error=1))
+    yield case("it fails, and is busy all the same", frames.row(2, False, error=1))
+    yield case(
+        "a frame about another program",
+        frames.row(2, True, program=program + 1, **found), {"at": 2 + pause}, frames.row(3 + pause, True, **found),
+    )  # fmt: skip
+    yield case("busy for ever", frames.row(end - 1, False), {"at": end - 1 + pause}, frames.row(end + pause, False))
+    yield case(
+        "done at the last moment", frames.row(end - 1, False), {"at": end - 1 + pause}, frames.row(end + pause, True)
+    )
+    yield case("given up", frames.row(end, False))
+    yield case("a poll without a reply", {"at": 2, "event": {"event": "timeout"}})
+    yield "refused", _asked(name, program, [{"at": 0}, {"at": 1, "event": {"event": "refused", "code": 3}}])
+    yield "no reply", _asked(name, program, [{"at": 0}, {"at": 1, "event": {"event": "timeout"}}])

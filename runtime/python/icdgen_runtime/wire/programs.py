@@ -1,0 +1,80 @@
+"""Operations on the programs that a node stores."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .._errors import RangeError
+from .errors import need
+from .procedures import Ended, Procedure, one_of
+
+if TYPE_CHECKING:
+    from .link import Link, Operation, Step
+    from .procedures import Steps, Values
+
+
+class ProgramOperation(Procedure):
+    """What a telecommand starts for a program, and a frame tells the end of.
+
+    Raises `RangeError` for a program that it may not be asked for.
+    """
+
+    def __init__(self, link: Link, form: Operation, program: int) -> None:
+        super().__init__(link)
+        if form.programs and program not in form.programs:
+            raise RangeError("program", one_of(form.programs), program)
+        self.program = program
+        self._form = form
+        self._told: Values = {}
+
+    def _step(self, name: str) -> Step:
+        return self._form.request if name == "request" else self._form.progress
+
+    def _number(self, name: str) -> int:
+        return self._form.poll_interval
+
+    def _run(self) -> Steps:
+        form = self._form
+        yield from self._order("request", {"program": self.program})
+        is_ready = "ready" in form.progress.fields
+        role = "ready" if is_ready else "busy"
+        self._told, _ = yield from self._poll(
+            "progress", role, is_ready, "poll_interval", form.timeout, self.program
+        )
+        if self._told.get("error"):
+            raise Ended("error")
+
+    def _value(self, role: str) -> int | None:
+        found = self._told.get(role) if self.result == "done" else None
+        return None if found is None else int(found)
+
+
+class ProgramCopy(ProgramOperation):
+    """Copies a stored program to where it can run.
+
+    Raises `RangeError` and `UnsupportedError`.
+    """
+
+    def __init__(self, link: Link, program: int) -> None:
+        super().__init__(link, need(link.program_copy, "program_copy"), program)
+
+
+class ProgramInformation(ProgramOperation):
+    """Reads size and checksum of a stored program; None until it is done.
+
+    Raises `RangeError` and `UnsupportedError`.
+    """
+
+    def __init__(self, link: Link, program: int) -> None:
+        form = need(link.program_information, "program_information")
+        super().__init__(link, form, program)
+
+    @property
+    def size(self) -> int | None:
+        """Bytes of the program; None also if the ICD has no such field."""
+        return self._value("size")
+
+    @property
+    def checksum(self) -> int | None:
+        """Its checksum; None also if the ICD has no such field."""
+        return self._value("checksum")

@@ -1,0 +1,75 @@
+"""The simulated device's programs: what it takes, copies, and tells of them."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.protocol import crc, facts
+from icdgen.sim.computer import Computer
+from icdgen.sim.settings import Settings
+from icdgen.sim.storage import Storage
+from tests.sim.device import ICD
+
+BOOT = facts.of(ICD, ICD.node("bootloader"))
+REASONS = BOOT.errors
+INITIATE, BEGIN, PACKET, FINALIZE = (
+    BOOT.files.steps[f"upload.{step}"].message.telecommand_id for step in ("initiate", "begin", "packet", "finalize")
+)
+COPY, COPIED = (step.message.ids[0] for step in (BOOT.program_copy.request, BOOT.program_copy.progress))
+READ, INFORMATION = (
+    step.message.ids[0] for step in (BOOT.program_information.request, BOOT.program_information.progress)
+)
+
+
+@pytest.fixture
+def device():
+    return Computer(ICD, ICD.node("bootloader"), Settings(boot_ms=10**9, busy_ms=10), Storage())
+
+
+def code(device, now: int, *message: int) -> int:
+    return device.take(now, bytes(message), "uart").code
+
+
+def uploaded(device, destination: int, data: bytes) -> None:
+    assert code(device, 0, INITIATE, destination, 0) == 0
+    assert code(device, 0, BEGIN) == 0
+    device.take(0, bytes([PACKET, 0, 0]) + data.ljust(20, b"\xff"), "uart")
+    assert code(device, 0, FINALIZE, destination, 0, 0, 0, 0, len(data), 0) == 0
+
+
+def test_a_copied_program_is_the_one_that_was_uploaded(device):
+    uploaded(device, 4, b"a new program")
+    assert code(device, 20, COPY, 4, 0) == 0
+    assert (device.frame(20, COPIED), device.frame(30, COPIED)) == (b"\x01", b"\x00")
+    assert code(device, 40, READ, 1) == 0
+    assert device.frame(40, INFORMATION)[:2] == b"\x01\x01"
+    checksum = crc.compute(BOOT.crc16, b"a new program").to_bytes(2, "little")
+    assert device.frame(50, INFORMATION) == bytes([1, 0, 13, 0, 0, 0]) + checksum
+
+
+def test_copying_what_was_never_uploaded_fails(device):
+    assert code(device, 0, COPY, 9, 0) == 0
+    assert (device.frame(0, COPIED), device.frame(10, COPIED)) == (b"\x01", b"\x02")
+
+
+def test_a_program_that_cannot_be_copied_and_a_destination_that_is_not_supported_are_refused(device):
+    assert code(device, 0, COPY, 0, 0) == REASONS["parameter"]
+    assert code(device, 0, INITIATE, 10, 0) == REASONS["parameter"]
+    assert code(device, 0, FINALIZE, 10, 0, 0, 0, 0, 1, 0) == REASONS["parameter"]
+
+
+def test_a_block_beyond_the_end_of_the_destination_is_not_committed(device):
+    uploaded(device, 3, b"x")
+    finalized = BOOT.files.steps["upload.finalized"].message.telemetry_id
+    assert code(device, 0, FINALIZE, 3, 0xFF, 0xFF, 7, 0, 1, 0) == 0  # the last byte
+    assert device.frame(20, finalized) == b"\x00"
+    assert code(device, 30, FINALIZE, 3, 0, 0, 8, 0, 1, 0) == 0
+    assert device.frame(50, finalized) == b"\x02"
+
+
+def test_a_program_that_takes_no_uploads_refuses_their_telecommands():
+    running = Computer(ICD, ICD.node("cubeacp"), Settings(), Storage())
+    assert code(running, 0, INITIATE, 3, 0) == REASONS["unknown_id"]
+    outcome = running.take(0, bytes([PACKET, 0, 0]) + bytes(20), "uart")
+    assert (outcome.code, outcome.acknowledge) == (REASONS["unknown_id"], False)
+    assert running.storage.programs == {}
