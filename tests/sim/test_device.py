@@ -53,8 +53,12 @@ def test_every_telecommand_is_taken_and_every_configuration_reads_back_what_was_
 
 
 def refusable(client) -> set[str]:
-    """Telecommands that may be refused for what the device holds just now."""
-    return {client.known.files.steps["download.burst"].message.name}
+    """Telecommands that may be refused: for what the device holds just now, for a destination, or by the node."""
+    upload = ICD.protocol_of(client.node)["file_transfer"]["upload"]
+    found = {upload[step]["message"] for step in ("initiate", "begin", "packet", "finalize")}
+    if client.known.program_copy:
+        found.add(client.known.program_copy.request.message.name)
+    return {client.known.files.steps["download.burst"].message.name, *found}
 
 
 def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
