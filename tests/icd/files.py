@@ -32,8 +32,9 @@ def write(folder: Path, text: str) -> Path:
 
 
 def loaded(folder: Path, text: str) -> Loaded:
-    """What loading the text gives."""
-    return load([write(folder, text)])
+    """What loading the text gives, with the other files that stand beside ``demo.yaml``."""
+    beside = [folder / name for name in _FILE.findall(text) if "/" not in name]
+    return load([write(folder, text), *beside])
 
 
 def findings(folder: Path, text: str) -> list[Finding]:

@@ -36,8 +36,8 @@ def test_a_part_holds_the_bits_of_the_value_that_it_names(orders, at, bits, data
     assume(division.lies_together(whole, item(at=start, bits=count), *orders))
     place = division.place(whole, item(at=start, bits=count), *orders)
     frame = data.draw(st.binary(min_size=6, max_size=6))
-    value = codec._read(node(orders), Field("Whole", at, bits, "uint"), frame)
-    part = codec._read(node(orders), Field("Part", place, count, "uint"), frame)
+    value = codec._read(node(orders), Field("Whole", at, bits, "uint"), int.from_bytes(frame, "little"))
+    part = codec._read(node(orders), Field("Part", place, count, "uint"), int.from_bytes(frame, "little"))
     assert part == (value >> start) & ((1 << count) - 1)
 
 

@@ -56,6 +56,7 @@ class Row:
     line: int | None = None
     joined: bool = False  # put together from parts that a page break had torn apart
     mended: str = ""  # what the reader had to do to it, in words
+    edges: tuple[float, ...] = ()  # of its cells, where rules on the page part them
 
 
 @dataclass(slots=True)

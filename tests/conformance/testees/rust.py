@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from icdgen import __version__
 from icdgen.backends import Identifier
+from icdgen.backends.origin import origin
 from icdgen.backends.rust import CRATE, names, wire
 from icdgen.backends.rust.text import string
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
@@ -130,7 +131,7 @@ class RustTesteeBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """A package with one binary, ``testee``."""
-        common = {"version": __version__, "crate": self.crate}
+        common = {"origin": origin(), "version": __version__, "crate": self.crate}
         description = describe(icd)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         known = [facts.of(icd, node) for node in icd.nodes if icd.protocol_of(node)]

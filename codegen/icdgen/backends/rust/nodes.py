@@ -49,7 +49,6 @@ class NodeRow:
     def __init__(self, node: NodeDescription, messages: list[MessageRow], id_bits: int) -> None:
         one, spoken = node.node, dict.fromkeys(message.node.name for message in node.spoken)
         self.name = node.name
-        self.digest = one.digest[:16]
         printed = ", ".join(f"{key} {value}" for key, value in one.document)
         included = ", ".join(f"[`{name}`](crate::{name})" for name in spoken if name != node.name)
         self.doc = doc(

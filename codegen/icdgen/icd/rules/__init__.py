@@ -13,6 +13,7 @@ from icdgen.diagnostics import Finding, in_order
 from icdgen.icd.errata import Applied
 from icdgen.icd.model import Icd
 from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its rules)
+    checksums,
     composites,
     duplicates,
     errata,

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from icdgen.importer.document import Document, Heading, Table, Text, Trouble
 from icdgen.importer.profile import Profile
-from icdgen.importer.understand import lists, messages
+from icdgen.importer.understand import grids, lists, messages
 from icdgen.importer.understand.around import Around, kind_of
 from icdgen.importer.understand.model import ReadEnum, ReadList, ReadLog, ReadMessage, Thing
 
@@ -60,6 +60,12 @@ def survey(document: Document, profile: Profile) -> Survey:
         inner = [title for title in reversed(titles) if title not in used]
         about = Around(block.caption, prose, inner if inner and inner[0] == titles[-1] else [])
         what, thing = classify(block, profile, made.troubles, titles, about)
+        if what == UNKNOWN and (grid := grids.find(block, profile)):
+            registers = grids.read(*grid, block, profile, about, made.troubles)
+            for register in registers:
+                register.kind = register.kind or _by_section(titles, profile) or str(profile.data["defaults"]["kind"])
+            made.found += [Found(block, "message", one, run, titles) for one in registers[:-1]]
+            what, thing = ("message", registers[-1]) if registers else (what, thing)
         prose = []
         if isinstance(thing, ReadMessage) and titles:
             used.add(titles[-1])

@@ -20,6 +20,9 @@ class ClearErrorFlags(_base.Message):
 
     Clears the latched error flags of Bootloader State.
 
+    Erratum BOOT-022 (certain): Clear Error Flags with a checksum deploys the
+    magnetometer boom where CubeACP runs.
+
     Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control
     program.
 
