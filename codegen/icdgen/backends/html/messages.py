@@ -10,6 +10,7 @@ from icdgen.backends.html.atlas import Atlas
 from icdgen.backends.html.examples import examples, frames
 from icdgen.backends.html.usage import snippets
 from icdgen.describe import describe
+from icdgen.describe.fresh import fresh_values
 from icdgen.icd.model import Message, Node
 
 
@@ -63,8 +64,7 @@ def _fresh(message: Message, node: Node) -> bytes:
     """The frame of a new message: zeros, and what is constant."""
     from icdgen import codec
 
-    raw = {f.name: bytes(f.bits // 8) if f.type == "bytes" else f.const or 0 for f in message.fields}
-    return codec.encode(node, message, raw)
+    return codec.encode(node, message, fresh_values(message))
 
 
 def _plan(atlas: Atlas, node: Node, message: Message, picture, travels: wire.Wire) -> dict[str, object]:
