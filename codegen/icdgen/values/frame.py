@@ -28,6 +28,8 @@ class Row:
     @property
     def number(self) -> float | None:
         """The physical value as correctly rounded double, or the number of a float field; else None."""
+        if isinstance(self.raw, bytes):
+            return None
         if self.field.type == "float":
             return codec.float_value(self.field, self.raw)
         return codec.physical_double(self.field, self.raw)
@@ -51,12 +53,14 @@ class Row:
     def text(self) -> str:
         """What the field says, for people: physical value, name of the member, true or false."""
         kind = self.field.type
+        if isinstance(self.raw, bytes):
+            return self.raw_text
         if kind == "enum":
             return self.member if self.member is not None else f"unknown {self.raw}"
         if kind == "bool":
             return "true" if self.raw else "false"
         if kind == "float":
-            return numbers.float_text(self.number, self.field.bits)
+            return numbers.float_text(codec.float_value(self.field, self.raw), self.field.bits)
         physical = self.physical
         return self.raw_text if physical is None else exact_text(physical)
 
@@ -64,10 +68,12 @@ class Row:
         """``{"name", "type", "raw", "value", ...}``; ``value`` is the one to show or plot."""
         kind = self.field.type
         raw: object = self.raw
-        if kind == "bytes":
+        value: object
+        if isinstance(self.raw, bytes):
             raw = value = self.raw.hex()
         elif kind == "float":
-            raw, value = f"{self.raw:0{self.field.bits // 4}x}", _json_number(self.number)
+            raw = f"{self.raw:0{self.field.bits // 4}x}"
+            value = _json_number(codec.float_value(self.field, self.raw))
         elif kind == "bool":
             raw = value = bool(self.raw)
         elif kind == "enum":
