@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from icdgen.icd.load import load
+from icdgen.loading import load
 from tests.conftest import ROOT
 
 ICDS = ROOT / "icd"

@@ -8,7 +8,7 @@ from pathlib import Path
 import yaml
 
 from icdgen.diagnostics import Finding
-from icdgen.icd.load import load
+from icdgen.loading import load
 from tests.conftest import ROOT
 
 FACTS = Path(__file__).with_name("reconstruction.yaml")
