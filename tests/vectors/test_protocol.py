@@ -10,7 +10,7 @@ import jsonschema_rs
 import pytest
 
 import icdgen
-from icdgen.icd.load import load
+from icdgen.loading import load
 from icdgen.protocol import ops
 from icdgen.vectors import protocol
 from tests.conformance import odd, wire
