@@ -28,7 +28,8 @@ MESSAGES = [
         field(0, 8, "Mode"), field(8, 16, "Speed", unit="rpm"), field(24, 16, "Current", "int", unit="mA", formula="raw*10"),
         field(40, 32, "Uptime", unit="ms")]},
     {"name": "Temperatures", "id": 0x22, "kind": "telemetry", "length": 6, "fields": [
-        field(0, 16, "Winding", "int", unit="degC", formula="raw*0.01"), field(16, 16, "Bridge", "int", unit="degC", formula="raw*0.01"),
+        field(0, 16, "Winding", "int", unit="degC", formula="raw*0.01"),
+        field(16, 16, "Bridge", "int", unit="degC", formula="raw*0.01"),
         field(32, 16, "Supply", unit="mV")]},
     {"name": "Limits", "id": 0x7F, "kind": "telemetry", "length": 5, "fields": [
         field(0, 8, "Profile"), field(8, 32, "Energy", unit="J")]},
@@ -36,7 +37,8 @@ MESSAGES = [
 REGISTERS = [
     {"name": "CTRL_A", "set_id": 0x20, "get_id": 0x20, "kind": "configuration", "length": 1, "fields": [
         field(0, 1, "EN", "bool"), field(1, 1, "BOOT", "bool"), field(3, 2, "MODE"), field(5, 3, "ODR")]},
-    {"name": "STATUS", "id": 0x27, "kind": "telemetry", "length": 1, "fields": [field(0, 1, "READY", "bool"), field(7, 1, "OVR", "bool")]},
+    {"name": "STATUS", "id": 0x27, "kind": "telemetry", "length": 1, "fields": [
+        field(0, 1, "READY", "bool"), field(7, 1, "OVR", "bool")]},
     {"name": "OUT_X", "id": 0x28, "kind": "telemetry", "length": 1, "fields": [field(0, 8, "X")]},
 ]  # fmt: skip
 FRAMES = [
@@ -87,8 +89,8 @@ def platypus(path: Path, page: tuple[float, float], story: list, rules: str = "g
 def web(path: Path, style: str, body: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
         browser.print_page(
-            f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Motor controller</title><style>{style}</style></head>'
-            f"<body>{body}</body></html>", path, Path(folder),
+            f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Motor controller</title><style>{style}</style>'
+            f"</head><body>{body}</body></html>", path, Path(folder),
         )  # fmt: skip
 
 

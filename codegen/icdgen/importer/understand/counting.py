@@ -47,7 +47,7 @@ def decide(header: Header, rows: list[Extent], length: int | None, profile: Prof
     if len(at_choices) == len(width_choices) == 1:
         return Units(at_choices[0], width_choices[0])
     ranked = []
-    for choice in (Units(a, w) for a, w in product(at_choices, width_choices) if has_widths or a == w):
+    for choice in (Units(a, w) for a, w in product(at_choices, width_choices) if has_widths or not widths or a == w):
         support = _support(rows, length, choice)
         if support is not None:
             ranked.append((support, choice))
