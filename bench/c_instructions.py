@@ -20,7 +20,7 @@ from pathlib import Path
 from icdgen.backends.c import CBackend
 from icdgen.backends.c.names import stem
 from icdgen.describe import MessageDescription, describe
-from icdgen.icd.load import load
+from icdgen.loading import load
 from icdgen.render import Renderer
 
 BENCH = Path(__file__).parent

@@ -6,7 +6,8 @@ import re
 from pathlib import Path
 
 from icdgen.diagnostics import Finding
-from icdgen.icd.load import Loaded, load
+from icdgen.icd.loaded import Loaded
+from icdgen.loading import load
 
 HEAD = "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}\n"
 

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from icdgen import codec
 from icdgen.diagnostics import Place
 from icdgen.icd import division
-from icdgen.icd.load import load
 from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Node
+from icdgen.loading import load
 
 ORDERS = st.sampled_from([(a, b) for a in ("little", "big") for b in ("lsb0", "msb0")])
 

@@ -55,7 +55,7 @@ def test_comments_tell_unit_range_table_and_errata(shipped):
     message = next(m for m in shipped.icd.node("cubeacp").messages if m.id == 146)
     assert message.errata
     for erratum in message.errata:
-        assert f"Erratum {erratum.id} ({erratum.confidence}): " in text
+        assert f"{erratum.label} {erratum.id}{erratum.sureness}: " in text
 
 
 def test_no_unsafe_code_no_std_no_dependency(shipped):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import signal
+import socket
 import time
 
 import pytest
@@ -172,6 +174,17 @@ def test_values_are_set_by_options_orders_and_scripts(tmp_path):
             assert process.stdout.readline() == "ok\n"
             assert process.stdout.readline().startswith("error: cubeacp has no telemetry `nonsense`")
             assert value_of(client, name, "Estimated Roll Angle") == -150
+
+
+def test_an_interrupt_while_a_client_is_connected_ends_it_without_more_words():
+    with simulator("--node", "cubeacp", "--tcp", "0") as (place, process):
+        host, port = place.removeprefix("tcp://").rsplit(":", 1)
+        with socket.create_connection((host, int(port))) as client:
+            client.sendall(b"\x00")
+            time.sleep(0.3)
+            process.send_signal(signal.SIGINT)
+            _, err = process.communicate(timeout=20)
+    assert (process.returncode, err.strip()) == (130, "icdgen: error: interrupted")
 
 
 def test_unsolicited_logs_come_as_they_are_configured():
