@@ -18,8 +18,9 @@ import tempfile
 from pathlib import Path
 
 from icdgen.backends.c import CBackend
-from icdgen.backends.c.plan import Plan, Planner
-from icdgen.icd.load import load
+from icdgen.backends.c.names import stem
+from icdgen.describe import MessageDescription, describe
+from icdgen.loading import load
 from icdgen.render import Renderer
 
 BENCH = Path(__file__).parent
@@ -70,12 +71,11 @@ CALL = """\
 """
 
 
-def plans() -> dict[int, Plan]:
+def messages() -> dict[int, MessageDescription]:
     """The frames of the bench."""
     icd = load([BENCH.parent / "icd"], check=False).icd
-    planner = Planner(icd)
-    of_id = {m.telemetry_id: m for m in icd.node("cubeacp").messages}
-    return {id: planner.plan(of_id[id]) for id in LIMITS}
+    of_id = {one.message.telemetry_id: one for one in describe(icd).node("cubeacp").messages}
+    return {id: of_id[id] for id in LIMITS}
 
 
 def generate(folder: Path) -> None:
@@ -85,15 +85,15 @@ def generate(folder: Path) -> None:
         (folder / path).write_text(text, encoding="utf-8")
 
 
-def functions_of(found: dict[int, Plan]) -> str:
+def functions_of(found: dict[int, MessageDescription]) -> str:
     """A source with a function for each generated one."""
-    values = ({"id": id, "stem": p.stem, "type": p.type} for id, p in found.items())
+    values = ({"id": id, "stem": stem(m), "type": f"{stem(m)}_t"} for id, m in found.items())
     return '#include "cubeacp.h"\n' + "".join(FUNCTIONS.format(**v) for v in values)
 
 
-def instructions(folder: Path, found: dict[int, Plan], compiler: str, option: str) -> dict[str, float]:
+def instructions(folder: Path, found: dict[int, MessageDescription], compiler: str, option: str) -> dict[str, float]:
     """Function -> instructions per call."""
-    values = [{"id": id, "stem": p.stem, "type": p.type, "upper": p.stem.upper()} for id, p in found.items()]
+    values = [{"id": id, "stem": stem(m), "type": f"{stem(m)}_t", "upper": stem(m).upper()} for id, m in found.items()]
     declarations = "".join(DECLARATIONS.format(**v) for v in values)
     calls = "".join(CALL.format(**v) for v in values)
     program, counts = folder / "bench", folder / "counts"
@@ -112,7 +112,7 @@ def instructions(folder: Path, found: dict[int, Plan], compiler: str, option: st
     return {name: int(count.replace(",", "")) / CALLS for count, name in lines}
 
 
-def code_size(folder: Path, found: dict[int, Plan]) -> dict[int, tuple[int, int]] | None:
+def code_size(folder: Path, found: dict[int, MessageDescription]) -> dict[int, tuple[int, int]] | None:
     """Id -> bytes of code for decode and encode on a Cortex-M4 with -Os, number of fields."""
     if not shutil.which("arm-none-eabi-gcc"):
         return None
@@ -122,7 +122,7 @@ def code_size(folder: Path, found: dict[int, Plan]) -> dict[int, tuple[int, int]
     subprocess.run(["arm-none-eabi-gcc", *options], check=True)
     table = subprocess.run(["arm-none-eabi-nm", "-S", target], check=True, capture_output=True, text=True).stdout
     sizes = {name: int(size, 16) for size, name in re.findall(r"^\w+ (\w+) \w (\S+)$", table, re.M)}
-    return {id: (sizes[f"decode_{id}"] + sizes[f"encode_{id}"], len(plan.members)) for id, plan in found.items()}
+    return {id: (sizes[f"decode_{id}"] + sizes[f"encode_{id}"], len(message.fields)) for id, message in found.items()}
 
 
 def main() -> int:
@@ -131,7 +131,7 @@ def main() -> int:
     parser.add_argument("--opt", default="-O2")
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
-    found = plans()
+    found = messages()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         generate(folder)
@@ -140,8 +140,8 @@ def main() -> int:
     missed = []
     print("| frame | decode | by hand | ratio | encode | by hand | ratio | Cortex-M4 -Os, bytes a field |")
     print("|---|---|---|---|---|---|---|---|")
-    for id, plan in found.items():
-        cells = [f"{id} {plan.message.name}"]
+    for id, message in found.items():
+        cells = [f"{id} {message.message.name}"]
         for what, limit in zip(("decode", "encode"), LIMITS[id], strict=True):
             ours, theirs = counts[f"{what}_{id}"], counts[f"hand_{what}_{id}"]
             cells += [f"{ours:.0f}", f"{theirs:.0f}", f"{ours / theirs:.2f}"]

@@ -24,7 +24,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "codegen")]
 from icdgen import vectors  # noqa: E402
 from icdgen.diff import report  # noqa: E402
 from icdgen.diff.inputs.side import Side  # noqa: E402
-from icdgen.icd.load import load  # noqa: E402
+from icdgen.loading import load  # noqa: E402
 
 PER_MESSAGE = 40
 PER_NODE = 250  # messages: an id is a byte

@@ -28,7 +28,7 @@ from timeit import Timer
 from typing import Any
 
 from icdgen.backends.python import PythonBackend
-from icdgen.icd.load import load
+from icdgen.loading import load
 from icdgen.render import Renderer
 
 sys.path.insert(0, str(Path(__file__).parent))

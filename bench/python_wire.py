@@ -17,7 +17,7 @@ from importlib import import_module
 from pathlib import Path
 
 from icdgen.backends.python import PythonBackend
-from icdgen.icd.load import load
+from icdgen.loading import load
 from icdgen.render import Renderer
 
 ROOT = Path(__file__).parent.parent

@@ -18,7 +18,7 @@ import tempfile
 from pathlib import Path
 
 from icdgen.backends.rust import RustBackend
-from icdgen.icd.load import load
+from icdgen.loading import load
 from icdgen.render import Renderer
 
 BENCH = Path(__file__).parent

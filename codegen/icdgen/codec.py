@@ -9,6 +9,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import lru_cache
 
 from icdgen.icd.model import Field, Message, Node
 
@@ -27,7 +28,8 @@ def decode(node: Node, message: Message, frame: bytes) -> dict[str, int | bytes]
     """Raw value of every field by name. Raises `LengthError`."""
     if len(frame) != message.length:
         raise LengthError(message, len(frame))
-    return {field.name: _read(node, field, frame) for field in message.fields}
+    bits = int.from_bytes(frame, "little")
+    return {field.name: _read(node, field, bits) for field in message.fields}
 
 
 def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> bytes:
@@ -36,12 +38,12 @@ def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> byte
     for name in raw:
         if name not in known:
             raise CodecError(f"{message.name} has no field {name!r}")
-    frame = bytearray(message.length)
+    bits = 0
     for field in message.fields:
         if field.name not in raw:
             raise CodecError(f"no value for {field.name!r}")
-        _write(node, field, frame, raw[field.name])
-    return bytes(frame)
+        bits |= _written(node, field, raw[field.name])
+    return bits.to_bytes(message.length, "little")
 
 
 def check_raw(field: Field, value: int | bytes) -> None:
@@ -64,7 +66,7 @@ def physical(field: Field, raw: int) -> Fraction | None:
 def physical_double(field: Field, raw: int) -> float | None:
     """The correctly rounded double of the physical value."""
     exact = physical(field, raw)
-    return None if exact is None else _to_double(exact)
+    return None if exact is None else to_double(exact)
 
 
 def raw_from_physical(field: Field, value: Fraction | int | float) -> int:
@@ -94,42 +96,51 @@ def float_bits(field: Field, value: float) -> int:
     return int.from_bytes(packed, "little")
 
 
-def _to_double(exact: Fraction) -> float:
+def to_double(exact: Fraction) -> float:
+    """The nearest double, ties to even."""
     return exact.numerator / exact.denominator  # int / int rounds correctly, once
 
 
-def _bit_positions(node: Node, field: Field) -> list[tuple[int, int]]:
-    """(byte, weight in the byte) of each bit of the value, least significant first."""
-    runs: list[list[tuple[int, int]]] = []
-    for number in range(field.at, field.at + field.bits):
-        byte = number // 8
-        weight = number % 8 if node.bit_order == "lsb0" else 7 - number % 8
-        if not runs or runs[-1][0][0] != byte:
-            runs.append([])
-        runs[-1].append((byte, weight))
-    if node.byte_order == "big":
-        runs.reverse()
-    return [position for run in runs for position in sorted(run, key=lambda p: p[1])]
+# A frame is handled as one number: bit w (0: least significant) of byte b is bit 8 * b + w of it.
 
 
-def _read(node: Node, field: Field, frame: bytes) -> int | bytes:
+@lru_cache(maxsize=1 << 16)
+def _runs(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[tuple[int, int, int], ...]:
+    """Where the value's bits lie: (bit of the frame, bit of the value, how many in a row), together all of them."""
+    places = []
+    for number in range(at, at + bits):
+        byte, bit = divmod(number, 8)
+        places.append((byte, bit if bit_order == "lsb0" else 7 - bit))
+    # the byte with the least significant bits first, and within a byte the least significant bit
+    places.sort(key=lambda place: (place[0] if byte_order == "little" else -place[0], place[1]))
+    runs: list[tuple[int, int, int]] = []
+    for index, (byte, weight) in enumerate(places):
+        here = 8 * byte + weight
+        if runs and here == runs[-1][0] + runs[-1][2]:
+            runs[-1] = (*runs[-1][:2], runs[-1][2] + 1)
+        else:
+            runs.append((here, index, 1))
+    return tuple(runs)
+
+
+def _read(node: Node, field: Field, frame: int) -> int | bytes:
     if field.type == "bytes":
-        first = field.at // 8
-        return bytes(frame[first : first + field.bits // 8])
+        part = frame >> field.at // 8 * 8 & (1 << field.bits) - 1
+        return part.to_bytes(field.bits // 8, "little")
     value = 0
-    for index, (byte, weight) in enumerate(_bit_positions(node, field)):
-        value += ((frame[byte] >> weight) & 1) << index
+    for here, index, count in _runs(field.at, field.bits, node.byte_order, node.bit_order):
+        value |= (frame >> here & (1 << count) - 1) << index
     if field.type == "int" and value >> (field.bits - 1):
         value -= 1 << field.bits
     return value
 
 
-def _write(node: Node, field: Field, frame: bytearray, value: int | bytes) -> None:
+def _written(node: Node, field: Field, value: int | bytes) -> int:
+    """The frame's bits that the value sets."""
     check_raw(field, value)
-    if field.type == "bytes":
-        first = field.at // 8
-        frame[first : first + field.bits // 8] = value
-        return
-    for index, (byte, weight) in enumerate(_bit_positions(node, field)):
-        if (int(value) >> index) & 1:
-            frame[byte] |= 1 << weight
+    if isinstance(value, (bytes, bytearray)):
+        return int.from_bytes(value, "little") << field.at // 8 * 8
+    frame, value = 0, int(value)
+    for here, index, count in _runs(field.at, field.bits, node.byte_order, node.bit_order):
+        frame |= (value >> index & (1 << count) - 1) << here
+    return frame

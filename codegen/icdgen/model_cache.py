@@ -11,18 +11,18 @@ from icdgen import cache
 from icdgen.icd.loaded import Loaded
 
 if TYPE_CHECKING:
-    from icdgen.backends import Backend
+    from icdgen.icd.identifiers import Language
 
 KIND = "models"
 
 
-def load_checked(paths: list[Path], plug_ins: Sequence[Backend] = ()) -> Loaded:
-    """Like `icdgen.icd.load.load`. A remembered model carries no positions and comes without texts.
+def load_checked(paths: list[Path], plug_ins: Sequence[Language] = ()) -> Loaded:
+    """Like `icdgen.loading.load`. A remembered model carries no positions and comes without texts.
 
     With plug-ins nothing is remembered: what they say of names may change with any file of theirs.
     """
     if plug_ins:
-        from icdgen.icd.load import load
+        from icdgen.loading import load
 
         return load(paths, plug_ins=plug_ins)
     from icdgen.icd import model_json
@@ -32,7 +32,7 @@ def load_checked(paths: list[Path], plug_ins: Sequence[Backend] = ()) -> Loaded:
     remembered = model_json.read(data) if data is not None else None
     if remembered is not None:
         return Loaded(remembered[0], [], remembered[1])
-    from icdgen.icd.load import load
+    from icdgen.loading import load
 
     loaded = load(paths)
     if not loaded.findings:

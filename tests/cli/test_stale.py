@@ -6,8 +6,7 @@ import os
 
 import pytest
 
-from icdgen import __main__, cache, fingerprints, model_cache
-from icdgen.icd import load as loading
+from icdgen import __main__, cache, fingerprints, loading, model_cache
 from tests.conftest import DEMO
 
 
@@ -44,13 +43,13 @@ def test_an_included_file_by_a_second_path_that_leads_elsewhere(run, tmp_path):
     head = "icdgen: 1\nnode: {name: %s, title: T, byte_order: little, bit_order: lsb0}\n"
     (tmp_path / "a.yaml").write_text(head % "aaa")
     (tmp_path / "b.yaml").write_text(head % "bbb")
-    (tmp_path / "main.yaml").write_text(head % "main" + "include: [a.yaml, link.yaml]\n")
+    (tmp_path / "top.yaml").write_text(head % "top" + "include: [a.yaml, link.yaml]\n")
     link = tmp_path / "link.yaml"
     for target, outputs in (("a.yaml", {"aaa.h"}), ("b.yaml", {"aaa.h", "bbb.h"})):
         link.unlink(missing_ok=True)
         link.symlink_to(target)
-        run("--lang", "c", "--out", "out", "main.yaml")
-        assert {p.name for p in (tmp_path / "out").glob("*.h")} == outputs | {"main.h", "icdgen.h"}
+        run("--lang", "c", "--out", "out", "top.yaml")
+        assert {p.name for p in (tmp_path / "out").glob("*.h")} == outputs | {"top.h", "icdgen.h"}
 
 
 def test_an_icd_that_changes_while_it_is_worked_on(run, demo, tmp_path, monkeypatch):

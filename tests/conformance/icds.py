@@ -7,8 +7,8 @@ from functools import cache
 from pathlib import Path
 
 from icdgen import vectors
-from icdgen.icd.load import load
 from icdgen.icd.model import Icd
+from icdgen.loading import load
 from tests.conformance import ROOT
 
 SHIPPED = ROOT / "icd"

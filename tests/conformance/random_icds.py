@@ -14,8 +14,8 @@ from pathlib import Path
 
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
-from icdgen.icd.load import load
 from icdgen.icd.model import Icd
+from icdgen.loading import load
 from tests.conformance.icds import vectors_of
 from tests.conformance.languages import Language, all_languages
 from tests.conformance.run import Result, run

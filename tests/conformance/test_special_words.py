@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from icdgen import backends
-from icdgen.icd.load import load
+from icdgen.loading import load
 from icdgen.render import Renderer
 from tests.c.harness import WARNINGS
 

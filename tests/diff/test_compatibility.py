@@ -7,7 +7,7 @@ import pytest
 from icdgen.diff.compare import compare
 from icdgen.diff.compatibility import directions
 from icdgen.diff.version import step
-from icdgen.icd.load import load
+from icdgen.loading import load
 from tests.icd.files import HEAD, write
 
 BASE = """\

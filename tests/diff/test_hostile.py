@@ -12,7 +12,7 @@ from icdgen.diagnostics import Findings
 from icdgen.diff import report, reports
 from icdgen.diff.inputs import shown
 from icdgen.diff.inputs.side import Side, from_paths
-from icdgen.icd.load import load
+from icdgen.loading import load
 from icdgen.show import to_json
 from tests.conftest import ROOT
 

@@ -6,7 +6,7 @@ import pytest
 
 from icdgen.diff.compare import compare
 from icdgen.diff.similar import extends, likeness, same_sense
-from icdgen.icd.load import load
+from icdgen.loading import load
 from tests.icd.files import HEAD, write
 
 AXES = [

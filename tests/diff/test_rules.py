@@ -12,7 +12,7 @@ from icdgen.diff import rule
 from icdgen.diff.change import LAYERS
 from icdgen.diff.compare import RULES
 from icdgen.diff.report import make
-from icdgen.icd.load import load
+from icdgen.loading import load
 from tests.diff.cases import CASES, compared, printed
 from tests.icd.files import write
 

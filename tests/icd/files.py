@@ -6,7 +6,8 @@ import re
 from pathlib import Path
 
 from icdgen.diagnostics import Finding
-from icdgen.icd.load import Loaded, load
+from icdgen.icd.loaded import Loaded
+from icdgen.loading import load
 
 HEAD = "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}\n"
 
@@ -32,8 +33,9 @@ def write(folder: Path, text: str) -> Path:
 
 
 def loaded(folder: Path, text: str) -> Loaded:
-    """What loading the text gives."""
-    return load([write(folder, text)])
+    """What loading the text gives, with the other files that stand beside ``demo.yaml``."""
+    beside = [folder / name for name in _FILE.findall(text) if "/" not in name]
+    return load([write(folder, text), *beside])
 
 
 def findings(folder: Path, text: str) -> list[Finding]:

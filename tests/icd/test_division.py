@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from icdgen import codec
 from icdgen.diagnostics import Place
 from icdgen.icd import division
-from icdgen.icd.load import load
 from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Node
+from icdgen.loading import load
 
 ORDERS = st.sampled_from([(a, b) for a in ("little", "big") for b in ("lsb0", "msb0")])
 
@@ -36,8 +36,8 @@ def test_a_part_holds_the_bits_of_the_value_that_it_names(orders, at, bits, data
     assume(division.lies_together(whole, item(at=start, bits=count), *orders))
     place = division.place(whole, item(at=start, bits=count), *orders)
     frame = data.draw(st.binary(min_size=6, max_size=6))
-    value = codec._read(node(orders), Field("Whole", at, bits, "uint"), frame)
-    part = codec._read(node(orders), Field("Part", place, count, "uint"), frame)
+    value = codec._read(node(orders), Field("Whole", at, bits, "uint"), int.from_bytes(frame, "little"))
+    part = codec._read(node(orders), Field("Part", place, count, "uint"), int.from_bytes(frame, "little"))
     assert part == (value >> start) & ((1 << count) - 1)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from icdgen import values
-from icdgen.icd.load import load
+from icdgen.loading import load
 from tests.conftest import ROOT
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from icdgen.icd.load import load
+from icdgen.loading import load
 
 FINE = sorted(Path(__file__).with_name("fine").glob("*.yaml"))
 

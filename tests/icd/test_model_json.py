@@ -9,8 +9,8 @@ import pytest
 
 from icdgen import shipped
 from icdgen.icd import model_json
-from icdgen.icd.load import load
 from icdgen.icd.model import Icd
+from icdgen.loading import load
 
 
 @pytest.fixture(scope="module")

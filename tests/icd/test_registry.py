@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from icdgen.icd import rules
-from icdgen.icd.load import load
+from icdgen.loading import load
 from tests.icd.files import HEAD, codes, findings, loaded, status, write
 
 ACCEPTED = """

@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from icdgen import reports
-from icdgen.icd.load import load
+from icdgen.loading import load
 
 ICD = """\
 icdgen: 1

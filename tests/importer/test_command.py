@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from tests.importer.test_text import ENUM, LIST, MESSAGE
+from tests.importer.test_text import ENUM, LIST, MESSAGE, RAW
 
 TEXT = LIST.replace("\t6\n", "\t4\n").rsplit("141", 1)[0] + "\n" + MESSAGE + ENUM
 
@@ -81,6 +81,20 @@ def test_update_keeps_what_people_wrote_and_says_what_changed(folder):
     )
     assert overlay.read_text(encoding="utf-8") == "errata: 1\nnode: pump\nentries: []\n"
     assert icdgen("fmt", "--check", "icd/pump.yaml", cwd=folder).returncode == 0
+
+
+def test_update_takes_over_what_is_announced_of_all_formulas(folder):
+    icdgen("import", "pump.txt", cwd=folder)
+    path = folder / "icd" / "pump.yaml"
+    (folder / "pump.txt").write_text(TEXT.replace(MESSAGE, RAW), encoding="utf-8")
+    result = icdgen("import", "pump.txt", "--update", cwd=folder)
+    assert "~ formula_for (absent) -> {'telemetry': 'raw'}" in result.stdout
+    assert "formula_for: {telemetry: raw}\n" in path.read_text(encoding="utf-8")
+    assert "icd/pump.yaml: unchanged" in icdgen("import", "pump.txt", "--update", cwd=folder).stdout
+    assert icdgen("fmt", "--check", "icd/pump.yaml", cwd=folder).returncode == 0
+    (folder / "pump.txt").write_text(TEXT, encoding="utf-8")
+    icdgen("import", "pump.txt", "--update", cwd=folder)
+    assert "formula_for" not in path.read_text(encoding="utf-8")
 
 
 def test_a_dry_run_writes_nothing(folder):

@@ -129,6 +129,19 @@ def test_words_that_contradict_their_formula_are_kept_and_reported(tmp_path):
     assert "`Pressure` is announced as giving the raw value" in found(result, "IMP041")[0]
 
 
+RAW = MESSAGE.replace("Formatted value is obtained", "Raw parameter value is obtained").replace(
+    "\t24\t1\tValve Open\tBOOL\tValve open\n",
+    "\t24\t8\tLevel\tUINT\tLevel. Raw parameter value is obtained using the formula: (formatted value) [%] = RAWVAL*0.5\n",
+)
+
+
+def test_words_that_contradict_every_formula_of_a_kind_are_kept_once(tmp_path):
+    _, tree = read(tmp_path, RAW + ENUM)
+    assert tree["formula_for"] == {"telemetry": "raw"}
+    assert [field["formula"] for field in tree["messages"][0]["fields"] if "formula" in field] == ["raw*0.1", "raw*0.5"]
+    assert not [field for field in tree["messages"][0]["fields"] if "formula_for" in field]
+
+
 LIST = """\
 Table 1: List of Telemetry Frames
 

@@ -158,3 +158,63 @@ def test_a_length_that_depends_on_a_count_is_one_line_of_the_report(tmp_path, le
     result, tree = read(tmp_path, text)
     assert "messages" not in tree
     assert "depends on a count" in found(result, "IMP037")[0]
+
+
+GRID = "Address\tName\tR/W\tBit 7\tBit 6\tBit 5\tBit 4\tBit 3\tBit 2\tBit 1\tBit 0\n"
+MAP = (
+    GRID + "0x20\tCTRL\tR/W\todr[2:0]\t\t\tmode[1:0]\t\t-\tboot\ten\n0x27\tSTATUS\tR\tovr\tReserved\t\t\tready\t\t\t\n"
+)
+
+
+def test_each_row_of_a_register_map_is_a_message_with_its_bits(tmp_path):
+    result, tree = read(tmp_path, f"Register map\n\n{MAP}")
+    ctrl, status = tree["messages"]
+    assert (ctrl["name"], ctrl["set_id"], ctrl["get_id"], ctrl["kind"], ctrl["length"]) == (
+        "CTRL",
+        32,
+        32,
+        "configuration",
+        1,
+    )
+    assert sorted(places(ctrl)) == [(0, 1, "en"), (1, 1, "boot"), (3, 2, "mode"), (5, 3, "odr")]
+    assert (status["name"], status["id"], status["kind"]) == ("STATUS", 0x27, "telemetry")
+    assert sorted(places(status)) == [(0, 4, "ready"), (7, 1, "ovr")]
+    assert "prints no types" in found(result, "IMP026")[0]
+
+
+def test_the_bits_of_one_register_are_counted_from_its_lowest_one(tmp_path):
+    table = "Bits\tName\tAccess\tReset\tDescription\n7:5\tODR\tR/W\t000\tRate\n4\tBOOT\tR/W\t0\tReboot\n3:0\tGAIN\tR/W\t0\tGain\n"
+    other = "INT_STATUS (0x24)\n\nread-only\n\nBit\tName\tType\n2\tHigh\tBOOL\n1\tLow\tBOOL\n"
+    text = f"CTRL1 register (0x20), R/W\n\n{table}\n{other}"
+    words = 'patterns: ["{name} register ({hex}), {kind}"]\nheadings: {fields: {ignored: [Access, Reset]}}\n'
+    _, tree = read(tmp_path, text, words)
+    ctrl, status = tree["messages"]
+    assert (ctrl["name"], ctrl["set_id"], places(ctrl)) == (
+        "CTRL1",
+        32,
+        [(0, 4, "GAIN"), (4, 1, "BOOT"), (5, 3, "ODR")],
+    )
+    assert (status["id"], status["kind"], places(status)) == (0x24, "telemetry", [(1, 1, "Low"), (2, 1, "High")])
+    _, tree = read(tmp_path, text, words + "node: {byte_order: big, bit_order: msb0}\n")
+    assert places(tree["messages"][0]) == [(0, 3, "ODR"), (3, 1, "BOOT"), (4, 4, "GAIN")]
+
+
+@pytest.mark.parametrize("head", ["Byte0\tByte1\tByte2\tByte3\tByte4", "Byte 1\tByte 2\tByte 3\tByte 4\tByte 5"])
+def test_a_frame_whose_bytes_are_columns_is_a_message(tmp_path, head):
+    text = f"5 Telemetry\n\n5.1 Motor State (0x21)\n\n{head}\nmode\tspeed\t\treserved\tflags\n"
+    _, tree = read(tmp_path, text)
+    assert places(tree["messages"][0]) == [(0, 8, "mode"), (8, 16, "speed"), (32, 8, "flags")]
+
+
+def test_bytes_as_rows_and_bits_as_columns_are_a_message(tmp_path):
+    rows = "Byte 0\tmode\t\t\t\tspeed high\t\t\t\nByte 1\ton\toff\t-\t-\tlevel\t\t\t\n"
+    _, tree = read(tmp_path, f"5 Telemetry\n\n5.1 State (0x21)\n\nByte\t7\t6\t5\t4\t3\t2\t1\t0\n{rows}")
+    assert sorted(places(tree["messages"][0])) == [
+        (0, 4, "speed high"), (4, 4, "mode"), (8, 4, "level"), (14, 1, "off"), (15, 1, "on"),
+    ]  # fmt: skip
+
+
+def test_a_grid_without_an_id_is_not_guessed(tmp_path):
+    result, tree = read(tmp_path, f"Byte0\tByte1\tByte2\tByte3\na\tb\tc\td\n\nState (0x21)\n\nTelemetry\n\n{FIELDS}")
+    assert [m["name"] for m in tree["messages"]] == ["State"] or found(result, "IMP031")
+    assert "it begins with `Byte0" in found(result, "IMP030")[0]

@@ -157,7 +157,7 @@ def test_every_type_in_both_byte_orders(tmp_path):
 
     import pyarrow.parquet as pq
 
-    from icdgen.icd.load import load
+    from icdgen.loading import load
     from icdgen.protocol import facts, logs
 
     (tmp_path / "odd.yaml").write_text(ODD)

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from icdgen.icd.load import load
 from icdgen.icd.model import Icd, Node
+from icdgen.loading import load
 from tests.mutation.mutants import Mutant
 
 MOST_MUTANTS = 400

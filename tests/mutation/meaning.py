@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from icdgen import codec
-from icdgen.icd.model import Message, Node
+from icdgen.icd.model import Field, Message, Node
 
 
 def same(node: Node, message: Message, other_node: Node, other: Message) -> bool:
@@ -14,9 +14,16 @@ def same(node: Node, message: Message, other_node: Node, other: Message) -> bool
 def _facts(node: Node, message: Message) -> tuple:
     fields = [
         (
-            f.name, f.type, f.bits, tuple(codec._bit_positions(node, f)) if f.type != "bytes" else f.at, f.scale, f.const,
+            f.name, f.type, f.bits, _place(node, f), f.scale, f.const,
             f.special, f.limits, tuple((m.value, m.name) for m in f.enum.members) if f.enum else None,
         )
         for f in message.fields
     ]  # fmt: skip
     return message.name, message.kind, message.ids, message.length, fields
+
+
+def _place(node: Node, field: Field) -> object:
+    """Where each of its bits lies."""
+    if field.type == "bytes":
+        return field.at
+    return codec._runs(field.at, field.bits, node.byte_order, node.bit_order)

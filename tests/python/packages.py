@@ -10,8 +10,8 @@ from types import ModuleType
 from typing import NamedTuple
 
 from icdgen.backends.python import PythonBackend
-from icdgen.icd.load import load
 from icdgen.icd.model import Icd
+from icdgen.loading import load
 from icdgen.render import Renderer
 from tests.conformance.testees.python import PythonTesteeBackend
 from tests.conftest import ROOT

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from icdgen.backends.python import PythonBackend
-from icdgen.icd.load import load
+from icdgen.loading import load
 
 
 def node(**keys) -> dict:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tests.c import odd as of_c
 
-LENGTHS = (1, 2, 9, *range(17, 41), 44, 48, *range(50, 57), 60)  # where rustfmt could begin to break lines
+LENGTHS = (1, 2, 9, *range(17, 41), 44, 48, *range(50, 57), 60)  # where lines begin to be broken
 BORROWED = (
     "Core",
     "Alloc",
@@ -131,7 +131,7 @@ def _lengths(lengths: tuple[int, ...]) -> dict:
 
 
 def write_long(folder: Path) -> list[Path]:
-    """Names longer than rustfmt can lay out by any rule; they must compile all the same."""
+    """Names longer than any line; they must compile all the same."""
     base = _write(folder / "base.yaml", _base())
     return [base, _write(folder / "lengths.yaml", _lengths((80, 120, 180)))]
 

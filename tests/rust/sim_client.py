@@ -13,8 +13,8 @@ from typing import NamedTuple
 import jinja2
 
 from icdgen import codec
-from icdgen.backends.rust import message_rows, names
-from icdgen.backends.rust.messages import MessageRow
+from icdgen.backends.rust.names import type_name
+from icdgen.describe import MessageDescription, describe
 from icdgen.icd.model import CONFIGURATION, Field, Icd, Message, Node
 from icdgen.protocol import facts
 from icdgen.sim.values import fresh
@@ -42,8 +42,7 @@ class Place(NamedTuple):
 def source(icd: Icd, node_name: str = NODE) -> str:
     """The client's main file."""
     node, known = icd.node(node_name), facts.of(icd, icd.node(node_name))
-    enums = names.Enums(icd)
-    rows = {row.message.name: row for one in (*icd.included(node), node) for row in message_rows(icd, one, enums)}
+    rows = {one.message.name: one for one in describe(icd).node(node).spoken}
 
     def of(messages, values) -> list[Row]:
         return [_row(icd, rows[message.name], values(message)) for message in messages]
@@ -66,15 +65,15 @@ def source(icd: Icd, node_name: str = NODE) -> str:
         identification=_type(rows[known.identification.message.name]),
         log=log and _type(rows[log]),
         restarted=starters[0],
-        start=_start(icd, boot, enums),
+        start=_start(icd, boot),
         running=icd.protocol_of(boot)["program_copy"]["destination"],
     )
 
 
-def _start(icd: Icd, boot: Node, enums: names.Enums) -> str:
+def _start(icd: Icd, boot: Node) -> str:
     """The type of the telecommand that starts the application."""
     name = boot.protocol["program_start"]["message"]
-    return _type(next(row for row in message_rows(icd, boot, enums) if row.message.name == name))
+    return _type(next(one for one in describe(icd).node(boot).messages if one.message.name == name))
 
 
 def build(folder: Path) -> list[str]:
@@ -107,16 +106,16 @@ def _numbered(field: Field, number: int, otherwise: int | bytes) -> int | bytes:
     return otherwise
 
 
-def _row(icd: Icd, row: MessageRow, raw: dict[str, int | bytes]) -> Row:
+def _row(icd: Icd, row: MessageDescription, raw: dict[str, int | bytes]) -> Row:
     return Row(_type(row), f"&{list(codec.encode(row.node, row.message, raw))}")
 
 
-def _type(row: MessageRow) -> str:
-    return f"icd::{row.node.name}::{row.type}"
+def _type(row: MessageDescription) -> str:
+    return f"icd::{row.node.name}::{type_name(row)}"
 
 
-def _field(row: MessageRow, name: str) -> str:
-    return next(one.name for one in row.fields if one.model.name == name)
+def _field(row: MessageDescription, name: str) -> str:
+    return next(one.name for one in row.fields if one.field.name == name)
 
 
 if __name__ == "__main__":

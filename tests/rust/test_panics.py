@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from icdgen.backends.rust import message_rows, names
+from icdgen.backends.rust.names import type_name
+from icdgen.describe import describe
 from icdgen.icd.model import Icd
 from tests.rust.tools import Toolchain, run, toolchains
 
@@ -47,24 +48,22 @@ WIRE = Path(__file__).parent / "wire.rs"
 
 def everything(icd: Icd) -> Iterator[str]:
     """A function for each function of the crate that a user can call."""
-    enums = names.Enums(icd)
-    id_type = "u8" if all(id < 256 for node in icd.nodes for m in node.messages for id in m.ids) else "u16"
-    for node in icd.nodes:
-        for row in message_rows(icd, node, enums):
-            name, type_ = f"{node.name}_{row.module}", f"icd::{node.name}::{row.type}"
+    described = describe(icd)
+    for node in described.nodes:
+        for message in node.messages:
+            name, type_ = f"{node.name}_{message.name}", f"icd::{node.name}::{type_name(message)}"
             yield MESSAGE.format(name=name, type=type_)
-            if row.fits:
+            if message.is_narrow:
                 yield CHECKED.format(name=name, type=type_)
-            for one in row.scaled:
-                yield SCALED.format(name=f"{name}_{one.getter}", type=type_, getter=one.getter, setter=one.setter)
-        for way in ("telecommand", "telemetry"):
-            if any(getattr(message, f"{way}_id") is not None for message in icd.messages_of(node)):
+            for one in (field.physical_name for field in message.fields if field.steps):
+                yield SCALED.format(name=f"{name}_{one}", type=type_, getter=one, setter=f"set_{one}")
+        for way, messages in (("telecommand", node.telecommands), ("telemetry", node.telemetry)):
+            if messages:
                 type_ = f"icd::{node.name}::{way.capitalize()}"
-                yield DISPATCHER.format(name=f"{node.name}_{way}", type=type_, id=id_type)
+                yield DISPATCHER.format(name=f"{node.name}_{way}", type=type_, id=f"u{described.id_bits}")
         for enum in node.enums:
-            type_ = f"icd::{node.name}::enums::{names.type_name(enum, node)}"
-            name = f"{node.name}_{names.type_name(enum, node)}"
-            yield ENUM.format(name=name, type=type_, raw=f"u{enums.storage(enum)}")
+            name, type_ = f"{node.name}_{type_name(enum)}", f"icd::{node.name}::enums::{type_name(enum)}"
+            yield ENUM.format(name=name, type=type_, raw=f"u{enum.storage.bits}")
 
 
 def symbols(subject, toolchain: str, level: str, folder: Path, more: str = "") -> set[str]:

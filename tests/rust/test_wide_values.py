@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen import codec
-from icdgen.backends.rust import fields, message_rows, names
+from icdgen.backends.rust.names import integer_type, type_name
+from icdgen.describe import describe
 from icdgen.icd.model import Icd
 from tests.rust.tools import Toolchain, run
 
@@ -19,23 +20,20 @@ CASE = """\
 
 def cases(icd: Icd) -> Iterator[str]:
     """Each narrow field with all bits of its type set: its own bits are set then, and no others."""
-    enums = names.Enums(icd)
-    for node in icd.nodes:
-        for row in message_rows(icd, node, enums):
-            for one in row.fields:
-                field = one.model
-                if not fields.is_narrow(field, enums):
-                    continue
-                zeros = codec.decode(node, row.message, bytes(row.length))
+    for node in describe(icd).nodes:
+        for message in node.messages:
+            for one in (field for field in message.fields if field.is_narrow):
+                field, length = one.field, message.message.length
+                zeros = codec.decode(node.node, message.message, bytes(length))
                 ones = -1 if field.type == "int" else (1 << field.bits) - 1
-                frame = codec.encode(node, row.message, {**zeros, field.name: ones})
+                frame = codec.encode(node.node, message.message, {**zeros, field.name: ones})
                 # All ones fit a signed field: it is -1. The widest value has one bit less, and is cut to the same.
-                widest = "Coded::from_raw(!0)" if field.type == "enum" else f"{one.type}::MAX"
+                widest = "Coded::from_raw(!0)" if field.type == "enum" else f"{integer_type(one)}::MAX"
                 yield CASE.format(
                     bytes=list(frame),
                     node=node.name,
-                    type=row.type,
-                    length=row.length,
+                    type=type_name(message),
+                    length=length,
                     field=one.name,
                     value=widest,
                     name=f'"{one.name}"',

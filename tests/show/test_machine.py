@@ -9,8 +9,8 @@ import jsonschema_rs
 import pytest
 
 import icdgen.shipped
-from icdgen.icd.load import load
 from icdgen.icd.model import Icd
+from icdgen.loading import load
 from icdgen.show import SCHEMA, to_json
 
 BASE = """\

@@ -6,7 +6,7 @@ from collections import Counter
 
 import pytest
 
-from icdgen.icd.load import load
+from icdgen.loading import load
 from icdgen.show import to_text
 from icdgen.values import NotFound
 from tests.show.test_machine import BASE, OVERLAY, TOP

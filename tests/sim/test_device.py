@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import signal
+import socket
 import time
 
 import pytest
@@ -53,8 +55,12 @@ def test_every_telecommand_is_taken_and_every_configuration_reads_back_what_was_
 
 
 def refusable(client) -> set[str]:
-    """Telecommands that may be refused for what the device holds just now."""
-    return {client.known.files.steps["download.burst"].message.name}
+    """Telecommands that may be refused: for what the device holds just now, for a destination, or by the node."""
+    upload = ICD.protocol_of(client.node)["file_transfer"]["upload"]
+    found = {upload[step]["message"] for step in ("initiate", "begin", "packet", "finalize")}
+    if client.known.program_copy:
+        found.add(client.known.program_copy.request.message.name)
+    return {client.known.files.steps["download.burst"].message.name, *found}
 
 
 def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
@@ -168,6 +174,17 @@ def test_values_are_set_by_options_orders_and_scripts(tmp_path):
             assert process.stdout.readline() == "ok\n"
             assert process.stdout.readline().startswith("error: cubeacp has no telemetry `nonsense`")
             assert value_of(client, name, "Estimated Roll Angle") == -150
+
+
+def test_an_interrupt_while_a_client_is_connected_ends_it_without_more_words():
+    with simulator("--node", "cubeacp", "--tcp", "0") as (place, process):
+        host, port = place.removeprefix("tcp://").rsplit(":", 1)
+        with socket.create_connection((host, int(port))) as client:
+            client.sendall(b"\x00")
+            time.sleep(0.3)
+            process.send_signal(signal.SIGINT)
+            _, err = process.communicate(timeout=20)
+    assert (process.returncode, err.strip()) == (130, "icdgen: error: interrupted")
 
 
 def test_unsolicited_logs_come_as_they_are_configured():

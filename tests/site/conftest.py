@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from icdgen.icd.load import load
+from icdgen.loading import load
 from icdgen.site import make, write
 from icdgen.site.serve import HOST, Source, handler
 from tests.conftest import ROOT

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import socket
+import struct
 import threading
+import time
 from http.client import HTTPConnection
 from http.server import ThreadingHTTPServer
 
@@ -82,3 +85,24 @@ def test_the_server_answers_to_this_machine_and_gives_nothing_else_away(ask):
     assert ask("/", Host="somewhere.example")[0] == 403
     for path in ("/../etc/passwd", "/..%2f..%2fetc/passwd", "//etc/passwd", "/demo.yaml", "/%00", "/no such"):
         assert ask(path.replace(" ", "%20"))[0] == 404
+
+
+def test_a_browser_that_resets_its_connection_is_no_news(demo, capsys):
+    reset = struct.pack("ii", 1, 0)  # closing sends a reset instead of an end
+    server = ThreadingHTTPServer((HOST, 0), handler(Source([demo])))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    try:
+        for sent in (b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n"):
+            for wait in (0, 0.05):
+                with socket.create_connection((HOST, server.server_port)) as browser:
+                    browser.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, reset)
+                    browser.sendall(sent)
+                    time.sleep(wait)
+        connection = HTTPConnection(HOST, server.server_port, timeout=20)
+        connection.request("GET", "/", headers={"Host": "localhost"})
+        assert connection.getresponse().status == 200
+        time.sleep(0.2)
+    finally:
+        server.shutdown()
+        server.server_close()
+    assert capsys.readouterr().err == ""

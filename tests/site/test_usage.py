@@ -5,7 +5,8 @@ from __future__ import annotations
 import subprocess
 import sys
 
-from icdgen.backends.html.usage import Usage
+from icdgen.backends.html import usage
+from icdgen.describe import describe
 from tests.conftest import ROOT
 from tests.site.conftest import program
 
@@ -13,8 +14,7 @@ GENERATED = ROOT / "generated"
 
 
 def snippets(icd, key: str) -> list[str]:
-    usage = Usage(icd)
-    messages = [message for node in icd.nodes for message in node.messages]
+    messages = [message for node in describe(icd).nodes for message in node.messages]
     return [one.text for message in messages for one in usage.snippets(message) if one.key == key]
 
 
@@ -44,10 +44,10 @@ def test_the_c_of_every_message_compiles_without_a_warning(shipped, tmp_path):
 
 def test_the_python_of_every_message_runs(shipped, tmp_path):
     parts = ["sent = []", "def send(id, frame): sent.append((id, frame))"]
-    for node in shipped.nodes:
+    for node in describe(shipped).nodes:
         for message in node.messages:
-            text = next(one.text for one in Usage(shipped).snippets(message) if one.key == "python")
-            parts += [f"buffer = bytes({message.length})", text]
+            text = next(one.text for one in usage.snippets(message) if one.key == "python")
+            parts += [f"buffer = bytes({message.message.length})", text]
     source = tmp_path / "usage.py"
     source.write_text("\n".join([*parts, "print(len(sent))"]), "utf-8")
     environment = {"PYTHONPATH": str(GENERATED / "python"), "PYTHONDONTWRITEBYTECODE": "1"}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from icdgen.icd.load import load
 from icdgen.icd.model import Icd
+from icdgen.loading import load
 
 BASE = """\
 icdgen: 1

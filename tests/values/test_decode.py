@@ -7,7 +7,7 @@ import struct
 
 import pytest
 
-from icdgen.icd.load import load
+from icdgen.loading import load
 from icdgen.values import BadLength, decode, parse_hex, to_text
 
 

@@ -9,7 +9,7 @@ from contextlib import chdir
 from pathlib import Path
 
 from icdgen import reports
-from icdgen.icd.load import load
+from icdgen.loading import load
 
 FOLDER = Path(__file__).parent
 CASES = sorted(FOLDER.glob("*/*.yaml"))

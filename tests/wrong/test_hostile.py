@@ -7,8 +7,8 @@ import time
 import pytest
 
 from icdgen import reports
-from icdgen.icd.load import load
 from icdgen.icd.source import MAX_BYTES
+from icdgen.loading import load
 
 HEAD = "icdgen: 1\nnode: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}\n"
 

@@ -8,14 +8,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from importlib import import_module
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from icdgen.errors import UserError
-from icdgen.icd.located import Map
+from icdgen.icd.identifiers import Identifier as Identifier
+from icdgen.icd.identifiers import Language
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
+
+    from icdgen.render import Renderer
 
 GROUP = "icdgen.backends"
 
@@ -29,29 +32,14 @@ _BUILT_IN = {
 }
 
 
-class Identifier(NamedTuple):
-    """A name that generated code declares. Two equal names in one scope clash."""
-
-    scope: str  # "members of struct demo_foo_t"
-    text: str
-    owner: str  # what it was made from, in a user's words: "field `Foo` of `Bar`"
-    source: Map | None  # where that stands in the ICD
-
-
-class Backend(Protocol):
-    """What a backend offers. ``render`` comes from `icdgen.render.Renderer`."""
-
-    name: str  # as in ``--lang``, and the name of its template folder
-    reserved: frozenset[str]  # words that can't be identifiers
+class Backend(Language, Protocol):
+    """What a backend offers: its ``name`` is as in ``--lang``, and that of its template folder."""
 
     # Not of ours, but of plug-ins: `templates` and `runtime`, the folders (`Path`) of what it renders and of what it copies.
     # Files of `--templates` go before those of either.
 
-    def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
+    def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Every file as relative path and text, in a fixed order."""
-
-    def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """Every name that ``files`` declares, for the name rules."""
 
 
 class UnknownBackend(UserError):
@@ -106,4 +94,5 @@ def not_ours(languages: Iterable[str]) -> list[Backend]:
 
 def _load(target: str) -> Backend:
     module, _, attribute = target.partition(":")
-    return getattr(import_module(module), attribute)()
+    made: Backend = getattr(import_module(module), attribute)()
+    return made

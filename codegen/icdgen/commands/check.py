@@ -18,7 +18,7 @@ from icdgen.commands.common import chosen, icd_arguments, print_findings
 )
 def check(icds: tuple[Path, ...], form: str) -> None:
     """Check ICDs and report every finding. Exit status: 0 clean, 1 findings."""
-    from icdgen.icd.load import load
+    from icdgen.loading import load
 
     paths, config = chosen(icds)
     loaded = load(paths, plug_ins=backends.not_ours(config.lang))

@@ -128,7 +128,7 @@ def _write_page(page: Path, result: Result) -> None:
 
 def _next_step(result: Result) -> None:
     """What `icdgen check` would say of the files, as a number: the import ends where the check begins."""
-    from icdgen.icd.load import load
+    from icdgen.loading import load
 
     paths = [target.path for target in result.targets]
     loaded = load(paths)

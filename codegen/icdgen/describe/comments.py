@@ -120,7 +120,13 @@ def span_text(scaled: Steps) -> str:
     return f"{exact_text(low)} to {exact_text(high)}"
 
 
-def physical_text(field: Field) -> str:
+def physical_name(field: Field) -> str:
     """``Roll Angle in deg``: what the accessors of a physical value are about."""
     unit = f" in {words(field.unit.symbol)}" if field.unit else ", as a physical value"
     return f"{words(field.name)}{unit}"
+
+
+def physical_comment(field: Field, scaled: Steps) -> str:
+    """What the physical value is, its range and its limits."""
+    limits = f" Must be {limits_text(bounds(field.limits), field)}." if field.limits is not None else ""
+    return f"{physical_name(field)}: {span_text(scaled)}.{limits}"

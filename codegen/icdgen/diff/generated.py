@@ -240,7 +240,7 @@ class _Cut:
         for language in LANGUAGES:
             for one in backends.get(language).identifiers(icd):
                 pair = self.marks.get(id(one.source)) if one.source is not None else None
-                if pair is None or not one.text.isidentifier() or one.scope.startswith("modules of"):
+                if pair is None or not one.text.isidentifier() or one.scope.startswith(("modules of", "files of")):
                     continue
                 owner = getattr(pair, "owner", None)
                 if owner is None and language == "c" and one.text.endswith("_H"):
@@ -271,24 +271,21 @@ def _stem(language: str, scope: str) -> str:
 def _types(cut: Icd) -> Types:
     """A function that tells the type of a field's raw value in a language."""
     from icdgen.backends.c.types import type_of
-    from icdgen.backends.python.names import class_name
-    from icdgen.backends.rust.fields import raw_type
-    from icdgen.backends.rust.names import Enums
+    from icdgen.backends.rust.names import raw_type
     from icdgen.describe import describe
+    from icdgen.naming import camel
 
-    rust, description = Enums(cut), describe(cut)
-    nodes = {node.name: node for node in cut.nodes}
+    description = describe(cut)
 
     def of(language: str, node: Node, message: Message, field: Field) -> str:
-        home = nodes.get(message.node, node)
+        if field.type == "enum" and field.enum is None:
+            return f"u{field.bits}" if language == "rust" else "int"
+        one = next(one for one in description.message(message).fields if one.field is field)
         if language == "python":
             plain = {"uint": "int", "enum": "int"}.get(field.type, field.type)
-            return class_name(field.enum, cut.node(field.enum.node)) if field.type == "enum" and field.enum else plain
+            return camel(one.enum.words) if one.enum is not None else plain
         if language == "rust":
-            return raw_type(field, home, rust) if field.type != "enum" or field.enum else f"u{field.bits}"
-        if field.type == "bytes":
-            return f"uint8_t[{field.bits // 8}]"
-        fields = description.message(message).fields
-        return next(type_of(one) for one in fields if one.field is field)
+            return raw_type(one)
+        return f"uint8_t[{field.bits // 8}]" if field.type == "bytes" else type_of(one)
 
     return of

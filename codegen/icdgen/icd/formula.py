@@ -26,7 +26,9 @@ class Scale(NamedTuple):
     offset: Fraction = Fraction(0)
 
     def physical(self, raw: int | Fraction) -> Fraction:
-        return raw * self.factor + self.offset
+        a, b = self.factor, self.offset  # put together in one step: it is done for each value of each vector
+        top = raw.numerator * a.numerator * b.denominator + b.numerator * a.denominator * raw.denominator
+        return Fraction(top, raw.denominator * a.denominator * b.denominator)
 
     def raw(self, physical: Fraction) -> Fraction:
         return (physical - self.offset) / self.factor

@@ -17,15 +17,15 @@ from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Icd, Node
 
 if TYPE_CHECKING:
-    from icdgen.backends import Backend
+    from icdgen.icd.identifiers import Language
 
 INCLUDE = "ICD004"
 
 
-def load(paths: list[Path], check: bool = True, plug_ins: Sequence[Backend] = ()) -> Loaded:
+def load(paths: list[Path], check: bool = True, languages: Sequence[Language] = ()) -> Loaded:
     """The ICDs of ``paths`` (files, or folders of files) with all that they include. Never raises for bad input.
 
-    Names must do for the languages of icdgen and for ``plug_ins``.
+    Names must do for the ``languages``.
     """
     loader = _Loader()
     for path in paths:
@@ -36,7 +36,7 @@ def load(paths: list[Path], check: bool = True, plug_ins: Sequence[Backend] = ()
     if check and not loader.unreadable:
         from icdgen.icd import rules
 
-        findings = findings + rules.check(icd, loader.applied, complete=not loader.broken, plug_ins=plug_ins)
+        findings = findings + rules.check(icd, loader.applied, complete=not loader.broken, languages=languages)
     return Loaded(icd, in_order(findings), loader.inputs, loader.texts)
 
 

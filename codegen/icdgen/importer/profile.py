@@ -107,6 +107,16 @@ class Profile:
         return any(folded(text) == title for text in own)
 
     @cached_property
+    def registers(self) -> dict[str, set[tuple[str, ...]]]:
+        """Role -> the headings beside the bits or bytes of a grid, as folded words."""
+        return {role: {folded(text) for text in texts} for role, texts in self.data["registers"].items()}
+
+    @cached_property
+    def reserved(self) -> set[tuple[str, ...]]:
+        """Names of bits that have no meaning."""
+        return {folded(text) for text in self.data["reserved"]}
+
+    @cached_property
     def types(self) -> dict[str, dict]:
         return {"".join(folded(name)): rule for name, rule in self.data["types"].items()}
 

@@ -77,8 +77,10 @@ async def tcp(server: Server, host: str, port: int) -> tuple[str, object]:
             while data := await reader.read(65536):
                 server.received(data)
                 await writer.drain()
-        except (ConnectionError, OSError):
-            pass
+        except OSError:
+            return  # the client is gone
+        except asyncio.CancelledError:
+            return  # the simulator ends; asyncio would print the cancellation of what it started itself
         finally:
             server.clients.remove(send)
             writer.close()

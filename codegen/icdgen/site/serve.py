@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -73,6 +74,16 @@ def handler(source: Source) -> type[BaseHTTPRequestHandler]:
                 self._send(HTTPStatus.NOT_FOUND, ".html", _complaint(f"There is no page {name}"))
 
         do_HEAD = do_GET
+
+        def handle(self) -> None:
+            try:
+                super().handle()
+            except ConnectionError:
+                self.close_connection = True  # the browser went away, as browsers do
+
+        def finish(self) -> None:
+            with suppress(ConnectionError):
+                super().finish()
 
         def _send(self, status: HTTPStatus, suffix: str, text: str, **headers: str) -> None:
             data = text.encode("utf-8")

@@ -88,8 +88,8 @@ def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
         if field.scale:
             value = raw[field.name]
             assert isinstance(value, int)
-            physical[field.name] = field.scale.physical(value)
-            doubles[field.name] = bits_of(codec.physical_double(field, value) or 0.0)
+            exact = physical[field.name] = field.scale.physical(value)
+            doubles[field.name] = bits_of(codec.to_double(exact))
     return Row(why, frame, raw, codec.encode(node, message, raw), physical, doubles)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator
+from functools import lru_cache
 
 from icdgen.icd.model import Field, Message
 
@@ -40,6 +41,7 @@ def frames(message: Message) -> Iterator[tuple[str, bytes]]:
         yield f"random {number}", random_frame(message, f"vector {number}")
 
 
+@lru_cache(maxsize=1 << 12)
 def _position_code(length: int, number: int) -> bytes:
     """Bit p is bit ``number`` of p: over all numbers, no two bits of the frame hold the same code."""
     return bytes(sum(((byte * 8 + bit) >> number & 1) << bit for bit in range(8)) for byte in range(length))

@@ -6,8 +6,10 @@ import math
 import struct
 from collections.abc import Iterator
 from fractions import Fraction
+from functools import lru_cache
 
 from icdgen import codec
+from icdgen.icd.formula import Scale
 from icdgen.icd.model import Field
 
 # Refused by every field: NaN (quiet, signalling, negative), the infinities, and numbers beyond any raw value.
@@ -24,11 +26,18 @@ def bits_of(value: float) -> str:
 
 def settings(field: Field) -> list[tuple[str, int | None]]:
     """Doubles (as their bits) and the raw value that setting each must give; None where it must be refused."""
+    return list(_settings(field.type, field.bits, field.scale).items())
+
+
+@lru_cache(maxsize=1 << 12)
+def _settings(type: str, bits: int, scale: Scale) -> dict[str, int | None]:
+    """Those of all fields of this type, width and scale: many have the same."""
+    field = Field("", 0, bits, type, scale=scale)
     found: dict[str, int | None] = {}
     for value in _doubles(field):
         if math.isfinite(value):
             found[bits_of(value)] = _raw(field, value)
-    return list(found.items())
+    return found
 
 
 def _raw(field: Field, value: float) -> int | None:

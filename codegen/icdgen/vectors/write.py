@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from fractions import Fraction
+from functools import lru_cache
 
 from icdgen import __version__
 from icdgen.icd.model import Field
@@ -36,15 +37,22 @@ def text(vectors: NodeVectors) -> str:
 
 def decimal(value: Fraction) -> str:
     """The number as an exact decimal, ``-12.34``; as ``1/3`` where it has none."""
-    denominator, digits = value.denominator, 0
-    while denominator != 1 and 10**digits % value.denominator:
-        if digits > denominator.bit_length():
-            return f"{value.numerator}/{value.denominator}"
-        digits += 1
-    scaled = abs(value.numerator) * 10**digits // value.denominator
-    sign = "-" if value < 0 else ""
-    whole, part = divmod(scaled, 10**digits)
+    top, bottom = value.numerator, value.denominator
+    digits = _digits(bottom)
+    if digits is None:
+        return f"{top}/{bottom}"
+    whole, part = divmod(abs(top) * 10**digits // bottom, 10**digits)
+    sign = "-" if top < 0 else ""
     return f"{sign}{whole}.{part:0{digits}}" if digits else f"{sign}{whole}"
+
+
+@lru_cache(maxsize=1 << 12)
+def _digits(denominator: int) -> int | None:
+    """How many decimal digits a fraction of that denominator has; None if they never end."""
+    for digits in range(denominator.bit_length() + 1):
+        if not 10**digits % denominator:
+            return digits
+    return None
 
 
 def raw_json(field: Field, value: int | bytes) -> int | str:

@@ -8,7 +8,7 @@
  * Bootloader State: telemetry 132, 6 bytes. Table 69.
  * Up-time, SRAM state and error flags. The error flags stay set until Clear Error Flags.
  * @note Erratum BOOT-013 (open): Bootloader State: 6 bytes announced, 28 bits described.
- * \@note Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
+ * @note Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
  */
 
 #include "../icdgen.h"
@@ -22,7 +22,7 @@
 typedef struct {
     /**
      * Up-time (s): bits 0 to 15, raw 0 to 65535, in s.
-     * \@note Note BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds.
+     * @note Note BOOT-015 (certain): Bootloader State: Up-time is Uptime in seconds.
      */
     uint16_t uptime;
     /** SRAM1 is enabled: bit 16. */
@@ -31,12 +31,12 @@ typedef struct {
     bool sram2_is_enabled;
     /**
      * SRAM Latch-up Error occurred and could not be recovered: bit 18.
-     * \@note Note BOOT-017 (certain): Latch-up has three spellings.
+     * @note Note BOOT-017 (certain): Latch-up has three spellings.
      */
     bool sram_latchup_error;
     /**
      * SRAM Latch-up Occurred but recovered after power cycle: bit 19.
-     * \@note Note BOOT-017 (certain): Latch-up has three spellings.
+     * @note Note BOOT-017 (certain): Latch-up has three spellings.
      */
     bool sram_latchup_recovered;
     /** SD card initialisation error: bit 20. */
@@ -55,7 +55,7 @@ typedef struct {
     bool boot_register_corrupt;
     /**
      * Communications Error with Radio: bit 27.
-     * \@note Note BOOT-016 (open): Bootloader State: a radio that the manual does not know.
+     * @note Note BOOT-016 (open): Bootloader State: a radio that the manual does not know.
      */
     bool communications_error_with_radio;
 } bootloader_bootloader_state_t;

@@ -7,9 +7,10 @@
  * @file
  * Clear Error Flags: telecommand 7, 0 bytes. Table 61.
  * Clears the latched error flags of Bootloader State.
- * \@note Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
- * \@note Note BOOT-005 (certain): Clear Error Flags and Clear Errors.
- * \@note Note BOOT-006 (open): What the bootloader does with telecommands of the control program.
+ * @note Erratum BOOT-022 (certain): Clear Error Flags with a checksum deploys the magnetometer boom where CubeACP runs.
+ * @note Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
+ * @note Note BOOT-005 (certain): Clear Error Flags and Clear Errors.
+ * @note Note BOOT-006 (open): What the bootloader does with telecommands of the control program.
  */
 
 #include "../icdgen.h"

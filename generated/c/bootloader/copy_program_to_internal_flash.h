@@ -23,13 +23,13 @@
 typedef struct {
     /**
      * Source Program Index: bits 0 to 7.
-     * \@note Note BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense.
+     * @note Note BOOT-011 (open): Copy Program to Internal Flash: sources that make no sense.
      */
     bootloader_programs_list_t source_program_index;
     /**
      * Bootloader overwrite flag: bits 8 to 15, raw 0 to 255. To be used with great caution. 90 (0x5A): overwrite the
      * boot segment.
-     * \@note Note BOOT-012 (likely): Bootloader overwrite flag is a magic number.
+     * @note Note BOOT-012 (likely): Bootloader overwrite flag is a magic number.
      */
     uint8_t bootloader_overwrite_flag;
 } bootloader_copy_program_to_internal_flash_t;

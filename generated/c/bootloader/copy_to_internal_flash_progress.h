@@ -6,8 +6,8 @@
 /**
  * @file
  * Copy To Internal Flash Progress: telemetry 233, 1 byte. Table 71.
- * \@note Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
- * \@note Note BOOT-020 (open): Progress frame without progress.
+ * @note Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
+ * @note Note BOOT-020 (open): Progress frame without progress.
  */
 
 #include "../icdgen.h"

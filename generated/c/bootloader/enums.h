@@ -13,7 +13,7 @@
 
 /**
  * BootSetProgramsList: an enumeration. Table 63.
- * \@note Note BOOT-009 (certain): Three enumerations of program places.
+ * @note Note BOOT-009 (certain): Three enumerations of program places.
  */
 typedef uint8_t bootloader_boot_set_programs_list_t;
 
@@ -39,15 +39,15 @@ typedef uint8_t bootloader_programs_list_t;
 enum {
     /**
      * Bootloader (0).
-     * \@note Note BOOT-009 (certain): Three enumerations of program places.
+     * @note Note BOOT-009 (certain): Three enumerations of program places.
      */
     BOOTLOADER_PROGRAMS_LIST_BOOTLOADER = 0,
     /** Internal Flash Program (1). */
     BOOTLOADER_PROGRAMS_LIST_INTERNAL_FLASH_PROGRAM = 1,
     /**
      * EEPROM (2).
-     * \@note Note BOOT-009 (certain): Three enumerations of program places.
-     * \@note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+     * @note Note BOOT-009 (certain): Three enumerations of program places.
+     * @note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
      */
     BOOTLOADER_PROGRAMS_LIST_EEPROM = 2,
     /** External Flash Program 1 (3). */
@@ -66,42 +66,42 @@ enum {
     BOOTLOADER_PROGRAMS_LIST_EXTERNAL_FLASH_PROGRAM_7 = 9,
     /**
      * SD User file 1 (10).
-     * \@note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+     * @note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_1 = 10,
     /**
      * SD User file 2 (11).
-     * \@note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+     * @note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_2 = 11,
     /**
      * SD User file 3 (12).
-     * \@note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+     * @note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_3 = 12,
     /**
      * SD User file 4 (13).
-     * \@note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+     * @note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_4 = 13,
     /**
      * SD User file 5 (14).
-     * \@note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+     * @note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_5 = 14,
     /**
      * SD User file 6 (15).
-     * \@note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+     * @note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_6 = 15,
     /**
      * SD User file 7 (16).
-     * \@note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+     * @note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_7 = 16,
     /**
      * SD User file 8 (17).
-     * \@note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
+     * @note Note BOOT-010 (open): ProgramsList: places that are no flash programs.
      */
     BOOTLOADER_PROGRAMS_LIST_SD_USER_FILE_8 = 17
 };

@@ -7,7 +7,7 @@
  * @file
  * Program Information: telemetry 232, 8 bytes. Table 70.
  * Answer to Read Program Information, to be polled until it is not busy.
- * \@note Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
+ * @note Note BOOT-004 (certain): Ids 7, 132, 232 and 233 mean something else in the control program.
  */
 
 #include "../icdgen.h"
@@ -22,7 +22,7 @@
 typedef struct {
     /**
      * Program Index: bits 0 to 7.
-     * \@note Note BOOT-018 (open): Read Program Information: whether the answer belongs to the request.
+     * @note Note BOOT-018 (open): Read Program Information: whether the answer belongs to the request.
      */
     bootloader_programs_list_t program_index;
     /** Busy: bit 8. Still reading. */
@@ -30,12 +30,12 @@ typedef struct {
     /**
      * File Size: bits 16 to 47, raw 0 to 4294967295, in byte.
      * @note Erratum BOOT-021 (certain): Size of a program has its unit in words only.
-     * \@note Note BOOT-019 (open): Program Information: what the checksum covers.
+     * @note Note BOOT-019 (open): Program Information: what the checksum covers.
      */
     uint32_t file_size;
     /**
      * Checksum: bits 48 to 63, raw 0 to 65535. CRC-16.
-     * \@note Note BOOT-019 (open): Program Information: what the checksum covers.
+     * @note Note BOOT-019 (open): Program Information: what the checksum covers.
      */
     uint16_t checksum;
 } bootloader_program_information_t;

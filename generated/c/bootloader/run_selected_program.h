@@ -8,7 +8,7 @@
  * Run Selected Program: telecommand 101, 0 bytes. Table 64.
  * Starts the program in internal flash at once.
  * The node restarts instead of acknowledging it.
- * \@note Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere.
+ * @note Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere.
  */
 
 #include "../icdgen.h"

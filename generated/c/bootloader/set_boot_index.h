@@ -21,7 +21,7 @@
 typedef struct {
     /**
      * Program Index: bits 0 to 7.
-     * \@note Note BOOT-007 (certain): Set Boot Index selects among one.
+     * @note Note BOOT-007 (certain): Set Boot Index selects among one.
      */
     bootloader_boot_set_programs_list_t program_index;
 } bootloader_set_boot_index_t;

@@ -7,8 +7,8 @@
  * @file
  * Advance Log Pointer: telecommand 5, 0 bytes. Table 12.
  * Moves the pointer of Last Logged Event forward.
- * \@note Note COM-030 (certain): Log pointer telecommands speak of a frame that is named otherwise.
- * \@note Note COM-031 (open): Log pointer: where it starts and which way it advances.
+ * @note Note COM-030 (certain): Log pointer telecommands speak of a frame that is named otherwise.
+ * @note Note COM-031 (open): Log pointer: where it starts and which way it advances.
  */
 
 #include "../icdgen.h"

@@ -7,7 +7,7 @@
  * @file
  * Block Checksum: telemetry 246, 2 bytes. Table 46.
  * CRC-16 of the received upload block, to be compared before the block is finalized.
- * \@note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
+ * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
  */
 
 #include "../icdgen.h"
@@ -21,7 +21,7 @@
 typedef struct {
     /**
      * Checksum: bits 0 to 15, raw 0 to 65535.
-     * \@note Note COM-106 (open): Checksum of an uploaded block is asked for before its length is known.
+     * @note Note COM-106 (open): Checksum of an uploaded block is asked for before its length is known.
      */
     uint16_t checksum;
 } common_block_checksum_t;

@@ -7,7 +7,7 @@
  * @file
  * Boot And Running Program Status: telemetry 129, 6 bytes. Table 28.
  * Causes of the last reset and reboot, and the running program.
- * \@note Note COM-062 (certain): Capitals of the boot status frame differ in the text.
+ * @note Note COM-062 (certain): Capitals of the boot status frame differ in the text.
  */
 
 #include "../icdgen.h"
@@ -22,29 +22,29 @@
 typedef struct {
     /**
      * Cause of MCU Reset: bits 0 to 3. From a hardware register of the MCU.
-     * \@note Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
+     * @note Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
      */
     common_reset_cause_t cause_of_mcu_reset;
     /**
      * Boot Cause: bits 4 to 7. Why the CubeComputer last rebooted.
-     * \@note Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
+     * @note Note COM-059 (open): Cause of MCU Reset and Boot Cause overlap.
      */
     common_boot_cause_t boot_cause;
     /**
      * Boot Counter: bits 8 to 23, raw 0 to 65535. How often the CubeComputer has booted.
-     * \@note Note COM-058 (certain): Reset Counter and Boot Counter are the same field.
+     * @note Note COM-058 (certain): Reset Counter and Boot Counter are the same field.
      */
     uint16_t boot_counter;
     /** Boot Program Index: bits 24 to 31. Where the running program is stored. */
     common_boot_programs_list_t boot_program_index;
     /**
      * Firmware version (Major): bits 32 to 39, raw 0 to 255.
-     * \@note Note COM-061 (open): Firmware version stands in two frames.
+     * @note Note COM-061 (open): Firmware version stands in two frames.
      */
     uint8_t firmware_version_major;
     /**
      * Firmware version (Minor): bits 40 to 47, raw 0 to 255.
-     * \@note Note COM-061 (open): Firmware version stands in two frames.
+     * @note Note COM-061 (open): Firmware version stands in two frames.
      */
     uint8_t firmware_version_minor;
 } common_boot_and_running_program_status_t;

@@ -21,7 +21,7 @@
 typedef struct {
     /**
      * Program Index: bits 0 to 7.
-     * \@note Note COM-069 (open): Program Index of the boot status can be the bootloader.
+     * @note Note COM-069 (open): Program Index of the boot status can be the bootloader.
      */
     common_boot_programs_list_t program_index;
     /** Boot Status: bits 8 to 15. */

@@ -21,48 +21,48 @@
 typedef struct {
     /**
      * Telecommand counter: bits 0 to 15, raw 0 to 65535. Telecommands received.
-     * \@note Note COM-082 (open): Counters: served or received.
+     * @note Note COM-082 (open): Counters: served or received.
      */
     uint16_t telecommand_counter;
     /**
      * Telemetry request counter: bits 16 to 31, raw 0 to 65535. Requests received.
-     * \@note Note COM-082 (open): Counters: served or received.
+     * @note Note COM-082 (open): Counters: served or received.
      */
     uint16_t telemetry_request_counter;
     /**
      * Telecommand buffer overrun: bit 32. The buffer overflowed while a telecommand came in.
-     * \@note Note COM-081 (open): Which telecommand clears the communication error flags.
+     * @note Note COM-081 (open): Which telecommand clears the communication error flags.
      */
     bool telecommand_buffer_overrun;
     /**
      * UART protocol error: bit 33.
-     * \@note Note COM-078 (open): UART: what a receiver does on an invalid escape or an unfinished message.
-     * \@note Note COM-081 (open): Which telecommand clears the communication error flags.
+     * @note Note COM-078 (open): UART: what a receiver does on an invalid escape or an unfinished message.
+     * @note Note COM-081 (open): Which telecommand clears the communication error flags.
      */
     bool uart_protocol_error;
     /**
      * UART incomplete message: bit 34. A message began before the one before it had ended.
-     * \@note Note COM-078 (open): UART: what a receiver does on an invalid escape or an unfinished message.
-     * \@note Note COM-081 (open): Which telecommand clears the communication error flags.
+     * @note Note COM-078 (open): UART: what a receiver does on an invalid escape or an unfinished message.
+     * @note Note COM-081 (open): Which telecommand clears the communication error flags.
      */
     bool uart_incomplete_message;
     /**
      * I2C telemetry error: bit 35. More bytes were read than the frame has. Stays set until Clear Errors.
-     * \@note Note COM-079 (open): I2C telemetry error: too many bytes, or any wrong number.
-     * \@note Note COM-080 (likely): I2C: reading one byte more is both an error and the way to get the checksum.
-     * \@note Note COM-081 (open): Which telecommand clears the communication error flags.
+     * @note Note COM-079 (open): I2C telemetry error: too many bytes, or any wrong number.
+     * @note Note COM-080 (likely): I2C: reading one byte more is both an error and the way to get the checksum.
+     * @note Note COM-081 (open): Which telecommand clears the communication error flags.
      */
     bool i2c_telemetry_error;
     /**
      * I2C telecommand buffer error: bit 36. A telecommand was longer than the buffer.
-     * \@note Note COM-081 (open): Which telecommand clears the communication error flags.
-     * \@note Note COM-083 (open): Two buffer errors have the same description.
+     * @note Note COM-081 (open): Which telecommand clears the communication error flags.
+     * @note Note COM-083 (open): Two buffer errors have the same description.
      */
     bool i2c_telecommand_buffer_error;
     /**
      * CAN telecommand buffer error: bit 37. A telecommand was longer than the buffer.
-     * \@note Note COM-081 (open): Which telecommand clears the communication error flags.
-     * \@note Note COM-083 (open): Two buffer errors have the same description.
+     * @note Note COM-081 (open): Which telecommand clears the communication error flags.
+     * @note Note COM-083 (open): Two buffer errors have the same description.
      */
     bool can_telecommand_buffer_error;
 } common_communication_status_t;

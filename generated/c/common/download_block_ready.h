@@ -7,7 +7,7 @@
  * @file
  * Download Block Ready: telemetry 242, 5 bytes. Table 42.
  * Whether the block asked for by Load File Download Block is in the buffer.
- * \@note Note COM-093 (open): Polling has no interval and no time-out.
+ * @note Note COM-093 (open): Polling has no interval and no time-out.
  */
 
 #include "../icdgen.h"
@@ -23,7 +23,7 @@ typedef struct {
     bool ready;
     /**
      * ParameterError: bit 1. Message length and hole map together led to invalid array lengths.
-     * \@note Note COM-097 (open): ParameterError refers to arrays that no message has.
+     * @note Note COM-097 (open): ParameterError refers to arrays that no message has.
      */
     bool parameter_error;
     /** Block CRC16 Checksum: bits 8 to 23, raw 0 to 65535. */

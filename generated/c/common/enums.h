@@ -13,7 +13,7 @@
 
 /**
  * FileType: an enumeration. Table 16.
- * \@note Note COM-037 (open): FileType begins at 2 and jumps to 15.
+ * @note Note COM-037 (open): FileType begins at 2 and jumps to 15.
  */
 typedef uint8_t common_file_type_t;
 
@@ -26,7 +26,7 @@ enum {
     COMMON_FILE_TYPE_BMP_IMAGE = 4,
     /**
      * Index (15).
-     * \@note Note COM-038 (open): Index file: neither length nor counter is given.
+     * @note Note COM-038 (open): Index file: neither length nor counter is given.
      */
     COMMON_FILE_TYPE_INDEX = 15
 };
@@ -50,14 +50,14 @@ static inline const char *common_file_type_name(common_file_type_t value)
 
 /**
  * FileUploadDestination: an enumeration. Table 20. The SD card destinations are not supported.
- * \@note Note COM-045 (certain): Names of the flash areas differ between two lists.
+ * @note Note COM-045 (certain): Names of the flash areas differ between two lists.
  */
 typedef uint8_t common_file_upload_destination_t;
 
 enum {
     /**
      * EEPROM (2).
-     * \@note Note COM-044 (open): FileUploadDestination: EEPROM is listed, the text knows flash only.
+     * @note Note COM-044 (open): FileUploadDestination: EEPROM is listed, the text knows flash only.
      */
     COMMON_FILE_UPLOAD_DESTINATION_EEPROM = 2,
     /** Flash program 1 (3). */
@@ -76,42 +76,42 @@ enum {
     COMMON_FILE_UPLOAD_DESTINATION_FLASH_PROGRAM_7 = 9,
     /**
      * SD User file 1 (10).
-     * \@note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+     * @note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_1 = 10,
     /**
      * SD User file 2 (11).
-     * \@note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+     * @note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_2 = 11,
     /**
      * SD User file 3 (12).
-     * \@note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+     * @note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_3 = 12,
     /**
      * SD User file 4 (13).
-     * \@note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+     * @note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_4 = 13,
     /**
      * SD User file 5 (14).
-     * \@note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+     * @note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_5 = 14,
     /**
      * SD User file 6 (15).
-     * \@note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+     * @note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_6 = 15,
     /**
      * SD User file 7 (16).
-     * \@note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+     * @note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_7 = 16,
     /**
      * SD User file 8 (17).
-     * \@note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
+     * @note Note COM-043 (certain): FileUploadDestination: eight members are not supported.
      */
     COMMON_FILE_UPLOAD_DESTINATION_SD_USER_FILE_8 = 17
 };
@@ -183,24 +183,24 @@ enum {
     COMMON_RESET_CAUSE_BACKUP_BROWN_OUT = 9,
     /**
      * Backup Mode Reset (10).
-     * \@note Note COM-064 (certain): ResetCause: two spellings of one source.
+     * @note Note COM-064 (certain): ResetCause: two spellings of one source.
      */
     COMMON_RESET_CAUSE_BACKUP_MODE_RESET = 10,
     /**
      * Backup Mode RST and Backup Brown-Out Vdd Regulated (11). Backup mode reset together with a brown-out of the
      * backup domain on regulated VDD.
-     * \@note Note COM-064 (certain): ResetCause: two spellings of one source.
+     * @note Note COM-064 (certain): ResetCause: two spellings of one source.
      */
     COMMON_RESET_CAUSE_BACKUP_MODE_AND_BACKUP_BROWN_OUT = 11,
     /**
      * BackupModeRST and Backup Brown-Out Vdd Regulated and Brown-Out Regulated (12). As 11, and a brown-out on
      * regulated power.
-     * \@note Note COM-064 (certain): ResetCause: two spellings of one source.
+     * @note Note COM-064 (certain): ResetCause: two spellings of one source.
      */
     COMMON_RESET_CAUSE_BACKUP_MODE_AND_BOTH_BROWN_OUTS = 12,
     /**
      * Backup Mode RST and Watchdog Reset (13).
-     * \@note Note COM-064 (certain): ResetCause: two spellings of one source.
+     * @note Note COM-064 (certain): ResetCause: two spellings of one source.
      */
     COMMON_RESET_CAUSE_BACKUP_MODE_AND_WATCHDOG_RESET = 13,
     /** Backup Brown-Out BuvIn and System Request Reset (14). The brown-out is that of the backup domain on BUVIN. */
@@ -266,7 +266,7 @@ enum {
     COMMON_BOOT_CAUSE_NOT_USED_1 = 1,
     /**
      * Communications Timeout (2). Nothing was received for too long.
-     * \@note Note COM-067 (open): BootCause: a communications time-out that is described nowhere.
+     * @note Note COM-067 (open): BootCause: a communications time-out that is described nowhere.
      */
     COMMON_BOOT_CAUSE_COMMUNICATIONS_TIMEOUT = 2,
     /** Commanded (3). */
@@ -309,7 +309,7 @@ enum {
     COMMON_BOOT_PROGRAMS_LIST_INTERNAL_FLASH_PROGRAM = 1,
     /**
      * Bootloader (2).
-     * \@note Note COM-068 (certain): BootProgramsList numbers the bootloader 2, ProgramsList 0.
+     * @note Note COM-068 (certain): BootProgramsList numbers the bootloader 2, ProgramsList 0.
      */
     COMMON_BOOT_PROGRAMS_LIST_BOOTLOADER = 2
 };
@@ -330,7 +330,7 @@ static inline const char *common_boot_programs_list_name(common_boot_programs_li
 /**
  * BootStatus: an enumeration. Table 33. Kept in flash. The bootloader counts up before each attempt, the program sets
  * Boot Success once it runs.
- * \@note Note COM-070 (open): Boot Status: whether the third attempt still takes place.
+ * @note Note COM-070 (open): Boot Status: whether the third attempt still takes place.
  */
 typedef uint8_t common_boot_status_t;
 
@@ -341,15 +341,15 @@ enum {
     COMMON_BOOT_STATUS_BOOT_SUCCESS = 1,
     /**
      * 1 Failed boot attempt (2).
-     * \@note Note COM-071 (certain): Boot Status values are named differently in the text.
-     * \@note Note COM-072 (likely): Boot Status 2 is also written before the very first start.
+     * @note Note COM-071 (certain): Boot Status values are named differently in the text.
+     * @note Note COM-072 (likely): Boot Status 2 is also written before the very first start.
      */
     COMMON_BOOT_STATUS_FAILED_BOOT_ATTEMPT_1 = 2,
     /** 2 Failed boot attempts (3). */
     COMMON_BOOT_STATUS_FAILED_BOOT_ATTEMPTS_2 = 3,
     /**
      * 3 Failed boot attempts (4).
-     * \@note Note COM-071 (certain): Boot Status values are named differently in the text.
+     * @note Note COM-071 (certain): Boot Status values are named differently in the text.
      */
     COMMON_BOOT_STATUS_FAILED_BOOT_ATTEMPTS_3 = 4
 };
@@ -387,8 +387,8 @@ enum {
     COMMON_TC_ERROR_REASON_INCORRECT_PARAMETER = 3,
     /**
      * CRC check failed (4).
-     * \@note Note COM-095 (certain): Reasons for a TC error: three in the text, four in the table.
-     * \@note Note COM-096 (likely): CRC check failed is common, the checksum is not.
+     * @note Note COM-095 (certain): Reasons for a TC error: three in the text, four in the table.
+     * @note Note COM-096 (likely): CRC check failed is common, the checksum is not.
      */
     COMMON_TC_ERROR_REASON_CRC_CHECK_FAILED = 4
 };

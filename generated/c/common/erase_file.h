@@ -7,7 +7,7 @@
  * @file
  * Erase File: telecommand 108, 3 bytes. Table 15.
  * Deletes one file of the SD card or all of them. Erasing all takes some time: see SD card format/erase progress.
- * \@note Note COM-034 (open): Erase File: what the other fields mean with Erase All.
+ * @note Note COM-034 (open): Erase File: what the other fields mean with Erase All.
  */
 
 #include "../icdgen.h"
@@ -24,7 +24,7 @@ typedef struct {
     common_file_type_t file_type;
     /**
      * File Counter: bits 8 to 15, raw 0 to 255.
-     * \@note Note COM-035 (open): File counter of 8 bits.
+     * @note Note COM-035 (open): File counter of 8 bits.
      */
     uint8_t file_counter;
     /** Erase All: bit 16. All files instead of this one. */

@@ -7,8 +7,8 @@
  * @file
  * File Download Buffer with File Contents: telemetry 241, 22 bytes. Table 41.
  * One packet of a download burst. On the UART the packets come unasked, with the id of Initiate Download Burst.
- * \@note Note COM-051 (certain): Messages of the download have other names in the text.
- * \@note Note COM-052 (open): Download packets: id of the telecommand or of the frame.
+ * @note Note COM-051 (certain): Messages of the download have other names in the text.
+ * @note Note COM-052 (open): Download packets: id of the telecommand or of the frame.
  */
 
 #include "../icdgen.h"
@@ -22,13 +22,13 @@
 typedef struct {
     /**
      * Packet counter: bits 0 to 15, raw 0 to 65535. Position of the packet in the burst.
-     * \@note Note COM-047 (likely): Packet numbers: from 0 or from 1.
+     * @note Note COM-047 (likely): Packet numbers: from 0 or from 1.
      */
     uint16_t packet_counter;
     /**
      * File bytes: bytes 2 to 21.
-     * \@note Note COM-029 (certain): One field, several spellings.
-     * \@note Note COM-048 (open): Last packet of a block: fill is not defined.
+     * @note Note COM-029 (certain): One field, several spellings.
+     * @note Note COM-048 (open): Last packet of a block: fill is not defined.
      */
     uint8_t file_bytes[20];
 } common_file_download_buffer_with_file_contents_t;

@@ -7,8 +7,8 @@
  * @file
  * File Information: telemetry 243, 12 bytes. Table 43.
  * The file at the list pointer. All zeros with Busy Updating clear: the end of the list.
- * \@note Note COM-093 (open): Polling has no interval and no time-out.
- * \@note Note COM-102 (certain): File information and index entry order the same items differently.
+ * @note Note COM-093 (open): Polling has no interval and no time-out.
+ * @note Note COM-102 (certain): File information and index entry order the same items differently.
  */
 
 #include "../icdgen.h"
@@ -25,13 +25,13 @@ typedef struct {
     common_file_type_t file_type;
     /**
      * Busy Updating: bit 4. The other fields are valid once this is clear.
-     * \@note Note COM-101 (certain): Busy Updating has no description.
+     * @note Note COM-101 (certain): Busy Updating has no description.
      */
     bool busy_updating;
     /**
      * File Ctr: bits 8 to 15, raw 0 to 255. With the type it identifies the file.
-     * \@note Note COM-029 (certain): One field, several spellings.
-     * \@note Note COM-035 (open): File counter of 8 bits.
+     * @note Note COM-029 (certain): One field, several spellings.
+     * @note Note COM-035 (open): File counter of 8 bits.
      */
     uint8_t file_ctr;
     /**
@@ -42,7 +42,7 @@ typedef struct {
     /**
      * File Date and Time: bits 48 to 79, raw 0 to 4294967295, in MS-DOS time. In MS-DOS format.
      * @note Erratum COM-099 (certain): File Date and Time: a packed date in seconds.
-     * \@note Note COM-100 (open): Time zone of file times is not given.
+     * @note Note COM-100 (open): Time zone of file times is not given.
      */
     uint32_t file_date_and_time;
     /** File CRC16 Checksum: bits 80 to 95, raw 0 to 65535. */

@@ -8,9 +8,9 @@
  * File Upload Packet: telecommand 115, 22 bytes. Table 21.
  * One packet of a block. Packets may follow one another without a pause.
  * The node does not acknowledge it.
- * \@note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
- * \@note Note COM-046 (likely): File Upload Packet is not acknowledged, against the rule.
- * \@note Note COM-125 (certain): File Upload Packet: messages of 20 bytes, parameters of 22.
+ * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
+ * @note Note COM-046 (likely): File Upload Packet is not acknowledged, against the rule.
+ * @note Note COM-125 (certain): File Upload Packet: messages of 20 bytes, parameters of 22.
  */
 
 #include "../icdgen.h"
@@ -24,12 +24,12 @@
 typedef struct {
     /**
      * Packet Number: bits 0 to 15, raw 0 to 65535.
-     * \@note Note COM-047 (likely): Packet numbers: from 0 or from 1.
+     * @note Note COM-047 (likely): Packet numbers: from 0 or from 1.
      */
     uint16_t packet_number;
     /**
      * File Bytes: bytes 2 to 21.
-     * \@note Note COM-048 (open): Last packet of a block: fill is not defined.
+     * @note Note COM-048 (open): Last packet of a block: fill is not defined.
      */
     uint8_t file_bytes[20];
 } common_file_upload_packet_t;

@@ -7,8 +7,8 @@
  * @file
  * Finalize Upload Block: telecommand 116, 7 bytes. Table 22.
  * Commits the received block to its destination.
- * \@note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
- * \@note Note COM-049 (likely): Finalize Upload Block is missing from the procedure.
+ * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
+ * @note Note COM-049 (likely): Finalize Upload Block is missing from the procedure.
  */
 
 #include "../icdgen.h"

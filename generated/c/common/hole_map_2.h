@@ -7,10 +7,10 @@
  * @file
  * Hole Map 2: configuration, set by telecommand 121, got by telemetry 248, 16 bytes. Table 53.
  * Packets 128 to 255 of a file block.
- * \@note Note COM-115 (certain): Hole maps are named for the upload and serve the download too.
- * \@note Note COM-116 (open): Hole map: who clears it before a download.
- * \@note Note COM-117 (likely): Hole map: bits beyond the last packet.
- * \@note Note COM-124 (certain): The hole map is read with eight frames, one table is referred to.
+ * @note Note COM-115 (certain): Hole maps are named for the upload and serve the download too.
+ * @note Note COM-116 (open): Hole map: who clears it before a download.
+ * @note Note COM-117 (likely): Hole map: bits beyond the last packet.
+ * @note Note COM-124 (certain): The hole map is read with eight frames, one table is referred to.
  */
 
 #include "../icdgen.h"

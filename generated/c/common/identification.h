@@ -7,7 +7,7 @@
  * @file
  * Identification: telemetry 128, 8 bytes. Table 27.
  * Tells which program is running. Requesting it from the bootloader keeps it from booting on.
- * \@note Note COM-054 (likely): The identification request stops the boot that it is to check.
+ * @note Note COM-054 (likely): The identification request stops the boot that it is to check.
  */
 
 #include "../icdgen.h"
@@ -33,7 +33,7 @@ typedef struct {
     /**
      * Runtime (seconds): bits 32 to 47, raw 0 to 65535, in s. Since the processor started.
      * @note Erratum COM-057 (certain): Runtime has its unit in words only.
-     * \@note Note COM-056 (open): Runtime ends after 18 hours.
+     * @note Note COM-056 (open): Runtime ends after 18 hours.
      */
     uint16_t runtime_seconds;
     /**

@@ -7,9 +7,9 @@
  * @file
  * Initialize Upload Complete: telemetry 244, 1 byte. Table 44.
  * Polled after Initiate File Upload.
- * \@note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
- * \@note Note COM-104 (certain): Upload is initiated, initialized and finalized under changing names.
- * \@note Note COM-105 (open): Initialisation of an upload can fail silently.
+ * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
+ * @note Note COM-104 (certain): Upload is initiated, initialized and finalized under changing names.
+ * @note Note COM-105 (open): Initialisation of an upload can fail silently.
  */
 
 #include "../icdgen.h"
@@ -23,7 +23,7 @@
 typedef struct {
     /**
      * Busy: bit 0. Still preparing, for instance erasing flash.
-     * \@note Note COM-103 (certain): Frames named complete report busy.
+     * @note Note COM-103 (certain): Frames named complete report busy.
      */
     bool busy;
 } common_initialize_upload_complete_t;

@@ -8,9 +8,9 @@
  * Initiate Download Burst: telecommand 119, 2 bytes. Table 25.
  * Starts the transfer of the loaded block. On the UART the packets come in rapid succession, on I2C the master reads
  * them one by one.
- * \@note Note COM-051 (certain): Messages of the download have other names in the text.
- * \@note Note COM-052 (open): Download packets: id of the telecommand or of the frame.
- * \@note Note COM-053 (open): Download over CAN is not described.
+ * @note Note COM-051 (certain): Messages of the download have other names in the text.
+ * @note Note COM-052 (open): Download packets: id of the telecommand or of the frame.
+ * @note Note COM-053 (open): Download over CAN is not described.
  */
 
 #include "../icdgen.h"
@@ -24,7 +24,7 @@
 typedef struct {
     /**
      * Message Length: bits 0 to 7, raw 0 to 255.
-     * \@note Note COM-050 (open): Initiate Download Burst: Message Length is not explained.
+     * @note Note COM-050 (open): Initiate Download Burst: Message Length is not explained.
      */
     uint8_t message_length;
     /** Ignore Hole Map: bit 8. Set: all packets. Clear: only those whose bit in the hole map is 0. */

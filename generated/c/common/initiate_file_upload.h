@@ -7,7 +7,7 @@
  * @file
  * Initiate File Upload: telecommand 114, 2 bytes. Table 19.
  * Erases the destination. Initialize Upload Complete tells when that is done.
- * \@note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
+ * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
  */
 
 #include "../icdgen.h"
@@ -24,7 +24,7 @@ typedef struct {
     common_file_upload_destination_t destination;
     /**
      * BlockSize: bits 8 to 15, raw 0 to 255. Ignored, may be 0.
-     * \@note Note COM-042 (certain): BlockSize is a byte and ignored.
+     * @note Note COM-042 (certain): BlockSize is a byte and ignored.
      */
     uint8_t block_size;
 } common_initiate_file_upload_t;

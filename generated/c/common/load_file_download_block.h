@@ -25,8 +25,8 @@ typedef struct {
     common_file_type_t file_type;
     /**
      * Counter: bits 8 to 15, raw 0 to 255. Of the file: with the type it identifies the file.
-     * \@note Note COM-029 (certain): One field, several spellings.
-     * \@note Note COM-035 (open): File counter of 8 bits.
+     * @note Note COM-029 (certain): One field, several spellings.
+     * @note Note COM-035 (open): File counter of 8 bits.
      */
     uint8_t counter;
     /**
@@ -37,7 +37,7 @@ typedef struct {
     /**
      * BlockLength: bits 48 to 63, raw 0 to 65535, in byte. 20 kB at most. Must be at most 20480 byte.
      * @note Erratum COM-039 (likely): Offsets and lengths of files have no unit.
-     * \@note Note COM-029 (certain): One field, several spellings.
+     * @note Note COM-029 (certain): One field, several spellings.
      */
     uint16_t block_length;
 } common_load_file_download_block_t;

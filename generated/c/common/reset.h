@@ -8,7 +8,7 @@
  * Reset: telecommand 1, 1 byte. Table 10.
  * Restarts the CubeComputer.
  * The node restarts instead of acknowledging it.
- * \@note Note COM-028 (open): The Reset telecommand: acknowledged or not.
+ * @note Note COM-028 (open): The Reset telecommand: acknowledged or not.
  */
 
 #include "../icdgen.h"
@@ -24,7 +24,7 @@
 typedef struct {
     /**
      * Magic number: bits 0 to 7, raw 0 to 255. Guards against an accidental reset. Always 90 (0x5A).
-     * \@note Note COM-029 (certain): One field, several spellings.
+     * @note Note COM-029 (certain): One field, several spellings.
      */
     uint8_t magic_number;
 } common_reset_t;

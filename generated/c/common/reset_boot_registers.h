@@ -7,7 +7,7 @@
  * @file
  * Reset Boot Registers: telecommand 6, 0 bytes. Table 13.
  * Resets the boot counter, boot state and boot cause.
- * \@note Note COM-032 (likely): Reset Boot Registers: a Boot State that no frame has, and no values to reset to.
+ * @note Note COM-032 (likely): Reset Boot Registers: a Boot State that no frame has, and no values to reset to.
  */
 
 #include "../icdgen.h"

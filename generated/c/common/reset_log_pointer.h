@@ -7,8 +7,8 @@
  * @file
  * Reset Log Pointer: telecommand 4, 0 bytes. Table 11.
  * Resets the pointer at which Last Logged Event reads the event buffer.
- * \@note Note COM-030 (certain): Log pointer telecommands speak of a frame that is named otherwise.
- * \@note Note COM-031 (open): Log pointer: where it starts and which way it advances.
+ * @note Note COM-030 (certain): Log pointer telecommands speak of a frame that is named otherwise.
+ * @note Note COM-031 (open): Log pointer: where it starts and which way it advances.
  */
 
 #include "../icdgen.h"

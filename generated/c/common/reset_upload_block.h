@@ -7,8 +7,8 @@
  * @file
  * Reset Upload Block: telecommand 117, 0 bytes. Table 23.
  * Announces a new block by clearing the hole map.
- * \@note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
- * \@note Note COM-126 (certain): Reset Upload Block tells the node of a block, and does not say which.
+ * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
+ * @note Note COM-126 (certain): Reset Upload Block tells the node of a block, and does not say which.
  */
 
 #include "../icdgen.h"

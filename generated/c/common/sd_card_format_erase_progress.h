@@ -7,7 +7,7 @@
  * @file
  * SD card format/erase progress: telemetry 234, 1 byte. Table 38.
  * Whether the SD card is still being formatted or erased.
- * \@note Note COM-085 (open): Erase File: progress and failure.
+ * @note Note COM-085 (open): Erase File: progress and failure.
  */
 
 #include "../icdgen.h"
@@ -23,7 +23,7 @@ typedef struct {
     bool format_busy;
     /**
      * Erase All Busy: bit 1. All files are being erased.
-     * \@note Note COM-086 (certain): Erase All Busy: two verbs for one.
+     * @note Note COM-086 (certain): Erase All Busy: two verbs for one.
      */
     bool erase_all_busy;
 } common_sd_card_format_erase_progress_t;

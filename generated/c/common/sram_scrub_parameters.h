@@ -21,7 +21,7 @@
 typedef struct {
     /**
      * Scrub Size: bits 0 to 15, raw 0 to 65535.
-     * \@note Note COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit.
+     * @note Note COM-109 (open): SRAM Scrub Parameters: plural for one, and no unit.
      */
     uint16_t scrub_size;
 } common_sram_scrub_parameters_t;

@@ -7,8 +7,8 @@
  * @file
  * Telecommand Acknowledge: telemetry 240, 4 bytes. Table 39.
  * What became of the last telecommand. Meant for I2C, where the node cannot answer of its own accord.
- * \@note Note COM-092 (certain): The procedure polls a thing called Telemetry Format.
- * \@note Note COM-093 (open): Polling has no interval and no time-out.
+ * @note Note COM-092 (certain): The procedure polls a thing called Telemetry Format.
+ * @note Note COM-093 (open): Polling has no interval and no time-out.
  */
 
 #include "../icdgen.h"
@@ -23,24 +23,24 @@
 typedef struct {
     /**
      * Last TC ID: bits 0 to 7, raw 0 to 255.
-     * \@note Note COM-090 (open): Last TC ID is of the last received, the error of the last processed.
+     * @note Note COM-090 (open): Last TC ID is of the last received, the error of the last processed.
      */
     uint8_t last_tc_id;
     /**
      * Processed flag: bit 8. The next telecommand may be sent. Says nothing about the outcome of the last one.
-     * \@note Note COM-088 (certain): Processed flag has three names.
-     * \@note Note COM-089 (open): Processed flag: processed or merely taken over.
+     * @note Note COM-088 (certain): Processed flag has three names.
+     * @note Note COM-089 (open): Processed flag: processed or merely taken over.
      */
     bool processed_flag;
     /**
      * TC error status: bits 16 to 23.
-     * \@note Note COM-087 (certain): TC Error is called a flag and is a code.
-     * \@note Note COM-090 (open): Last TC ID is of the last received, the error of the last processed.
+     * @note Note COM-087 (certain): TC Error is called a flag and is a code.
+     * @note Note COM-090 (open): Last TC ID is of the last received, the error of the last processed.
      */
     common_tc_error_reason_t tc_error_status;
     /**
      * TC parameter error index: bits 24 to 31, raw 0 to 255. Which parameter was wrong.
-     * \@note Note COM-091 (open): TC parameter error index: index of what.
+     * @note Note COM-091 (open): TC parameter error index: index of what.
      */
     uint8_t tc_parameter_error_index;
 } common_telecommand_acknowledge_t;

@@ -7,7 +7,7 @@
  * @file
  * Unix Time Save to Flash: configuration, set by telecommand 9, got by telemetry 145, 2 bytes. Table 51.
  * When the Unix time is kept in flash, so that it survives a power cycle.
- * \@note Note COM-112 (certain): Unix Time Save to Flash is described in two spellings.
+ * @note Note COM-112 (certain): Unix Time Save to Flash is described in two spellings.
  */
 
 #include "../icdgen.h"
@@ -23,7 +23,7 @@
 typedef struct {
     /**
      * Save Now: bit 0. Saves once.
-     * \@note Note COM-113 (open): Save Now is an action among settings.
+     * @note Note COM-113 (open): Save Now is an action among settings.
      */
     bool save_now;
     /** Save On Update: bit 1. Saves whenever the time is set. */
@@ -32,7 +32,7 @@ typedef struct {
     bool save_periodic;
     /**
      * Period: bits 8 to 15, raw 0 to 255, in s.
-     * \@note Note COM-114 (open): Saving period: meaning of 0.
+     * @note Note COM-114 (open): Saving period: meaning of 0.
      */
     uint8_t period;
 } common_unix_time_save_to_flash_t;

@@ -7,10 +7,10 @@
  * @file
  * Upload Block Complete: telemetry 245, 1 byte. Table 45.
  * Polled after Finalize Upload Block.
- * \@note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
- * \@note Note COM-049 (likely): Finalize Upload Block is missing from the procedure.
- * \@note Note COM-093 (open): Polling has no interval and no time-out.
- * \@note Note COM-104 (certain): Upload is initiated, initialized and finalized under changing names.
+ * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
+ * @note Note COM-049 (likely): Finalize Upload Block is missing from the procedure.
+ * @note Note COM-093 (open): Polling has no interval and no time-out.
+ * @note Note COM-104 (certain): Upload is initiated, initialized and finalized under changing names.
  */
 
 #include "../icdgen.h"
@@ -24,7 +24,7 @@
 typedef struct {
     /**
      * Busy: bit 0. Still finalizing the block.
-     * \@note Note COM-103 (certain): Frames named complete report busy.
+     * @note Note COM-103 (certain): Frames named complete report busy.
      */
     bool busy;
     /** Error: bit 1. Finalizing the block failed. */

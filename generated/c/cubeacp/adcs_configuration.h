@@ -15,8 +15,8 @@
  * Tracking Controller Gain Parameters from byte 310. Repeats Moment of Inertia Matrix from byte 323. Repeats Estimation
  * Parameters from byte 347. Repeats Augmented-SGP4 Parameters from byte 378. Repeats User-coded Controller and
  * Estimator Parameters from byte 408.
- * \@note Note ACP-020 (open): Reserved bits.
- * \@note Note ACP-159 (open): The current configuration is not all of it.
+ * @note Note ACP-020 (open): Reserved bits.
+ * @note Note ACP-159 (open): The current configuration is not all of it.
  */
 
 #include "../icdgen.h"
@@ -63,7 +63,7 @@ typedef struct {
     int16_t z_rate_sensor_offset;
     /**
      * RateSensorMult: bits 128 to 135, raw 0 to 255. Factor on the rate sensor measurements.
-     * \@note Note ACP-130 (open): RateSensorMult has no scale and no blanks.
+     * @note Note ACP-130 (open): RateSensorMult has no scale and no blanks.
      */
     uint8_t rate_sensor_mult;
     /** CSS1 Configuration: bits 136 to 143. */
@@ -108,7 +108,7 @@ typedef struct {
     uint8_t css10_relative_scale;
     /**
      * CSS Threshold: bits 296 to 303, raw 0 to 255.
-     * \@note Note ACP-133 (open): CSS threshold has no description.
+     * @note Note ACP-133 (open): CSS threshold has no description.
      */
     uint8_t css_threshold;
     /**
@@ -438,32 +438,32 @@ typedef struct {
     int16_t star_tracker_mounting_transform_gamma_angle;
     /**
      * StarTracker exposure time: bits 1728 to 1743, raw 0 to 65535. Register value.
-     * \@note Note ACP-145 (open): Exposure and gain are register values.
+     * @note Note ACP-145 (open): Exposure and gain are register values.
      */
     uint16_t star_tracker_exposure_time;
     /**
      * StarTracker analog gain: bits 1744 to 1759, raw 0 to 65535. Register value.
-     * \@note Note ACP-145 (open): Exposure and gain are register values.
+     * @note Note ACP-145 (open): Exposure and gain are register values.
      */
     uint16_t star_tracker_analog_gain;
     /**
      * StarTracker detection threshold: bits 1760 to 1767, raw 0 to 255.
-     * \@note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
      */
     uint8_t star_tracker_detection_threshold;
     /**
      * StarTracker star threshold: bits 1768 to 1775, raw 0 to 255.
-     * \@note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
      */
     uint8_t star_tracker_star_threshold;
     /**
      * Maximum Star Matched: bits 1776 to 1783, raw 0 to 255. Most stars that are matched.
-     * \@note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
      */
     uint8_t maximum_star_matched;
     /**
      * Detection Timeout duration: bits 1784 to 1799, raw 0 to 65535.
-     * \@note Note ACP-141 (open): Detection timeout has no unit.
+     * @note Note ACP-141 (open): Detection timeout has no unit.
      */
     uint16_t detection_timeout_duration;
     /** Maximum Star Pixel: bits 1800 to 1807, raw 0 to 255. Most pixels of a star. */
@@ -473,7 +473,7 @@ typedef struct {
     /**
      * Star Tracker Error Margin: bits 1816 to 1823, raw 0 to 255; physical `raw*0.01`, 0 to 2.55 %. Of the star
      * identification.
-     * \@note Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
+     * @note Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
      */
     uint8_t star_tracker_error_margin;
     /**
@@ -495,37 +495,37 @@ typedef struct {
     float star_tracker_focal_length;
     /**
      * K1 radial distortion coefficient: bits 1936 to 1967, 32-bit float, in gain.
-     * \@note Note ACP-144 (certain): gain is no unit.
+     * @note Note ACP-144 (certain): gain is no unit.
      */
     float k1_radial_distortion_coefficient;
     /**
      * K2 radial distortion coefficient: bits 1968 to 1999, 32-bit float, in gain.
-     * \@note Note ACP-144 (certain): gain is no unit.
+     * @note Note ACP-144 (certain): gain is no unit.
      */
     float k2_radial_distortion_coefficient;
     /**
      * P1 tangential distortion coefficient: bits 2000 to 2031, 32-bit float, in gain.
-     * \@note Note ACP-144 (certain): gain is no unit.
+     * @note Note ACP-144 (certain): gain is no unit.
      */
     float p1_tangential_distortion_coefficient;
     /**
      * P2 tangential distortion coefficient: bits 2032 to 2063, 32-bit float, in gain.
-     * \@note Note ACP-144 (certain): gain is no unit.
+     * @note Note ACP-144 (certain): gain is no unit.
      */
     float p2_tangential_distortion_coefficient;
     /**
      * Star tracking window width: bits 2064 to 2071, raw 0 to 255.
-     * \@note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+     * @note Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
      */
     uint8_t star_tracking_window_width;
     /**
      * Star Tracking Margin: bits 2072 to 2079, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
-     * \@note Note ACP-143 (open): Margins and search width have no unit.
+     * @note Note ACP-143 (open): Margins and search width have no unit.
      */
     uint8_t star_tracking_margin;
     /**
      * Star Validation Margin: bits 2080 to 2087, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
-     * \@note Note ACP-143 (open): Margins and search width have no unit.
+     * @note Note ACP-143 (open): Margins and search width have no unit.
      */
     uint8_t star_validation_margin;
     /** Star Tracking Module Enable: bit 2088. */
@@ -534,7 +534,7 @@ typedef struct {
     bool star_tracking_location_prediction_enable;
     /**
      * Star Tracking Search Width: bits 2096 to 2103, raw 0 to 255; physical `raw/5.0`, 0 to 51.
-     * \@note Note ACP-143 (open): Margins and search width have no unit.
+     * @note Note ACP-143 (open): Margins and search width have no unit.
      */
     uint8_t star_tracking_search_width;
     /** Detumbling Spin Gain: bits 2104 to 2135, 32-bit float. Ks. */
@@ -544,7 +544,7 @@ typedef struct {
     /**
      * Reference spin rate: bits 2168 to 2183, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s.
      * wy-ref. Must be below 0 deg/s.
-     * \@note Note ACP-162 (certain): Limits of a sign in words only.
+     * @note Note ACP-162 (certain): Limits of a sign in words only.
      */
     int16_t reference_spin_rate;
     /** Fast BDot Detumbling Gain: bits 2184 to 2215, 32-bit float. Kdf. */
@@ -559,7 +559,7 @@ typedef struct {
     float y_momentum_derivative_gain;
     /**
      * Reference Wheel Momentum: bits 2344 to 2375, 32-bit float, in Nms. H-ref. Must be below 0 Nms.
-     * \@note Note ACP-162 (certain): Limits of a sign in words only.
+     * @note Note ACP-162 (certain): Limits of a sign in words only.
      */
     float reference_wheel_momentum;
     /** RWheel Proportional Gain: bits 2376 to 2407, 32-bit float. Kp2. */
@@ -600,19 +600,19 @@ typedef struct {
     /**
      * Product Of Inertia - Ixy: bits 2680 to 2711, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
-     * \@note Note ACP-201 (open): Products of inertia: the sign is not given.
+     * @note Note ACP-201 (open): Products of inertia: the sign is not given.
      */
     float product_of_inertia_ixy;
     /**
      * Product Of Inertia - Ixz: bits 2712 to 2743, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
-     * \@note Note ACP-201 (open): Products of inertia: the sign is not given.
+     * @note Note ACP-201 (open): Products of inertia: the sign is not given.
      */
     float product_of_inertia_ixz;
     /**
      * Product Of Inertia - Iyz: bits 2744 to 2775, 32-bit float, in kg.m^2.
      * @note Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
-     * \@note Note ACP-201 (open): Products of inertia: the sign is not given.
+     * @note Note ACP-201 (open): Products of inertia: the sign is not given.
      */
     float product_of_inertia_iyz;
     /** Magnetometer Rate Filter System Noise: bits 2776 to 2807, 32-bit float. */
@@ -643,7 +643,7 @@ typedef struct {
     bool automatic_magnetometer_recovery;
     /**
      * Magnetometer Mode: bits 3006 to 3007. The magnetometer that estimation and control use.
-     * \@note Note ACP-049 (open): Magnetometer mode can be set in two places.
+     * @note Note ACP-049 (open): Magnetometer mode can be set in two places.
      */
     cubeacp_mag_mode_val_t magnetometer_mode;
     /**
@@ -743,12 +743,12 @@ typedef struct {
     uint16_t min_samples;
     /**
      * User Coded Controller Settings: bytes 408 to 455.
-     * \@note Note ACP-178 (open): User coded settings: content of the arrays.
+     * @note Note ACP-178 (open): User coded settings: content of the arrays.
      */
     uint8_t user_coded_controller_settings[48];
     /**
      * User Coded Estimator Settings: bytes 456 to 503.
-     * \@note Note ACP-178 (open): User coded settings: content of the arrays.
+     * @note Note ACP-178 (open): User coded settings: content of the arrays.
      */
     uint8_t user_coded_estimator_settings[48];
 } cubeacp_adcs_configuration_t;
@@ -3601,7 +3601,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_star_tracking_search_w
     return icdgen_set_u8(&message->star_tracking_search_width, value, 1, 0, 5, UINT8_MAX);
 }
 
-/** Reference spin rate in deg/s: -32.768 to 32.767. */
+/** Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s. */
 static inline double cubeacp_adcs_configuration_reference_spin_rate_deg_per_s(
     const cubeacp_adcs_configuration_t *message)
 {

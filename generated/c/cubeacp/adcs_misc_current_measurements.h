@@ -21,15 +21,15 @@
 typedef struct {
     /**
      * CubeStarCurrent: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * \@note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
      */
     uint16_t cubestar_current;
     /** Magnetorquer Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA. */
     uint16_t magnetorquer_current;
     /**
      * CubeStar MCU temperature: bits 32 to 47, raw -32768 to 32767; physical `raw/100.0`, -327.68 to 327.67 C.
-     * \@note Note ACP-005 (likely): Symbol C is the coulomb.
-     * \@note Note ACP-108 (certain): ADCS Misc Current Measurements holds a temperature.
+     * @note Note ACP-005 (likely): Symbol C is the coulomb.
+     * @note Note ACP-108 (certain): ADCS Misc Current Measurements holds a temperature.
      */
     int16_t cubestar_mcu_temperature;
 } cubeacp_adcs_misc_current_measurements_t;

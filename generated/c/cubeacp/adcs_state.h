@@ -11,8 +11,8 @@
  * from byte 12. Repeats Estimated Quaternion from byte 18. Repeats Estimated Angular Rates from byte 24. Repeats
  * Satellite Position (ECI) from byte 30. Repeats Satellite Velocity (ECI) from byte 36. Repeats Satellite Position
  * (LLH) from byte 42. Repeats ECEF Position from byte 48.
- * \@note Note ACP-059 (certain): Current ADCS State and ADCS State.
- * \@note Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles.
+ * @note Note ACP-059 (certain): Current ADCS State and ADCS State.
+ * @note Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles.
  */
 
 #include "../icdgen.h"
@@ -33,7 +33,7 @@ typedef struct {
     cubeacp_adcs_run_mode_t adcs_run_mode;
     /**
      * ASGP4 Mode: bits 10 to 11.
-     * \@note Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
+     * @note Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
      */
     cubeacp_asgp4_mode_select_t asgp4_mode;
     /** CubeControl Signal Enabled: bit 12. */
@@ -78,7 +78,7 @@ typedef struct {
     bool cubestar_communications_error;
     /**
      * Magnetometer Range Error: bit 32. About a measured field of 65 uT. Whether above or below is not printed.
-     * \@note Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
+     * @note Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
      */
     bool magnetometer_range_error;
     /** Cam1 SRAM Overcurrent Detected: bit 33. */
@@ -91,7 +91,7 @@ typedef struct {
     bool cam1_sensor_detection_error;
     /**
      * Sun Sensor Range Error: bit 37. A detected sun angle was beyond +/-90 deg.
-     * \@note Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+     * @note Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
      */
     bool sun_sensor_range_error;
     /** Cam2 SRAM Overcurrent Detected: bit 38. */
@@ -104,7 +104,7 @@ typedef struct {
     bool cam2_sensor_detection_error;
     /**
      * Nadir Sensor Range Error: bit 42. A detected nadir angle was beyond +/-60 deg.
-     * \@note Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+     * @note Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
      */
     bool nadir_sensor_range_error;
     /** Rate Sensor Range Error: bit 43. A measured body rate was beyond +/-20 deg/s. */
@@ -120,14 +120,14 @@ typedef struct {
     /**
      * Orbit Parameters are Invalid: bit 48. A parameter is out of bounds, or the SGP4 propagator could not start from
      * them.
-     * \@note Note ACP-104 (open): Orbit parameter flag has two reasons.
+     * @note Note ACP-104 (open): Orbit parameter flag has two reasons.
      */
     bool orbit_parameters_are_invalid;
     /**
      * Configuration is Invalid: bit 49. Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at
      * least one CSS.
-     * \@note Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
-     * \@note Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+     * @note Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
+     * @note Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
      */
     bool configuration_is_invalid;
     /**
@@ -173,17 +173,17 @@ typedef struct {
     int16_t estimated_yaw_angle;
     /**
      * Estimated q1: bits 144 to 159, raw -32768 to 32767.
-     * \@note Note ACP-100 (open): Estimated quaternion has no formula.
+     * @note Note ACP-100 (open): Estimated quaternion has no formula.
      */
     int16_t estimated_q1;
     /**
      * Estimated q2: bits 160 to 175, raw -32768 to 32767.
-     * \@note Note ACP-100 (open): Estimated quaternion has no formula.
+     * @note Note ACP-100 (open): Estimated quaternion has no formula.
      */
     int16_t estimated_q2;
     /**
      * Estimated q3: bits 176 to 191, raw -32768 to 32767.
-     * \@note Note ACP-100 (open): Estimated quaternion has no formula.
+     * @note Note ACP-100 (open): Estimated quaternion has no formula.
      */
     int16_t estimated_q3;
     /** Estimated X Angular Rate: bits 192 to 207, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg/s. */
@@ -208,30 +208,30 @@ typedef struct {
     int16_t latitude;
     /**
      * Longitude: bits 352 to 367, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-     * \@note Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
+     * @note Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
      */
     int16_t longitude;
     /**
      * Altitude: bits 368 to 383, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
-     * \@note Note ACP-067 (open): Position and altitude do not reach equally far.
+     * @note Note ACP-067 (open): Position and altitude do not reach equally far.
      */
     uint16_t altitude;
     /**
      * ECEF Position X: bits 384 to 399, raw -32768 to 32767.
      * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
-     * \@note Note ACP-099 (certain): ECEF position: one name, two widths.
+     * @note Note ACP-099 (certain): ECEF position: one name, two widths.
      */
     int16_t ecef_position_x;
     /**
      * ECEF Position Y: bits 400 to 415, raw -32768 to 32767.
      * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
-     * \@note Note ACP-099 (certain): ECEF position: one name, two widths.
+     * @note Note ACP-099 (certain): ECEF position: one name, two widths.
      */
     int16_t ecef_position_y;
     /**
      * ECEF Position Z: bits 416 to 431, raw -32768 to 32767.
      * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
-     * \@note Note ACP-099 (certain): ECEF position: one name, two widths.
+     * @note Note ACP-099 (certain): ECEF position: one name, two widths.
      */
     int16_t ecef_position_z;
 } cubeacp_adcs_state_t;

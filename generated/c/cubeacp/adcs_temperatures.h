@@ -21,19 +21,19 @@
 typedef struct {
     /**
      * MCU Temperature: bits 0 to 15, raw -32768 to 32767, in C.
-     * \@note Note ACP-005 (likely): Symbol C is the coulomb.
-     * \@note Note ACP-085 (open): Temperatures have three scales.
+     * @note Note ACP-005 (likely): Symbol C is the coulomb.
+     * @note Note ACP-085 (open): Temperatures have three scales.
      */
     int16_t mcu_temperature;
     /**
      * Magnetometer Temperature: bits 16 to 31, raw -32768 to 32767; physical `raw/10.0`, -3276.8 to 3276.7 C.
-     * \@note Note ACP-005 (likely): Symbol C is the coulomb.
+     * @note Note ACP-005 (likely): Symbol C is the coulomb.
      */
     int16_t magnetometer_temperature;
     /**
      * Redundant Magnetometer Temperature: bits 32 to 47, raw -32768 to 32767; physical `raw/10.0`, -3276.8 to 3276.7 C.
-     * \@note Note ACP-005 (likely): Symbol C is the coulomb.
-     * \@note Note ACP-086 (certain): ADCS Temperatures: the redundant magnetometer is left out of the description.
+     * @note Note ACP-005 (likely): Symbol C is the coulomb.
+     * @note Note ACP-086 (certain): ADCS Temperatures: the redundant magnetometer is left out of the description.
      */
     int16_t redundant_magnetometer_temperature;
 } cubeacp_adcs_temperatures_t;

@@ -7,7 +7,7 @@
  * @file
  * Clear Errors: telecommand 12, 1 byte. Table 76.
  * Clears the latched error flags that are selected.
- * \@note Note ACP-020 (open): Reserved bits.
+ * @note Note ACP-020 (open): Reserved bits.
  */
 
 #include "../icdgen.h"
@@ -21,12 +21,12 @@
 typedef struct {
     /**
      * ADCS Error Flags: bit 0.
-     * \@note Note ACP-021 (open): Clear Errors: which flags.
+     * @note Note ACP-021 (open): Clear Errors: which flags.
      */
     bool adcs_error_flags;
     /**
      * HK Error Flags: bit 1. Housekeeping errors.
-     * \@note Note ACP-021 (open): Clear Errors: which flags.
+     * @note Note ACP-021 (open): Clear Errors: which flags.
      */
     bool hk_error_flags;
 } cubeacp_clear_errors_t;

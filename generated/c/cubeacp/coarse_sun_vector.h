@@ -8,7 +8,7 @@
  * Coarse Sun Vector: telemetry 152, 6 bytes. Table 108.
  * As measured.
  * Bit 10 of the log mask.
- * \@note Note ACP-069 (open): Reference frames of measured vectors are not named.
+ * @note Note ACP-069 (open): Reference frames of measured vectors are not named.
  */
 
 #include "../icdgen.h"

@@ -63,7 +63,7 @@ typedef struct {
     uint8_t css10_relative_scale;
     /**
      * CSS Threshold: bits 160 to 167, raw 0 to 255.
-     * \@note Note ACP-133 (open): CSS threshold has no description.
+     * @note Note ACP-133 (open): CSS threshold has no description.
      */
     uint8_t css_threshold;
 } cubeacp_css_configuration_t;

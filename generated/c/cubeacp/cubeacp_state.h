@@ -7,7 +7,7 @@
  * @file
  * CubeACP State: telemetry 135, 1 byte. Table 101.
  * Errors in loading settings from flash and in using the SD card.
- * \@note Note ACP-020 (open): Reserved bits.
+ * @note Note ACP-020 (open): Reserved bits.
  */
 
 #include "../icdgen.h"
@@ -21,17 +21,17 @@
 typedef struct {
     /**
      * ADCS Config Load Error: bit 0. Reading it from flash failed.
-     * \@note Note ACP-054 (open): Two saves for three stored sets.
+     * @note Note ACP-054 (open): Two saves for three stored sets.
      */
     bool adcs_config_load_error;
     /**
      * Orbit Parameter Load Error: bit 1. Reading them from flash failed.
-     * \@note Note ACP-054 (open): Two saves for three stored sets.
+     * @note Note ACP-054 (open): Two saves for three stored sets.
      */
     bool orbit_parameter_load_error;
     /**
      * System Configuration Load Error: bit 2. Reading it from flash failed.
-     * \@note Note ACP-054 (open): Two saves for three stored sets.
+     * @note Note ACP-054 (open): Two saves for three stored sets.
      */
     bool system_configuration_load_error;
     /** SD card initialisation error: bit 3. */

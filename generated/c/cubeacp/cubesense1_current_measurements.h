@@ -7,7 +7,7 @@
  * @file
  * CubeSense1 Current Measurements: telemetry 171, 4 bytes. Table 129.
  * Bit 21 of the log mask.
- * \@note Note ACP-194 (open): Size of a log file follows from 6 bytes a frame.
+ * @note Note ACP-194 (open): Size of a log file follows from 6 bytes a frame.
  */
 
 #include "../icdgen.h"

@@ -7,8 +7,8 @@
  * @file
  * CubeSense2 Current Measurements: telemetry 232, 4 bytes. Table 175.
  * Bit 65 of the log mask.
- * \@note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
- * \@note Note ACP-194 (open): Size of a log file follows from 6 bytes a frame.
+ * @note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
+ * @note Note ACP-194 (open): Size of a log file follows from 6 bytes a frame.
  */
 
 #include "../icdgen.h"

@@ -9,8 +9,8 @@
  * State of the control processor, frame 2.
  * Bit 61 of the log mask.
  * @note Erratum ACP-120 (open): Current ADCS State 2: 6 bytes announced, 18 bits described.
- * \@note Note ACP-057 (certain): ACP stands for two things.
- * \@note Note ACP-064 (open): Which flags are latched.
+ * @note Note ACP-057 (certain): ACP stands for two things.
+ * @note Note ACP-064 (open): Which flags are latched.
  */
 
 #include "../icdgen.h"
@@ -26,13 +26,13 @@ typedef struct {
     /**
      * Orbit Parameters are Invalid: bit 0. A parameter is out of bounds, or the SGP4 propagator could not start from
      * them.
-     * \@note Note ACP-104 (open): Orbit parameter flag has two reasons.
+     * @note Note ACP-104 (open): Orbit parameter flag has two reasons.
      */
     bool orbit_parameters_are_invalid;
     /**
      * Configuration is Invalid: bit 1. Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at
      * least one CSS.
-     * \@note Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
+     * @note Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
      */
     bool configuration_is_invalid;
     /**

@@ -6,7 +6,7 @@
 /**
  * @file
  * Deploy Magnetometer Boom: telecommand 7, 1 byte. Table 73.
- * \@note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
+ * @note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
  */
 
 #include "../icdgen.h"
@@ -20,7 +20,7 @@
 typedef struct {
     /**
      * Timeout: bits 0 to 7, raw 0 to 255, in s. Of the deployment actuation.
-     * \@note Note ACP-016 (open): Deployment timeout: range and default.
+     * @note Note ACP-016 (open): Deployment timeout: range and default.
      */
     uint8_t timeout;
 } cubeacp_deploy_magnetometer_boom_t;

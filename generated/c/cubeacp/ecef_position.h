@@ -21,19 +21,19 @@ typedef struct {
     /**
      * ECEF Position X: bits 0 to 15, raw -32768 to 32767.
      * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
-     * \@note Note ACP-099 (certain): ECEF position: one name, two widths.
+     * @note Note ACP-099 (certain): ECEF position: one name, two widths.
      */
     int16_t ecef_position_x;
     /**
      * ECEF Position Y: bits 16 to 31, raw -32768 to 32767.
      * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
-     * \@note Note ACP-099 (certain): ECEF position: one name, two widths.
+     * @note Note ACP-099 (certain): ECEF position: one name, two widths.
      */
     int16_t ecef_position_y;
     /**
      * ECEF Position Z: bits 32 to 47, raw -32768 to 32767.
      * @note Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
-     * \@note Note ACP-099 (certain): ECEF position: one name, two widths.
+     * @note Note ACP-099 (certain): ECEF position: one name, two widths.
      */
     int16_t ecef_position_z;
 } cubeacp_ecef_position_t;

@@ -7,7 +7,7 @@
  * @file
  * Estimated Attitude Angles: telemetry 146, 6 bytes. Table 102.
  * Bit 28 of the log mask.
- * \@note Note ACP-066 (open): Attitude angles: order of rotation and frame.
+ * @note Note ACP-066 (open): Attitude angles: order of rotation and frame.
  */
 
 #include "../icdgen.h"

@@ -7,7 +7,7 @@
  * @file
  * Estimated Quaternion: telemetry 218, 6 bytes. Table 165.
  * Bit 29 of the log mask.
- * \@note Note ACP-075 (open): Quaternions: the fourth component.
+ * @note Note ACP-075 (open): Quaternions: the fourth component.
  */
 
 #include "../icdgen.h"
@@ -21,17 +21,17 @@
 typedef struct {
     /**
      * Estimated q1: bits 0 to 15, raw -32768 to 32767.
-     * \@note Note ACP-100 (open): Estimated quaternion has no formula.
+     * @note Note ACP-100 (open): Estimated quaternion has no formula.
      */
     int16_t estimated_q1;
     /**
      * Estimated q2: bits 16 to 31, raw -32768 to 32767.
-     * \@note Note ACP-100 (open): Estimated quaternion has no formula.
+     * @note Note ACP-100 (open): Estimated quaternion has no formula.
      */
     int16_t estimated_q2;
     /**
      * Estimated q3: bits 32 to 47, raw -32768 to 32767.
-     * \@note Note ACP-100 (open): Estimated quaternion has no formula.
+     * @note Note ACP-100 (open): Estimated quaternion has no formula.
      */
     int16_t estimated_q3;
 } cubeacp_estimated_quaternion_t;

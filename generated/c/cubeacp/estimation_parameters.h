@@ -7,8 +7,8 @@
  * @file
  * Estimation Parameters: configuration, set by telecommand 27, got by telemetry 223, 31 bytes. Table 200.
  * Noise covariances, and which sensors the estimator uses.
- * \@note Note ACP-020 (open): Reserved bits.
- * \@note Note ACP-167 (certain): Estimation Parameters: more than its description.
+ * @note Note ACP-020 (open): Reserved bits.
+ * @note Note ACP-167 (certain): Estimation Parameters: more than its description.
  */
 
 #include "../icdgen.h"
@@ -25,37 +25,37 @@
 typedef struct {
     /**
      * Magnetometer Rate Filter System Noise: bits 0 to 31, 32-bit float.
-     * \@note Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+     * @note Note ACP-168 (open): Noise: covariance or deviation, and no unit.
      */
     float magnetometer_rate_filter_system_noise;
     /**
      * EKF System Noise: bits 32 to 63, 32-bit float.
-     * \@note Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+     * @note Note ACP-168 (open): Noise: covariance or deviation, and no unit.
      */
     float ekf_system_noise;
     /**
      * CSS Measurement Noise: bits 64 to 95, 32-bit float.
-     * \@note Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+     * @note Note ACP-168 (open): Noise: covariance or deviation, and no unit.
      */
     float css_measurement_noise;
     /**
      * Sun Sensor Measurement Noise: bits 96 to 127, 32-bit float.
-     * \@note Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+     * @note Note ACP-168 (open): Noise: covariance or deviation, and no unit.
      */
     float sun_sensor_measurement_noise;
     /**
      * Nadir Sensor Measurement Noise: bits 128 to 159, 32-bit float.
-     * \@note Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+     * @note Note ACP-168 (open): Noise: covariance or deviation, and no unit.
      */
     float nadir_sensor_measurement_noise;
     /**
      * Magnetometer Measurement Noise: bits 160 to 191, 32-bit float.
-     * \@note Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+     * @note Note ACP-168 (open): Noise: covariance or deviation, and no unit.
      */
     float magnetometer_measurement_noise;
     /**
      * Star Tracker Measurement Noise: bits 192 to 223, 32-bit float.
-     * \@note Note ACP-168 (open): Noise: covariance or deviation, and no unit.
+     * @note Note ACP-168 (open): Noise: covariance or deviation, and no unit.
      */
     float star_tracker_measurement_noise;
     /** Use Sun Sensor: bit 224. In the EKF. */
@@ -72,13 +72,13 @@ typedef struct {
     bool automatic_magnetometer_recovery;
     /**
      * Magnetometer Mode: bits 230 to 231. The magnetometer that estimation and control use.
-     * \@note Note ACP-049 (open): Magnetometer mode can be set in two places.
+     * @note Note ACP-049 (open): Magnetometer mode can be set in two places.
      */
     cubeacp_mag_mode_val_t magnetometer_mode;
     /**
      * Magnetometer Selection for RAW MTM TLM: bits 232 to 233. Magnetometer and sampling path for the second raw
      * magnetometer frame.
-     * \@note Note ACP-118 (likely): Secondary magnetometer: fixed or selected.
+     * @note Note ACP-118 (likely): Secondary magnetometer: fixed or selected.
      */
     cubeacp_mag_mode_val_t raw_magnetometer_selection;
     /**

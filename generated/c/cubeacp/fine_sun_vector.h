@@ -8,7 +8,7 @@
  * Fine Sun Vector: telemetry 153, 6 bytes. Table 109.
  * As measured.
  * Bit 11 of the log mask.
- * \@note Note ACP-069 (open): Reference frames of measured vectors are not named.
+ * @note Note ACP-069 (open): Reference frames of measured vectors are not named.
  */
 
 #include "../icdgen.h"

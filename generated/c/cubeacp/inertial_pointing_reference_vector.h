@@ -7,7 +7,7 @@
  * @file
  * Inertial Pointing Reference Vector: configuration, set by telecommand 34, got by telemetry 238, 6 bytes. Table 214.
  * Unit vector for the inertial pointing mode.
- * \@note Note ACP-024 (open): Control modes that are named and not listed.
+ * @note Note ACP-024 (open): Control modes that are named and not listed.
  */
 
 #include "../icdgen.h"
@@ -23,17 +23,17 @@
 typedef struct {
     /**
      * Inertial Reference X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
-     * \@note Note ACP-188 (open): Inertial reference: unit vector without a frame.
+     * @note Note ACP-188 (open): Inertial reference: unit vector without a frame.
      */
     int16_t inertial_reference_x;
     /**
      * Inertial Reference Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
-     * \@note Note ACP-188 (open): Inertial reference: unit vector without a frame.
+     * @note Note ACP-188 (open): Inertial reference: unit vector without a frame.
      */
     int16_t inertial_reference_y;
     /**
      * Inertial Reference Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
-     * \@note Note ACP-188 (open): Inertial reference: unit vector without a frame.
+     * @note Note ACP-188 (open): Inertial reference: unit vector without a frame.
      */
     int16_t inertial_reference_z;
 } cubeacp_inertial_pointing_reference_vector_t;

@@ -8,7 +8,7 @@
  * Magnetic Field Vector: telemetry 151, 6 bytes. Table 107.
  * As measured.
  * Bit 9 of the log mask.
- * \@note Note ACP-069 (open): Reference frames of measured vectors are not named.
+ * @note Note ACP-069 (open): Reference frames of measured vectors are not named.
  */
 
 #include "../icdgen.h"

@@ -6,7 +6,7 @@
 /**
  * @file
  * Magnetometer Configuration: configuration, set by telecommand 26, got by telemetry 204, 30 bytes. Table 190.
- * \@note Note ACP-051 (certain): Magnetometers have four names for two.
+ * @note Note ACP-051 (certain): Magnetometers have four names for two.
  */
 
 #include "../icdgen.h"
@@ -23,34 +23,34 @@ typedef struct {
     /**
      * Magnetometer Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * \@note Note ACP-157 (open): Mounting angles: order of rotation.
+     * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
     int16_t magnetometer_mounting_transform_alpha_angle;
     /**
      * Magnetometer Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * \@note Note ACP-157 (open): Mounting angles: order of rotation.
+     * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
     int16_t magnetometer_mounting_transform_beta_angle;
     /**
      * Magnetometer Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
-     * \@note Note ACP-157 (open): Mounting angles: order of rotation.
+     * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
     int16_t magnetometer_mounting_transform_gamma_angle;
     /**
      * Magnetometer Channel 1 Offset: bits 48 to 63, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * \@note Note ACP-155 (open): Magnetometer offsets have no unit.
+     * @note Note ACP-155 (open): Magnetometer offsets have no unit.
      */
     int16_t magnetometer_channel_1_offset;
     /**
      * Magnetometer Channel 2 Offset: bits 64 to 79, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * \@note Note ACP-155 (open): Magnetometer offsets have no unit.
+     * @note Note ACP-155 (open): Magnetometer offsets have no unit.
      */
     int16_t magnetometer_channel_2_offset;
     /**
      * Magnetometer Channel 3 Offset: bits 80 to 95, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
-     * \@note Note ACP-155 (open): Magnetometer offsets have no unit.
+     * @note Note ACP-155 (open): Magnetometer offsets have no unit.
      */
     int16_t magnetometer_channel_3_offset;
     /**

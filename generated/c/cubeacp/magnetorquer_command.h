@@ -20,20 +20,20 @@
 typedef struct {
     /**
      * X Magnetorquer Command: bits 0 to 15, raw -32768 to 32767, in 10ms units. On-time.
-     * \@note Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
-     * \@note Note ACP-071 (likely): 10ms units is a factor, not a unit.
+     * @note Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
+     * @note Note ACP-071 (likely): 10ms units is a factor, not a unit.
      */
     int16_t x_magnetorquer_command;
     /**
      * Y Magnetorquer Command: bits 16 to 31, raw -32768 to 32767, in 10ms units. On-time.
-     * \@note Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
-     * \@note Note ACP-071 (likely): 10ms units is a factor, not a unit.
+     * @note Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
+     * @note Note ACP-071 (likely): 10ms units is a factor, not a unit.
      */
     int16_t y_magnetorquer_command;
     /**
      * Z Magnetorquer Command: bits 32 to 47, raw -32768 to 32767, in 10ms units. On-time.
-     * \@note Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
-     * \@note Note ACP-071 (likely): 10ms units is a factor, not a unit.
+     * @note Note ACP-070 (open): Magnetorquers are commanded as a duty cycle and reported as an on-time.
+     * @note Note ACP-071 (likely): 10ms units is a factor, not a unit.
      */
     int16_t z_magnetorquer_command;
 } cubeacp_magnetorquer_command_t;

@@ -8,7 +8,7 @@
  * Nadir Vector: telemetry 154, 6 bytes. Table 110.
  * As measured.
  * Bit 12 of the log mask.
- * \@note Note ACP-069 (open): Reference frames of measured vectors are not named.
+ * @note Note ACP-069 (open): Reference frames of measured vectors are not named.
  */
 
 #include "../icdgen.h"

@@ -7,7 +7,7 @@
  * @file
  * Quaternion Error Vector: telemetry 163, 6 bytes. Table 119.
  * Bit 39 of the log mask.
- * \@note Note ACP-075 (open): Quaternions: the fourth component.
+ * @note Note ACP-075 (open): Quaternions: the fourth component.
  */
 
 #include "../icdgen.h"

@@ -8,7 +8,7 @@
  * Rate Sensor Rates: telemetry 155, 6 bytes. Table 111.
  * As measured.
  * Bit 13 of the log mask.
- * \@note Note ACP-069 (open): Reference frames of measured vectors are not named.
+ * @note Note ACP-069 (open): Reference frames of measured vectors are not named.
  */
 
 #include "../icdgen.h"

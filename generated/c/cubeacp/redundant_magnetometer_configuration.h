@@ -7,7 +7,7 @@
  * @file
  * Redundant Magnetometer Configuration: configuration, set by telecommand 36, got by telemetry 205, 30 bytes. Table
  * 191\.
- * \@note Note ACP-051 (certain): Magnetometers have four names for two.
+ * @note Note ACP-051 (certain): Magnetometers have four names for two.
  */
 
 #include "../icdgen.h"
@@ -24,37 +24,37 @@ typedef struct {
     /**
      * Redundant Magnetometer Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`,
      * -327.68 to 327.67 deg.
-     * \@note Note ACP-157 (open): Mounting angles: order of rotation.
+     * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
     int16_t redundant_magnetometer_mounting_transform_alpha_angle;
     /**
      * Redundant Magnetometer Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
      * -327.68 to 327.67 deg.
-     * \@note Note ACP-157 (open): Mounting angles: order of rotation.
+     * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
     int16_t redundant_magnetometer_mounting_transform_beta_angle;
     /**
      * Redundant Magnetometer Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
      * -327.68 to 327.67 deg.
-     * \@note Note ACP-157 (open): Mounting angles: order of rotation.
+     * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
     int16_t redundant_magnetometer_mounting_transform_gamma_angle;
     /**
      * Redundant Magnetometer Channel 1 Offset: bits 48 to 63, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * \@note Note ACP-155 (open): Magnetometer offsets have no unit.
+     * @note Note ACP-155 (open): Magnetometer offsets have no unit.
      */
     int16_t redundant_magnetometer_channel_1_offset;
     /**
      * Redundant Magnetometer Channel 2 Offset: bits 64 to 79, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * \@note Note ACP-155 (open): Magnetometer offsets have no unit.
+     * @note Note ACP-155 (open): Magnetometer offsets have no unit.
      */
     int16_t redundant_magnetometer_channel_2_offset;
     /**
      * Redundant Magnetometer Channel 3 Offset: bits 80 to 95, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
-     * \@note Note ACP-155 (open): Magnetometer offsets have no unit.
+     * @note Note ACP-155 (open): Magnetometer offsets have no unit.
      */
     int16_t redundant_magnetometer_channel_3_offset;
     /**

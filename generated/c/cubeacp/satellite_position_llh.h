@@ -23,12 +23,12 @@ typedef struct {
     int16_t latitude;
     /**
      * Longitude: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-     * \@note Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
+     * @note Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
      */
     int16_t longitude;
     /**
      * Altitude: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
-     * \@note Note ACP-067 (open): Position and altitude do not reach equally far.
+     * @note Note ACP-067 (open): Position and altitude do not reach equally far.
      */
     uint16_t altitude;
 } cubeacp_satellite_position_llh_t;

@@ -7,7 +7,7 @@
  * @file
  * Save Configuration: telecommand 63, 0 bytes. Table 92.
  * Keeps the current configuration in flash.
- * \@note Note ACP-054 (open): Two saves for three stored sets.
+ * @note Note ACP-054 (open): Two saves for three stored sets.
  */
 
 #include "../icdgen.h"

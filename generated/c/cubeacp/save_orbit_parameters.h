@@ -7,7 +7,7 @@
  * @file
  * Save Orbit Parameters: telecommand 64, 0 bytes. Table 93.
  * Keeps the current orbit parameters in flash.
- * \@note Note ACP-054 (open): Two saves for three stored sets.
+ * @note Note ACP-054 (open): Two saves for three stored sets.
  */
 
 #include "../icdgen.h"

@@ -25,8 +25,8 @@ typedef struct {
     /**
      * Timeout: bits 8 to 23, raw 0 to 65535, in s. The mode returns to None when it runs out. 65535 (0xFFFF): no
      * timeout.
-     * \@note Note ACP-022 (open): Timeout of a control mode: 0.
-     * \@note Note ACP-023 (certain): Control mode None does not exist.
+     * @note Note ACP-022 (open): Timeout of a control mode: 0.
+     * @note Note ACP-023 (certain): Control mode None does not exist.
      */
     uint16_t timeout;
 } cubeacp_set_attitude_control_mode_t;

@@ -7,7 +7,7 @@
  * @file
  * Set Detumbling Control Parameters: configuration, set by telecommand 38, got by telemetry 208, 14 bytes. Table 195.
  * Gains and references of the detumbling mode.
- * \@note Note ACP-125 (certain): Eight messages are named Set and can be read.
+ * @note Note ACP-125 (certain): Eight messages are named Set and can be read.
  */
 
 #include "../icdgen.h"
@@ -25,23 +25,23 @@
 typedef struct {
     /**
      * Detumbling Spin Gain: bits 0 to 31, 32-bit float. Ks.
-     * \@note Note ACP-163 (open): Gains have no units.
+     * @note Note ACP-163 (open): Gains have no units.
      */
     float detumbling_spin_gain;
     /**
      * Detumbling Damping Gain: bits 32 to 63, 32-bit float. Kd.
-     * \@note Note ACP-163 (open): Gains have no units.
+     * @note Note ACP-163 (open): Gains have no units.
      */
     float detumbling_damping_gain;
     /**
      * Reference spin rate: bits 64 to 79, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767 deg/s. wy-ref.
      * Must be below 0 deg/s.
-     * \@note Note ACP-162 (certain): Limits of a sign in words only.
+     * @note Note ACP-162 (certain): Limits of a sign in words only.
      */
     int16_t reference_spin_rate;
     /**
      * Fast BDot Detumbling Gain: bits 80 to 111, 32-bit float. Kdf.
-     * \@note Note ACP-163 (open): Gains have no units.
+     * @note Note ACP-163 (open): Gains have no units.
      */
     float fast_bdot_detumbling_gain;
 } cubeacp_set_detumbling_control_parameters_t;
@@ -105,7 +105,7 @@ static inline icd_status_t cubeacp_set_detumbling_control_parameters_set_referen
 
 #ifndef ICDGEN_NO_DOUBLE
 
-/** Reference spin rate in deg/s: -32.768 to 32.767. */
+/** Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s. */
 static inline double cubeacp_set_detumbling_control_parameters_reference_spin_rate_deg_per_s(
     const cubeacp_set_detumbling_control_parameters_t *message)
 {

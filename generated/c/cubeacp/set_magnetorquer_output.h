@@ -7,7 +7,7 @@
  * @file
  * Set Magnetorquer Output: telecommand 16, 6 bytes. Table 81.
  * Only valid while the control mode is None.
- * \@note Note ACP-023 (certain): Control mode None does not exist.
+ * @note Note ACP-023 (certain): Control mode None does not exist.
  */
 
 #include "../icdgen.h"
@@ -22,22 +22,22 @@ typedef struct {
     /**
      * Commanded X Magnetorquer duty cycle: bits 0 to 15, raw -32768 to 32767; physical `raw = value*1000.0`, -32.768 to
      * 32.767.
-     * \@note Note ACP-030 (certain): Formulas are written in two directions.
-     * \@note Note ACP-031 (likely): Duty cycle: unit and range are not given.
+     * @note Note ACP-030 (certain): Formulas are written in two directions.
+     * @note Note ACP-031 (likely): Duty cycle: unit and range are not given.
      */
     int16_t commanded_x_magnetorquer_duty_cycle;
     /**
      * Commanded Y Magnetorquer duty cycle: bits 16 to 31, raw -32768 to 32767; physical `raw = value*1000.0`, -32.768
      * to 32.767.
-     * \@note Note ACP-030 (certain): Formulas are written in two directions.
-     * \@note Note ACP-031 (likely): Duty cycle: unit and range are not given.
+     * @note Note ACP-030 (certain): Formulas are written in two directions.
+     * @note Note ACP-031 (likely): Duty cycle: unit and range are not given.
      */
     int16_t commanded_y_magnetorquer_duty_cycle;
     /**
      * Commanded Z Magnetorquer duty cycle: bits 32 to 47, raw -32768 to 32767; physical `raw = value*1000.0`, -32.768
      * to 32.767.
-     * \@note Note ACP-030 (certain): Formulas are written in two directions.
-     * \@note Note ACP-031 (likely): Duty cycle: unit and range are not given.
+     * @note Note ACP-030 (certain): Formulas are written in two directions.
+     * @note Note ACP-031 (likely): Duty cycle: unit and range are not given.
      */
     int16_t commanded_z_magnetorquer_duty_cycle;
 } cubeacp_set_magnetorquer_output_t;

@@ -21,7 +21,7 @@
 typedef struct {
     /**
      * Magnetometer Mode: bits 0 to 7. The magnetometer that estimation and control use.
-     * \@note Note ACP-049 (open): Magnetometer mode can be set in two places.
+     * @note Note ACP-049 (open): Magnetometer mode can be set in two places.
      */
     cubeacp_mag_mode_val_t magnetometer_mode;
 } cubeacp_set_mode_of_magnetometer_operation_t;

@@ -8,7 +8,7 @@
  * Set Reaction Wheel Control Parameters: configuration, set by telecommand 40, got by telemetry 217, 13 bytes. Table
  * 197\.
  * Gains and reference of the reaction-wheel mode.
- * \@note Note ACP-125 (certain): Eight messages are named Set and can be read.
+ * @note Note ACP-125 (certain): Eight messages are named Set and can be read.
  */
 
 #include "../icdgen.h"
@@ -25,23 +25,23 @@
 typedef struct {
     /**
      * RWheel Proportional Gain: bits 0 to 31, 32-bit float. Kp2.
-     * \@note Note ACP-163 (open): Gains have no units.
+     * @note Note ACP-163 (open): Gains have no units.
      */
     float rwheel_proportional_gain;
     /**
      * RWheel Derivative Gain: bits 32 to 63, 32-bit float. Kd2.
-     * \@note Note ACP-163 (open): Gains have no units.
+     * @note Note ACP-163 (open): Gains have no units.
      */
     float rwheel_derivative_gain;
     /**
      * Y-Wheel Bias Momentum: bits 64 to 95, 32-bit float, in Nms. H-bias.
-     * \@note Note ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels.
+     * @note Note ACP-165 (open): Bias momentum of the Y-wheel among the reaction wheels.
      */
     float y_wheel_bias_momentum;
     /**
      * Sun-pointing Facet: bits 96 to 102. Body axis that is turned towards the sun.
-     * \@note Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
-     * \@note Note ACP-177 (open): Sun-pointing facet and special control selection.
+     * @note Note ACP-126 (open): AxisSelect is used where Not Used is no answer.
+     * @note Note ACP-177 (open): Sun-pointing facet and special control selection.
      */
     cubeacp_axis_select_t sun_pointing_facet;
     /**

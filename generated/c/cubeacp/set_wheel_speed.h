@@ -7,7 +7,7 @@
  * @file
  * Set Wheel Speed: telecommand 17, 6 bytes. Table 82.
  * Only valid while the control mode is None.
- * \@note Note ACP-023 (certain): Control mode None does not exist.
+ * @note Note ACP-023 (certain): Control mode None does not exist.
  */
 
 #include "../icdgen.h"

@@ -21,17 +21,17 @@
 typedef struct {
     /**
      * Catalogue Star 2: bits 0 to 15, raw 0 to 65535. Number in the star catalogue.
-     * \@note Note ACP-117 (open): Catalogue number or catalogue index.
+     * @note Note ACP-117 (open): Catalogue number or catalogue index.
      */
     uint16_t catalogue_star_2;
     /**
      * Centroid X Star 2: bits 16 to 31, raw -32768 to 32767.
-     * \@note Note ACP-116 (open): Star centroids have no scale.
+     * @note Note ACP-116 (open): Star centroids have no scale.
      */
     int16_t centroid_x_star_2;
     /**
      * Centroid Y Star 2: bits 32 to 47, raw -32768 to 32767.
-     * \@note Note ACP-116 (open): Star centroids have no scale.
+     * @note Note ACP-116 (open): Star centroids have no scale.
      */
     int16_t centroid_y_star_2;
 } cubeacp_star_2_raw_data_t;

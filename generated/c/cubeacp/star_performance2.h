@@ -8,7 +8,7 @@
  * Star Performance2: telemetry 231, 6 bytes. Table 174.
  * Quality of the star measurement, frame 2.
  * Bit 64 of the log mask.
- * \@note Note ACP-096 (certain): Star Performance2 has the description of Star Performance1.
+ * @note Note ACP-096 (certain): Star Performance2 has the description of Star Performance1.
  */
 
 #include "../icdgen.h"
@@ -28,7 +28,7 @@ typedef struct {
     bool identification_success;
     /**
      * AttitudeSuccess: bit 3.
-     * \@note Note ACP-115 (certain): AttitudeSuccess is written in one piece.
+     * @note Note ACP-115 (certain): AttitudeSuccess is written in one piece.
      */
     bool attitude_success;
     /** Processing Time Error: bit 4. */
@@ -41,7 +41,7 @@ typedef struct {
     bool comms_error;
     /**
      * Sample Period: bits 8 to 23, raw 0 to 65535.
-     * \@note Note ACP-113 (open): Sample period of the star tracker has no unit.
+     * @note Note ACP-113 (open): Sample period of the star tracker has no unit.
      */
     uint16_t sample_period;
     /**

@@ -23,18 +23,18 @@
 typedef struct {
     /**
      * Geocentric longitude of target: bits 0 to 31, 32-bit float, in deg.
-     * \@note Note ACP-138 (open): Target is geocentric, position is geodetic.
+     * @note Note ACP-138 (open): Target is geocentric, position is geodetic.
      */
     float geocentric_longitude_of_target;
     /**
      * Geocentric latitude of target: bits 32 to 63, 32-bit float, in deg.
-     * \@note Note ACP-138 (open): Target is geocentric, position is geodetic.
+     * @note Note ACP-138 (open): Target is geocentric, position is geodetic.
      */
     float geocentric_latitude_of_target;
     /**
      * Geocentric altitude of target: bits 64 to 95, 32-bit float, in m.
      * @note Erratum ACP-139 (certain): meter is m.
-     * \@note Note ACP-138 (open): Target is geocentric, position is geodetic.
+     * @note Note ACP-138 (open): Target is geocentric, position is geodetic.
      */
     float geocentric_altitude_of_target;
 } cubeacp_tracking_controller_target_reference_t;

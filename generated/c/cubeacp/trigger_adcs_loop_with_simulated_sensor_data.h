@@ -7,7 +7,7 @@
  * @file
  * Trigger ADCS Loop with Simulated Sensor Data: telecommand 19, 127 bytes. Table 84.
  * Runs the control loop once on the given measurements. Only valid while ADCS Run Mode is Triggered.
- * \@note Note ACP-032 (open): Simulated data are accepted while triggered, not while simulating.
+ * @note Note ACP-032 (open): Simulated data are accepted while triggered, not while simulating.
  */
 
 #include "../icdgen.h"
@@ -24,301 +24,301 @@ typedef struct {
     uint32_t unix_time;
     /**
      * Css Raw 1: bits 32 to 47, raw 0 to 65535.
-     * \@note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+     * @note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
      */
     uint16_t css_raw_1;
     /**
      * Css Raw 2: bits 48 to 63, raw 0 to 65535.
-     * \@note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+     * @note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
      */
     uint16_t css_raw_2;
     /**
      * Css Raw 3: bits 64 to 79, raw 0 to 65535.
-     * \@note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+     * @note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
      */
     uint16_t css_raw_3;
     /**
      * Css Raw 4: bits 80 to 95, raw 0 to 65535.
-     * \@note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+     * @note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
      */
     uint16_t css_raw_4;
     /**
      * Css Raw 5: bits 96 to 111, raw 0 to 65535.
-     * \@note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+     * @note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
      */
     uint16_t css_raw_5;
     /**
      * Css Raw 6: bits 112 to 127, raw 0 to 65535.
-     * \@note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+     * @note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
      */
     uint16_t css_raw_6;
     /**
      * Css Raw 7: bits 128 to 143, raw 0 to 65535.
-     * \@note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+     * @note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
      */
     uint16_t css_raw_7;
     /**
      * Css Raw 8: bits 144 to 159, raw 0 to 65535.
-     * \@note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+     * @note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
      */
     uint16_t css_raw_8;
     /**
      * Css Raw 9: bits 160 to 175, raw 0 to 65535.
-     * \@note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+     * @note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
      */
     uint16_t css_raw_9;
     /**
      * Css Raw 10: bits 176 to 191, raw 0 to 65535.
-     * \@note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
+     * @note Note ACP-033 (open): Simulated data: sun sensors have 16 bits, measured ones 8.
      */
     uint16_t css_raw_10;
     /**
      * Cam1 Raw X: bits 192 to 207, raw -32768 to 32767. Raw angle.
-     * \@note Note ACP-036 (open): Simulated data: raw camera angles.
-     * \@note Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+     * @note Note ACP-036 (open): Simulated data: raw camera angles.
+     * @note Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
      */
     int16_t cam1_raw_x;
     /**
      * Cam1 Raw Y: bits 208 to 223, raw -32768 to 32767. Raw angle.
-     * \@note Note ACP-036 (open): Simulated data: raw camera angles.
+     * @note Note ACP-036 (open): Simulated data: raw camera angles.
      */
     int16_t cam1_raw_y;
     /**
      * Cam1 Busy: bits 224 to 231, raw 0 to 255. Capture status.
-     * \@note Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+     * @note Note ACP-035 (likely): Simulated data: camera results are plain numbers.
      */
     uint8_t cam1_busy;
     /**
      * Cam1 Result: bits 232 to 239, raw 0 to 255. Detection result.
-     * \@note Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+     * @note Note ACP-035 (likely): Simulated data: camera results are plain numbers.
      */
     uint8_t cam1_result;
     /**
      * Cam2 Raw X: bits 240 to 255, raw -32768 to 32767. Raw angle.
-     * \@note Note ACP-036 (open): Simulated data: raw camera angles.
-     * \@note Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
+     * @note Note ACP-036 (open): Simulated data: raw camera angles.
+     * @note Note ACP-038 (certain): Simulated data: Cam1 first, in telemetry Cam2 first.
      */
     int16_t cam2_raw_x;
     /**
      * Cam2 Raw Y: bits 256 to 271, raw -32768 to 32767. Raw angle.
-     * \@note Note ACP-036 (open): Simulated data: raw camera angles.
+     * @note Note ACP-036 (open): Simulated data: raw camera angles.
      */
     int16_t cam2_raw_y;
     /**
      * Cam2 Busy: bits 272 to 279, raw 0 to 255. Capture status.
-     * \@note Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+     * @note Note ACP-035 (likely): Simulated data: camera results are plain numbers.
      */
     uint8_t cam2_busy;
     /**
      * Cam2 Result: bits 280 to 287, raw 0 to 255. Detection result.
-     * \@note Note ACP-035 (likely): Simulated data: camera results are plain numbers.
+     * @note Note ACP-035 (likely): Simulated data: camera results are plain numbers.
      */
     uint8_t cam2_result;
     /**
      * Mag Raw X: bits 288 to 303, raw -32768 to 32767.
-     * \@note Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+     * @note Note ACP-041 (open): Simulated data: the second magnetometer is missing.
      */
     int16_t mag_raw_x;
     /**
      * Mag Raw Y: bits 304 to 319, raw -32768 to 32767.
-     * \@note Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+     * @note Note ACP-041 (open): Simulated data: the second magnetometer is missing.
      */
     int16_t mag_raw_y;
     /**
      * Mag Raw Z: bits 320 to 335, raw -32768 to 32767.
-     * \@note Note ACP-041 (open): Simulated data: the second magnetometer is missing.
+     * @note Note ACP-041 (open): Simulated data: the second magnetometer is missing.
      */
     int16_t mag_raw_z;
     /**
      * Rate Raw X: bits 336 to 367, raw -2147483648 to 2147483647.
-     * \@note Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+     * @note Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
      */
     int32_t rate_raw_x;
     /**
      * Rate Raw Y: bits 368 to 399, raw -2147483648 to 2147483647.
-     * \@note Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+     * @note Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
      */
     int32_t rate_raw_y;
     /**
      * Rate Raw Z: bits 400 to 431, raw -2147483648 to 2147483647.
-     * \@note Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
+     * @note Note ACP-034 (open): Simulated data: rates have 32 bits, measured ones 16.
      */
     int32_t rate_raw_z;
     /**
      * Wheel Raw X: bits 432 to 447, raw -32768 to 32767, in rpm.
-     * \@note Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+     * @note Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
      */
     int16_t wheel_raw_x;
     /**
      * Wheel Raw Y: bits 448 to 463, raw -32768 to 32767, in rpm.
-     * \@note Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+     * @note Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
      */
     int16_t wheel_raw_y;
     /**
      * Wheel Raw Z: bits 464 to 479, raw -32768 to 32767, in rpm.
-     * \@note Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
+     * @note Note ACP-040 (open): Simulated data: raw wheel speeds in rpm.
      */
     int16_t wheel_raw_z;
     /**
      * Star1CameraX: bits 480 to 495, raw -32768 to 32767. Vector in the camera frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star1_camera_x;
     /**
      * Star1CameraY: bits 496 to 511, raw -32768 to 32767. Vector in the camera frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star1_camera_y;
     /**
      * Star1CameraZ: bits 512 to 527, raw -32768 to 32767. Vector in the camera frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star1_camera_z;
     /**
      * Star1InertialX: bits 528 to 543, raw -32768 to 32767. Vector in the inertial frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star1_inertial_x;
     /**
      * Star1InertialY: bits 544 to 559, raw -32768 to 32767. Vector in the inertial frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star1_inertial_y;
     /**
      * Star1InertialZ: bits 560 to 575, raw -32768 to 32767. Vector in the inertial frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star1_inertial_z;
     /**
      * Star2CameraX: bits 576 to 591, raw -32768 to 32767. Vector in the camera frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star2_camera_x;
     /**
      * Star2CameraY: bits 592 to 607, raw -32768 to 32767. Vector in the camera frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star2_camera_y;
     /**
      * Star2CameraZ: bits 608 to 623, raw -32768 to 32767. Vector in the camera frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star2_camera_z;
     /**
      * Star2InertialX: bits 624 to 639, raw -32768 to 32767. Vector in the inertial frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star2_inertial_x;
     /**
      * Star2InertialY: bits 640 to 655, raw -32768 to 32767. Vector in the inertial frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star2_inertial_y;
     /**
      * Star2InertialZ: bits 656 to 671, raw -32768 to 32767. Vector in the inertial frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star2_inertial_z;
     /**
      * Star3CameraX: bits 672 to 687, raw -32768 to 32767. Vector in the camera frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star3_camera_x;
     /**
      * Star3CameraY: bits 688 to 703, raw -32768 to 32767. Vector in the camera frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star3_camera_y;
     /**
      * Star3CameraZ: bits 704 to 719, raw -32768 to 32767. Vector in the camera frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star3_camera_z;
     /**
      * Star3InertialX: bits 720 to 735, raw -32768 to 32767. Vector in the inertial frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star3_inertial_x;
     /**
      * Star3InertialY: bits 736 to 751, raw -32768 to 32767. Vector in the inertial frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star3_inertial_y;
     /**
      * Star3InertialZ: bits 752 to 767, raw -32768 to 32767. Vector in the inertial frame.
-     * \@note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
+     * @note Note ACP-037 (open): Simulated data: star vectors without a formula, in other frames.
      */
     int16_t star3_inertial_z;
     /**
      * Gps Solution Status: bits 768 to 775.
-     * \@note Note ACP-042 (certain): GPS is spelt Gps in one field.
+     * @note Note ACP-042 (certain): GPS is spelt Gps in one field.
      */
     cubeacp_gps_solution_status_t gps_solution_status;
     /**
      * GPS Reference Week: bits 776 to 791, raw 0 to 65535.
-     * \@note Note ACP-089 (open): GPS week: with or without roll-overs.
+     * @note Note ACP-089 (open): GPS week: with or without roll-overs.
      */
     uint16_t gps_reference_week;
     /** GPS Time Milliseconds: bits 792 to 823, raw 0 to 4294967295, in ms. */
     uint32_t gps_time_milliseconds;
     /**
      * ECEF Position X: bits 824 to 855, raw -2147483648 to 2147483647, in m.
-     * \@note Note ACP-099 (certain): ECEF position: one name, two widths.
+     * @note Note ACP-099 (certain): ECEF position: one name, two widths.
      */
     int32_t ecef_position_x;
     /**
      * ECEF Velocity X: bits 856 to 871, raw -32768 to 32767, in m/s.
-     * \@note Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+     * @note Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
      */
     int16_t ecef_velocity_x;
     /**
      * ECEF Position Y: bits 872 to 903, raw -2147483648 to 2147483647, in m.
-     * \@note Note ACP-099 (certain): ECEF position: one name, two widths.
+     * @note Note ACP-099 (certain): ECEF position: one name, two widths.
      */
     int32_t ecef_position_y;
     /**
      * ECEF Velocity Y: bits 904 to 919, raw -32768 to 32767, in m/s.
-     * \@note Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+     * @note Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
      */
     int16_t ecef_velocity_y;
     /**
      * ECEF Position Z: bits 920 to 951, raw -2147483648 to 2147483647, in m.
-     * \@note Note ACP-099 (certain): ECEF position: one name, two widths.
+     * @note Note ACP-099 (certain): ECEF position: one name, two widths.
      */
     int32_t ecef_position_z;
     /**
      * ECEF Velocity Z: bits 952 to 967, raw -32768 to 32767, in m/s.
-     * \@note Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
+     * @note Note ACP-044 (open): GPS velocity: 16 bits of whole metres a second.
      */
     int16_t ecef_velocity_z;
     /**
      * X-pos Standard Deviation: bits 968 to 975, raw 0 to 255; physical `raw = value*10.0`, 0 to 25.5 m.
-     * \@note Note ACP-030 (certain): Formulas are written in two directions.
+     * @note Note ACP-030 (certain): Formulas are written in two directions.
      */
     uint8_t x_pos_standard_deviation;
     /**
      * Y-pos Standard Deviation: bits 976 to 983, raw 0 to 255; physical `raw = value*10.0`, 0 to 25.5 m.
-     * \@note Note ACP-030 (certain): Formulas are written in two directions.
+     * @note Note ACP-030 (certain): Formulas are written in two directions.
      */
     uint8_t y_pos_standard_deviation;
     /**
      * Z-pos Standard Deviation: bits 984 to 991, raw 0 to 255; physical `raw = value*10.0`, 0 to 25.5 m.
-     * \@note Note ACP-030 (certain): Formulas are written in two directions.
+     * @note Note ACP-030 (certain): Formulas are written in two directions.
      */
     uint8_t z_pos_standard_deviation;
     /**
      * X-vel Standard Deviation: bits 992 to 999, raw 0 to 255, in m/s.
-     * \@note Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+     * @note Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
      */
     uint8_t x_vel_standard_deviation;
     /**
      * Y-vel Standard Deviation: bits 1000 to 1007, raw 0 to 255, in m/s.
-     * \@note Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+     * @note Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
      */
     uint8_t y_vel_standard_deviation;
     /**
      * Z-vel Standard Deviation: bits 1008 to 1015, raw 0 to 255, in m/s.
-     * \@note Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
+     * @note Note ACP-043 (open): Velocity deviations: 8 bits of whole metres a second.
      */
     uint8_t z_vel_standard_deviation;
 } cubeacp_trigger_adcs_loop_with_simulated_sensor_data_t;

@@ -24,12 +24,12 @@
 typedef struct {
     /**
      * Log Selection: bytes 0 to 9. Mask of up to 80 telemetry frames.
-     * \@note Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
+     * @note Note ACP-184 (certain): Log selection: up to 80 flags, 63 of them assigned.
      */
     uint8_t log_selection[10];
     /**
      * Log Period: bits 80 to 95, raw 0 to 65535. 0: logging disabled.
-     * \@note Note ACP-183 (open): Log period has no unit.
+     * @note Note ACP-183 (open): Log period has no unit.
      */
     uint16_t log_period;
 } cubeacp_uart_log_configuration_t;

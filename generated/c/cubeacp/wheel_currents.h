@@ -21,20 +21,20 @@
 typedef struct {
     /**
      * Wheel1Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * \@note Note ACP-083 (open): Wheel currents: by number, described by axis.
-     * \@note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+     * @note Note ACP-083 (open): Wheel currents: by number, described by axis.
+     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
      */
     uint16_t wheel1_current;
     /**
      * Wheel2Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * \@note Note ACP-083 (open): Wheel currents: by number, described by axis.
-     * \@note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+     * @note Note ACP-083 (open): Wheel currents: by number, described by axis.
+     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
      */
     uint16_t wheel2_current;
     /**
      * Wheel3Current: bits 32 to 47, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
-     * \@note Note ACP-083 (open): Wheel currents: by number, described by axis.
-     * \@note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+     * @note Note ACP-083 (open): Wheel currents: by number, described by axis.
+     * @note Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
      */
     uint16_t wheel3_current;
 } cubeacp_wheel_currents_t;

@@ -7,8 +7,8 @@
  * @file
  * Deployment Status: telemetry 190, 5 bytes. Table 61.
  * Only for the CubeMag of type Deploy.
- * \@note Note MAG-011 (open): Deployment Status: how to tell the type, and what other types answer.
- * \@note Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
+ * @note Note MAG-011 (open): Deployment Status: how to tell the type, and what other types answer.
+ * @note Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
  */
 
 #include "../icdgen.h"
@@ -22,32 +22,32 @@
 typedef struct {
     /**
      * Burn Current: bits 0 to 31, raw 0 to 4294967295, in mA. Through the burn wire.
-     * \@note Note MAG-012 (open): Burn Current: 32 bits of whole milliamperes.
+     * @note Note MAG-012 (open): Burn Current: 32 bits of whole milliamperes.
      */
     uint32_t burn_current;
     /**
      * Deployment Pin State: bit 32. Pin that detects the deployment.
-     * \@note Note MAG-013 (open): Polarity of the deployment pins is not given.
+     * @note Note MAG-013 (open): Polarity of the deployment pins is not given.
      */
     bool deployment_pin_state;
     /**
      * Burn Pin State: bit 33. Pin that enables the burn wire.
-     * \@note Note MAG-013 (open): Polarity of the deployment pins is not given.
+     * @note Note MAG-013 (open): Polarity of the deployment pins is not given.
      */
     bool burn_pin_state;
     /**
      * Burn UnderCurrent: bit 34. Too little current through the burn wire.
-     * \@note Note MAG-014 (open): Limits of the burn current and the configured time-out.
+     * @note Note MAG-014 (open): Limits of the burn current and the configured time-out.
      */
     bool burn_under_current;
     /**
      * Burn OverCurrent: bit 35. Too much current through the burn wire.
-     * \@note Note MAG-014 (open): Limits of the burn current and the configured time-out.
+     * @note Note MAG-014 (open): Limits of the burn current and the configured time-out.
      */
     bool burn_over_current;
     /**
      * Deployment Timeout: bit 36. No deployment was detected within the configured time.
-     * \@note Note MAG-014 (open): Limits of the burn current and the configured time-out.
+     * @note Note MAG-014 (open): Limits of the burn current and the configured time-out.
      */
     bool deployment_timeout;
 } cubemag_deployment_status_t;

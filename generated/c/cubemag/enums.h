@@ -13,7 +13,7 @@
 
 /**
  * MagState: an enumeration. Table 58. State of the CubeMag service.
- * \@note Note MAG-008 (open): MagState has no deployed state.
+ * @note Note MAG-008 (open): MagState has no deployed state.
  */
 typedef uint8_t cubemag_mag_state_t;
 
@@ -47,7 +47,7 @@ static inline const char *cubemag_mag_state_name(cubemag_mag_state_t value)
 
 /**
  * MntState: an enumeration. Table 59. State of a magnetometer service.
- * \@note Note MAG-009 (open): MntState: Mnt is not explained.
+ * @note Note MAG-009 (open): MntState: Mnt is not explained.
  */
 typedef uint8_t cubemag_mnt_state_t;
 
@@ -60,12 +60,12 @@ enum {
     CUBEMAG_MNT_STATE_IDLE = 2,
     /**
      * Auto (3). Sampling automatically.
-     * \@note Note MAG-010 (open): MntState: Auto and Sample.
+     * @note Note MAG-010 (open): MntState: Auto and Sample.
      */
     CUBEMAG_MNT_STATE_AUTO = 3,
     /**
      * Sample (4).
-     * \@note Note MAG-010 (open): MntState: Auto and Sample.
+     * @note Note MAG-010 (open): MntState: Auto and Sample.
      */
     CUBEMAG_MNT_STATE_SAMPLE = 4,
     /** Error (5). */

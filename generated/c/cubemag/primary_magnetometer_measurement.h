@@ -6,7 +6,7 @@
 /**
  * @file
  * Primary Magnetometer Measurement: telemetry 197, 13 bytes. Table 68.
- * \@note Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
+ * @note Note MAG-015 (open): Deployment Status and measurements end in unexplained bits.
  */
 
 #include "../icdgen.h"
@@ -20,23 +20,23 @@
 typedef struct {
     /**
      * X_axis: bits 0 to 31, 32-bit float, in nT.
-     * \@note Note MAG-016 (likely): FLOAT is not defined.
-     * \@note Note MAG-017 (open): Axes of the measurements are not defined.
-     * \@note Note MAG-018 (certain): nT here, uT there.
+     * @note Note MAG-016 (likely): FLOAT is not defined.
+     * @note Note MAG-017 (open): Axes of the measurements are not defined.
+     * @note Note MAG-018 (certain): nT here, uT there.
      */
     float x_axis;
     /**
      * Y_axis: bits 32 to 63, 32-bit float, in nT.
-     * \@note Note MAG-016 (likely): FLOAT is not defined.
-     * \@note Note MAG-017 (open): Axes of the measurements are not defined.
-     * \@note Note MAG-018 (certain): nT here, uT there.
+     * @note Note MAG-016 (likely): FLOAT is not defined.
+     * @note Note MAG-017 (open): Axes of the measurements are not defined.
+     * @note Note MAG-018 (certain): nT here, uT there.
      */
     float y_axis;
     /**
      * Z_axis: bits 64 to 95, 32-bit float, in nT.
-     * \@note Note MAG-016 (likely): FLOAT is not defined.
-     * \@note Note MAG-017 (open): Axes of the measurements are not defined.
-     * \@note Note MAG-018 (certain): nT here, uT there.
+     * @note Note MAG-016 (likely): FLOAT is not defined.
+     * @note Note MAG-017 (open): Axes of the measurements are not defined.
+     * @note Note MAG-018 (certain): nT here, uT there.
      */
     float z_axis;
     /** Data Valid: bit 96. */

@@ -7,9 +7,9 @@
  * @file
  * Motor Power: telemetry 197, 1 byte. Table 57.
  * Whether the motor is switched on.
- * \@note Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
- * \@note Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
- * \@note Note WHL-016 (open): Motor Power: seven bits are not described.
+ * @note Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
+ * @note Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
+ * @note Note WHL-016 (open): Motor Power: seven bits are not described.
  */
 
 #include "../icdgen.h"
@@ -23,7 +23,7 @@
 typedef struct {
     /**
      * Motor Power Switch: bit 0.
-     * \@note Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
+     * @note Note WHL-015 (likely): Motor Power is described as a telecommand, with a doubled word.
      */
     bool motor_power_switch;
 } cubewheel_motor_power_t;

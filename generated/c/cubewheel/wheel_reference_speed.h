@@ -7,9 +7,9 @@
  * @file
  * Wheel Reference Speed: telemetry 196, 4 bytes. Table 56.
  * Speed that the momentum wheel is set to.
- * \@note Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
- * \@note Note WHL-012 (likely): Wheel Reference Speed is described as a telecommand.
- * \@note Note WHL-013 (open): Momentum wheel in one place, wheel in the others.
+ * @note Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
+ * @note Note WHL-012 (likely): Wheel Reference Speed is described as a telecommand.
+ * @note Note WHL-013 (open): Momentum wheel in one place, wheel in the others.
  */
 
 #include "../icdgen.h"
@@ -24,8 +24,8 @@ typedef struct {
     /**
      * Reference Speed: bits 0 to 31, 32-bit float, in rpm.
      * @note Erratum WHL-007 (certain): RPM is rpm.
-     * \@note Note WHL-009 (likely): FLOAT is not defined.
-     * \@note Note WHL-014 (open): Reference speed and reference torque: which one is in force.
+     * @note Note WHL-009 (likely): FLOAT is not defined.
+     * @note Note WHL-014 (open): Reference speed and reference torque: which one is in force.
      */
     float reference_speed;
 } cubewheel_wheel_reference_speed_t;

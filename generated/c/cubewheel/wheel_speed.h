@@ -6,7 +6,7 @@
 /**
  * @file
  * Wheel Speed: telemetry 188, 5 bytes. Table 47.
- * \@note Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
+ * @note Note WHL-005 (certain): Table numbers collide with those of the manual and of CubeMag.
  */
 
 #include "../icdgen.h"
@@ -22,13 +22,13 @@ typedef struct {
     /**
      * Wheel Speed: bits 0 to 31, 32-bit float, in rpm.
      * @note Erratum WHL-007 (certain): RPM is rpm.
-     * \@note Note WHL-008 (open): Wheel speed: the positive direction is not given.
-     * \@note Note WHL-009 (likely): FLOAT is not defined.
+     * @note Note WHL-008 (open): Wheel speed: the positive direction is not given.
+     * @note Note WHL-009 (likely): FLOAT is not defined.
      */
     float wheel_speed;
     /**
      * Wheel Error State: bits 32 to 39.
-     * \@note Note WHL-010 (open): Wheel Error State: data that are valid are an error state.
+     * @note Note WHL-010 (open): Wheel Error State: data that are valid are an error state.
      */
     cubewheel_wheel_error_state_t wheel_error_state;
 } cubewheel_wheel_speed_t;

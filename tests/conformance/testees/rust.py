@@ -11,13 +11,13 @@ from typing import NamedTuple
 
 from icdgen import __version__
 from icdgen.backends import Identifier
-from icdgen.backends.rust import CRATE, constants, message_rows, names, wire
-from icdgen.backends.rust.messages import FieldRow, MessageRow
-from icdgen.backends.rust.names import Enums
-from icdgen.backends.rust.nodes import id_type
+from icdgen.backends.origin import origin
+from icdgen.backends.rust import CRATE, names, wire
 from icdgen.backends.rust.text import string
-from icdgen.icd.model import Icd, Node
+from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
+from icdgen.icd.model import Icd
 from icdgen.protocol import facts
+from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
 
 WIRE = ("ask", "client", "file", "logs", "wire")  # what answers requests about the protocol
@@ -69,62 +69,53 @@ class Dispatcher(NamedTuple):
 class NodeEntry:
     """What the testee's template of a node is given."""
 
-    def __init__(self, crate: str, icd: Icd, node: Node, rows: dict[str, list[MessageRow]], enums: Enums) -> None:
+    def __init__(self, crate: str, node: NodeDescription, id_bits: int) -> None:
         self.name, self.crate = node.name, crate
-        spoken = [row for one in (*icd.included(node), node) for row in rows[one.name]]
-        self.routes = [route for row in spoken for route in self._routes(row)]
+        self.routes = [route for message in node.spoken for route in self._routes(message)]
         self.enums = [
             EnumEntry(
-                string(e.name), f"{crate}::{node.name}::enums::{names.type_name(e, node)}", f"u{enums.storage(e)}"
+                string(enum.enum.name),
+                f"{crate}::{node.name}::enums::{names.type_name(enum)}",
+                f"u{enum.storage.bits}",
             )
-            for e in node.enums
+            for enum in node.enums
         ]
-        kind = id_type(icd)
-        has = {
-            way: any(getattr(row.message, f"{way}_id") is not None for row in spoken)
-            for way in ("telecommand", "telemetry")
-        }
-        self.sums = [Dispatcher(way, way.capitalize(), kind) for way, there in has.items() if there]
+        has = {"telecommand": bool(node.telecommands), "telemetry": bool(node.telemetry)}
+        self.sums = [Dispatcher(way, way.capitalize(), f"u{id_bits}") for way, there in has.items() if there]
         self.telecommand, self.telemetry = (f"Some({way})" if there else "None" for way, there in has.items())
-        self.node_type = self._constant("NODE_TYPE", node.node_type)
-        self.interface_version = self._constant("INTERFACE_VERSION", node.interface_version)
-        self.messages = [self._message(row) for row in rows[node.name]]
+        self.node_type = self._constant("NODE_TYPE", node.node.node_type)
+        self.interface_version = self._constant("INTERFACE_VERSION", node.node.interface_version)
+        self.messages = [self._message(message) for message in node.messages]
 
     def _constant(self, name: str, value: int | None) -> str:
         return "None" if value is None else f"Some({self.crate}::{self.name}::{name} as u64)"
 
-    def _path(self, row: MessageRow) -> str:
-        return f"{self.crate}::{row.node.name}::{row.type}"
+    def _path(self, message: MessageDescription) -> str:
+        return f"{self.crate}::{message.node.name}::{names.type_name(message)}"
 
-    def _routes(self, row: MessageRow) -> Iterator[Route]:
-        path = self._path(row)
-        if row.message.id is not None:
-            yield Route(row.message.kind.capitalize(), f"{path}::ID", path)
-        else:
-            yield Route("Set", f"{path}::SET_ID", path)
-            yield Route("Get", f"{path}::GET_ID", path)
+    def _routes(self, message: MessageDescription) -> Iterator[Route]:
+        path = self._path(message)
+        ways = {"id": message.message.kind.capitalize(), "set_id": "Set", "get_id": "Get"}
+        for id in message.ids:
+            yield Route(ways[id.name], f"{path}::{id.name.upper()}", path)
 
-    def _message(self, row: MessageRow) -> MessageEntry:
-        path = self._path(row)
-        ids = ", ".join(f"Self::{one.name} as u16" for one in row.ids)
-        encode = "self.try_to_bytes().map(Vec::from)" if row.fits else "Ok(Vec::from(self.to_bytes()))"
-        return MessageEntry(path, ids, encode, [_field(one, row.node) for one in row.fields])
+    def _message(self, message: MessageDescription) -> MessageEntry:
+        ids = ", ".join(f"Self::{id.name.upper()} as u16" for id in message.ids)
+        encode = "self.try_to_bytes().map(Vec::from)" if message.is_narrow else "Ok(Vec::from(self.to_bytes()))"
+        return MessageEntry(self._path(message), ids, encode, [_field(field) for field in message.fields])
 
 
-def _field(row: FieldRow, node: Node) -> FieldEntry:
-    field, scale, special, limits = row.model, "None", "Vec::new", "Vec::new"
-    if field.scale is not None:
-        name = names.physical_name(field, row.name)
-        scale = f"Some(Scale {{ get: Self::{name}, set: Self::set_{name} }})"
-    if field.special:
-        values = ", ".join(f"i128::from(Self::{name})" for name in constants.special_names(field, node))
-        special = f"|| vec![{values}]"
-    if field.limits is not None:
-        values = ", ".join(
-            f'("{key}", Self::{name} as f64)' for key, name in constants.limit_names(field, node).items()
-        )
+def _field(field: FieldDescription) -> FieldEntry:
+    scale, special, limits = "None", "Vec::new", "Vec::new"
+    if field.steps is not None:
+        scale = f"Some(Scale {{ get: Self::{field.physical_name}, set: Self::set_{field.physical_name} }})"
+    names = [(one.key, f"Self::{one.name.upper()}") for one in field.constants if one.key != "const"]
+    if field.field.special:
+        special = f"|| vec![{', '.join(f'i128::from({name})' for key, name in names if key == 'special')}]"
+    if field.bounds:
+        values = ", ".join(f'("{key}", {name} as f64)' for key, name in names if key != "special")
         limits = f"|| vec![{values}]"
-    return FieldEntry(string(field.name), row.name, scale, special, limits)
+    return FieldEntry(string(field.field.name), field.name, scale, special, limits)
 
 
 class RustTesteeBackend:
@@ -138,11 +129,10 @@ class RustTesteeBackend:
     def __init__(self, crate: str = CRATE) -> None:
         self.crate = crate
 
-    def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
+    def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """A package with one binary, ``testee``."""
-        common = {"version": __version__, "crate": self.crate}
-        enums = Enums(icd)
-        rows = {node.name: message_rows(icd, node, enums) for node in icd.nodes}
+        common = {"origin": origin(), "version": __version__, "crate": self.crate}
+        description = describe(icd)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         known = [facts.of(icd, node) for node in icd.nodes if icd.protocol_of(node)]
         for name in ("main", "json", "protocol", "subject", *(WIRE if known else ())):
@@ -155,8 +145,8 @@ class RustTesteeBackend:
             longest=max(map(wire.longest, known), default=0),
             **common,
         )
-        for node in icd.nodes:
-            entry = NodeEntry(self.crate, icd, node, rows, enums)
+        for node in description.nodes:
+            entry = NodeEntry(self.crate, node, description.id_bits)
             yield PurePosixPath(f"src/nodes/{node.name}.rs"), render("node.rs.j2", node=entry, **common)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:

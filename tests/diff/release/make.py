@@ -8,7 +8,7 @@ from pathlib import Path
 import yaml
 
 from icdgen.diagnostics import Finding
-from icdgen.icd.load import load
+from icdgen.loading import load
 from tests.conftest import ROOT
 
 FACTS = Path(__file__).with_name("reconstruction.yaml")
@@ -146,4 +146,5 @@ def _without_places(entry: str, hits: set[int]) -> str:
 def _write(path: Path, overlay: dict) -> None:
     entries = overlay.pop("entries", [])
     dump = lambda value: yaml.safe_dump(value, sort_keys=False, allow_unicode=True, width=10_000)  # noqa: E731
-    path.write_text(f"# {_MARK}\n{dump(overlay)}entries:\n{dump(entries)}", encoding="utf-8")
+    end = f"entries:\n{dump(entries)}" if entries else ""  # last: places of logs are added behind them
+    path.write_text(f"# {_MARK}\n{dump(overlay)}{end}", encoding="utf-8")

@@ -10,7 +10,7 @@ from icdgen.backends.c.prefixes import part_of_unit
 from icdgen.backends.c.statement import call, head
 from icdgen.backends.c.text import comment
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe.comments import physical_text, span_text, words
+from icdgen.describe.comments import physical_comment, physical_name, words
 
 
 class Accessor(NamedTuple):
@@ -33,12 +33,12 @@ def accessors(message: MessageDescription) -> list[Accessor]:
 def _double(field: FieldDescription) -> Accessor:
     assert field.steps is not None
     scaled = physical.scaled(field)
-    what = physical_text(field.field)
+    what = physical_name(field.field)
     function, *arguments = scaled.setter
     return _accessor(
         field,
         (field.physical_name, "double"),
-        (f"{what}: {span_text(field.steps)}.", what),
+        (physical_comment(field.field, field.steps), what),
         scaled.getter,
         call(f"return {function}", (f"&message->{field.name}", *arguments)),
     )

@@ -13,7 +13,7 @@ WIDTH = 120
 
 _MARKUP = re.compile(r"[\\@]|<(?=[A-Za-z/!?])|[&#%](?=[\w#:])|(?:(?<![^\s<{(\[,:;]))[*_~](?=\S)|\[(?=[^\]]*\][(\[:])")
 _BLOCK = re.compile(r"(\d*)([-+*=#]+\Z|[.)]\Z|>)")  # begins a list, a heading or a quotation where it begins a line
-_COMMAND = re.compile(r"@file\Z|@note (?=Erratum )")
+_COMMAND = re.compile(r"@file\Z|@note (?=Erratum |Note )")
 
 
 @lru_cache(maxsize=8192)

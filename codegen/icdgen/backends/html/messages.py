@@ -8,16 +8,12 @@ from typing import Any
 from icdgen.backends.html import drawing, fields, plan, texts, wire
 from icdgen.backends.html.atlas import Atlas
 from icdgen.backends.html.examples import examples, frames
-from icdgen.backends.html.usage import Usage
-from icdgen.icd.model import Icd, Message, Node
+from icdgen.backends.html.usage import snippets
+from icdgen.describe import describe
+from icdgen.icd.model import Message, Node
 
 
-def usage(icd: Icd) -> Usage:
-    """What makes the snippets; once for all messages."""
-    return Usage(icd)
-
-
-def values(atlas: Atlas, node: Node, message: Message, snippets: Usage) -> dict[str, Any]:
+def values(atlas: Atlas, node: Node, message: Message) -> dict[str, Any]:
     """Values of the page of a message that ``node`` declares."""
     anchors = atlas.anchors(message)
     picture = drawing.draw(message, node, anchors)
@@ -36,7 +32,7 @@ def values(atlas: Atlas, node: Node, message: Message, snippets: Usage) -> dict[
         "example_data": message.telemetry_id is not None and bool(data),
         "examples": shown,
         "frames": frames(message, node),
-        "snippets": snippets.snippets(message),
+        "snippets": snippets(describe(atlas.icd).message(message)),
         "contains": atlas.contains.get((message.node, message.name), []),
         "contained_in": atlas.contained_in.get((message.node, message.name), []),
         "errata": atlas.about(message),

@@ -46,10 +46,9 @@ def files(icd: Icd, render, previous: Side | None = None) -> Iterator[tuple[Pure
         from icdgen.backends.html import changes
 
         yield page(CHANGES, "changes.html.j2", **changes.values(atlas, previous))
-    usage = messages.usage(icd)
     for node in icd.nodes:
         yield page(atlas.links.node(node.name), "node.html.j2", **nodes.values(atlas, node))
-        shown = [messages.values(atlas, node, message, usage) for message in node.messages]
+        shown = [messages.values(atlas, node, message) for message in node.messages]
         for before, one, after in zip([None, *shown], shown, [*shown[1:], None], strict=False):
             yield page(one["url"], "message.html.j2", before=before, after=after, **one)
         yield page(atlas.links.printed(node.name), "print.html.j2", shown=shown, **nodes.values(atlas, node))

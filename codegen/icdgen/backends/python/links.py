@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from icdgen.backends.python import names
 from icdgen.backends.python.literals import Call, Noted, Verbatim, expression
 from icdgen.backends.python.text import prose
+from icdgen.describe import describe
 from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
 from icdgen.protocol import facts as read
 from icdgen.protocol.declared import facts_of
@@ -207,8 +207,7 @@ class Maker:
 
     def attributes(self, message: Message) -> dict[str, str]:
         """Attributes of a message by the names of its fields."""
-        owner = self.icd.node(message.node)
-        return {field.name: names.attribute(field, owner) for field in message.fields}
+        return {one.field.name: one.name for one in describe(self.icd).message(message).fields}
 
 
 def made(name: str, part: Any) -> Call:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from icdgen.backends.python.black import WIDTH
-from icdgen.backends.python.text import literal, sentence, wrapped
+from icdgen.backends.lines import wrapped
+from icdgen.backends.python.text import WIDTH, literal, prose
+from icdgen.describe.comments import sentence
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +59,7 @@ def _row(head: str, item: object, indent: int) -> str:
         return f"{pad}{head}{expression(item, indent, len(head), 1)},\n"
     comment = ""
     for note in item.notes:
-        first, *rest = wrapped(" ".join(sentence(note).split()), WIDTH - indent - 4)
+        first, *rest = wrapped(prose(sentence(note)), WIDTH - indent - 4)
         # What goes on is indented, so that no line of it can be read as an instruction to a tool.
         comment += f"{pad}# {first}\n" + "".join(f"{pad}#   {line}\n" for line in rest)
     return comment + _row(head, item.item, indent)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import keyword
 from zlib import crc32
 
-from icdgen.icd.model import Enum, Field, Member, Message, Node
-from icdgen.naming import camel, snake, upper, words
+from icdgen.describe import EnumDescription, MessageDescription
+from icdgen.naming import camel
 
 RESERVED = frozenset(keyword.kwlist)
 
@@ -26,31 +26,19 @@ TYPES = "_types"  # the subpackage of a node that holds its messages and enumera
 _LONGEST = 200  # characters of a module's name, for the sake of file systems
 
 
-def class_name(one: Message | Enum, node: Node) -> str:
+def class_name(one: MessageDescription | EnumDescription) -> str:
     """``EstimatedAttitudeAngles``"""
-    return camel(words(one.identifier or one.name, node.vocabulary))
+    return camel(one.words)
 
 
-def module_name(one: Message | Enum, node: Node) -> str:
+def module_name(one: MessageDescription | EnumDescription) -> str:
     """``estimated_attitude_angles``; it never stands in a user's program."""
-    name = snake(words(one.identifier or one.name, node.vocabulary))
-    if len(name) > _LONGEST:
-        return f"{name[:_LONGEST]}_{crc32(name.encode()):08x}"
-    return f"{name}_" if name in RESERVED else name
+    if len(one.name) > _LONGEST:
+        return f"{one.name[:_LONGEST]}_{crc32(one.name.encode()):08x}"
+    return f"{one.name}_" if one.name in RESERVED else one.name
 
 
-def attribute(field: Field, node: Node) -> str:
-    """``estimated_roll_angle``"""
-    return snake(words(field.identifier or field.name, node.vocabulary))
-
-
-def physical(field: Field, attribute: str) -> str:
-    """``estimated_roll_angle_deg``, or ``..._physical`` where there is no unit; empty without a scale."""
-    if field.scale is None:
-        return ""
-    return f"{attribute}_{field.unit.identifier if field.unit else 'physical'}"
-
-
-def member(one: Member, node: Node) -> str:
-    """``Y_THOMSON_SPIN``"""
-    return upper(words(one.identifier or one.name, node.vocabulary))
+def home(one: MessageDescription | EnumDescription, node: str, up: str) -> str:
+    """The module, as one that stands ``up`` dots below the package imports it; ``node`` is that one's node."""
+    start = "." if one.node.name == node else f"{up}{one.node.name}."
+    return f"{start}{TYPES}.{module_name(one)}"

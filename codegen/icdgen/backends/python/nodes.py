@@ -2,58 +2,47 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+from icdgen.backends.lines import exploded
 from icdgen.backends.python import names
-from icdgen.backends.python.black import WIDTH, bracketed, by_module, display, exploded, imported
-from icdgen.backends.python.text import docstring, literal, prose, sentence
-from icdgen.icd.model import Enum, Icd, Node
+from icdgen.backends.python.text import docstring, literal, paragraph, prose
+from icdgen.describe import Description, EnumDescription, MessageDescription, NodeDescription
+from icdgen.describe.comments import sentence
+from icdgen.icd.model import Node
 
 
-def values(icd: Icd, node: Node) -> dict[str, object]:
+def values(node: NodeDescription, description: Description) -> dict[str, object]:
     """What the node template needs."""
-    homes = []
-    enums = []
-    classes: dict[tuple[str, str], str] = {}
-    for owner in (*icd.included(node), node):
-        for one in (*owner.messages, *owner.enums):
-            module = names.module_name(one, owner)
-            home = f".{names.TYPES}.{module}" if owner is node else f"..{owner.name}.{names.TYPES}.{module}"
-            homes.append((home, names.class_name(one, owner)))
-        for message in owner.messages:
-            classes[owner.name, message.name] = names.class_name(message, owner)
-    for enum in node.enums:
-        enums.append(f'{literal(enum.name)}: "{names.class_name(enum, node)}"')
-    homes.sort(key=by_module)
-    linked = [("._link", "LINK")] if icd.protocol_of(node) else []
-    messages = [(m, classes[m.node, m.name]) for m in icd.messages_of(node)]
+    declared: list[tuple[str, str]] = []
+    for owner in map(description.node, (*description.icd.included(node.node), node.node)):
+        both: tuple[MessageDescription | EnumDescription, ...] = (*owner.messages, *owner.enums)
+        declared += ((names.home(one, node.name, ".."), names.class_name(one)) for one in both)
+    linked = [("._link", "LINK")] if node.is_linked else []
     return {
-        "doc": docstring(0, _documentation(node)),
-        "imports": [f"    {imported(4, home, name, name)}" for home, name in sorted(homes + linked, key=by_module)],
-        "constants": _constants(node),
-        "linked": bool(linked),
-        "homes": exploded(0, "{", [f'"{name}": "{home}"' for home, name in homes], "}"),
-        "telecommands": _by_id((m.telecommand_id, name) for m, name in messages),
-        "telemetry": _by_id((m.telemetry_id, name) for m, name in messages),
-        "enums": exploded(0, "{", enums, "}"),
+        "doc": docstring(0, _documentation(node.node)),
+        "imports": sorted(f"from {home} import {name} as {name}" for home, name in declared + linked),
+        "constants": _constants(node.node),
+        "linked": node.is_linked,
+        "homes": exploded("{", [f'"{name}": "{home}"' for home, name in sorted(declared)], "}"),
+        "telecommands": _by_id((one.message.telecommand_id, one) for one in node.telecommands),
+        "telemetry": _by_id((one.message.telemetry_id, one) for one in node.telemetry),
+        "enums": exploded("{", [f'{literal(one.enum.name)}: "{names.class_name(one)}"' for one in node.enums], "}"),
     }
 
 
-def _by_id(pairs) -> str:
-    found = sorted((id, name) for id, name in pairs if id is not None)
-    return exploded(0, "{", [f'{id}: "{name}"' for id, name in found], "}")
+def _by_id(pairs: Iterable[tuple[int | None, MessageDescription]]) -> str:
+    found = sorted((id, names.class_name(one)) for id, one in pairs if id is not None)
+    return exploded("{", [f'{id}: "{name}"' for id, name in found], "}")
 
 
 def _documentation(node: Node) -> list[str]:
-    paragraphs = [sentence(node.title)]
-    if node.summary:
-        paragraphs.append(sentence(node.summary))
     source = dict(node.document)
-    if source:
-        known = [source[key] for key in ("document", "version", "date") if key in source]
-        section = f", section {source['section']}" if "section" in source else ""
-        paragraphs.append(f"From {sentence(', '.join(known) + section)}")
-    for one in node.missing:
-        paragraphs.append(f"Missing: {one.kind} {one.id}, {prose(one.name)}. {sentence(one.why)}")
-    return paragraphs
+    known = [source[key] for key in ("document", "version", "date") if key in source]
+    known[-1:] = [f"{last}, section {source['section']}" if "section" in source else last for last in known[-1:]]
+    paragraphs = [sentence(node.title), sentence(node.summary), sentence(f"From {', '.join(known)}") if known else ""]
+    paragraphs += (f"Missing: {one.kind} {one.id}, {sentence(one.name)} {sentence(one.why)}" for one in node.missing)
+    return [paragraph(text) for text in paragraphs if text]
 
 
 def _constants(node: Node) -> list[str]:
@@ -66,38 +55,28 @@ def _constants(node: Node) -> list[str]:
     return found
 
 
-def enum_values(enum: Enum, node: Node) -> dict[str, object]:
+def enum_values(enum: EnumDescription) -> dict[str, object]:
     """What the enumeration template needs."""
-    table = f", table {enum.table}" if enum.table is not None else ""
-    paragraphs = [f"{prose(enum.name)}{table}."]
-    if enum.summary:
-        paragraphs.append(sentence(enum.summary))
-    paragraphs += [f"{e.label} {prose(e.id)}: {sentence(e.title)}" for e in enum.errata]
     members = []
-    for member in enum.members:
-        notes = [sentence(member.summary)] if member.summary else []
-        notes += [f"{e.label} {prose(e.id)}: {sentence(e.title)}" for e in member.errata]
-        declaration = member_declaration(names.member(member, node), str(member.value), literal(member.name))
+    for one in enum.members:
+        notes = [
+            paragraph(text) for text in one.comment.paragraphs[1:]
+        ]  # the head says name and value, as the code does
+        declaration = f"{one.name.upper()} = {one.member.value}, {literal(one.member.name)}"
         members.append((declaration, docstring(4, notes) if notes else ""))
     return {
-        "head": bracketed(0, f"class {names.class_name(enum, node)}(", ["_enumeration.OpenEnum"], "):"),
-        "module_doc": docstring(0, [f"{prose(enum.name)}, an enumeration of {prose(node.title)}."]),
-        "doc": docstring(4, paragraphs),
+        "name": names.class_name(enum),
+        "module_doc": docstring(0, [f"{prose(enum.enum.name)}, an enumeration of {prose(enum.node.title)}."]),
+        "doc": docstring(4, map(paragraph, enum.comment.paragraphs)),
         "members": members,
     }
 
 
-def member_declaration(name: str, value: str, label: str) -> str:
-    """``IDLE = 0, "Idle"``"""
-    line = f"{name} = {value}, {label}"
-    return line if len(line) + 4 <= WIDTH else exploded(4, f"{name} = (", [value, label], ")").lstrip()
-
-
-def listed(icd: Icd) -> dict[str, object]:
+def listed(description: Description) -> dict[str, object]:
     """What the package's own files say of the nodes."""
-    found = sorted(node.name for node in icd.nodes)
+    found = sorted(node.name for node in description.nodes)
     return {
-        "imports": [imported(4, ".", name, name) for name in found],
-        "nodes": display(0, "NODES = (", [f'"{name}"' for name in found], ")"),
-        "titles": [(node.name, prose(node.title)) for node in icd.nodes],
+        "imports": [f"from . import {name} as {name}" for name in found],
+        "nodes": exploded("NODES = (", [f'"{name}"' for name in found], ")"),
+        "titles": [(node.name, prose(node.node.title)) for node in description.nodes],
     }

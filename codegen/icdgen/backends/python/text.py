@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from icdgen.backends.python.black import WIDTH
+from icdgen.backends.lines import wrapped
+
+WIDTH = 88
 
 _PLAIN = re.compile(r"[ -!#-\[\]-~]*\Z")  # printable ASCII without double quote and backslash
 # In both a backslash takes the meaning from what follows: of inline markup, and of what begins a list, a directive, a field.
@@ -34,49 +36,28 @@ def _character(c: str) -> str:
 def prose(text: str) -> str:
     """Text for a docstring: one line, nothing that ends or escapes from it, and nothing that reStructuredText or Markdown take
     for markup."""
-    text = " ".join(text.split())
-    if not text.replace(" ", "").isalnum():
-        text = _BLOCK.sub(r"\g<1>\\", _MARKUP.sub(r"\\\g<0>", text))
+    return _spelled([" ".join(text.split())])
+
+
+def paragraph(text: str) -> str:
+    """`prose` of a description's paragraph, in which text in backticks is code."""
+    return _spelled(text.split("`"))
+
+
+def _spelled(parts: list[str]) -> str:
+    parts[::2] = [part if part.replace(" ", "").isalnum() else _MARKUP.sub(r"\\\g<0>", part) for part in parts[::2]]
+    text = _BLOCK.sub(r"\g<1>\\", "`".join(parts))
     if _PLAIN.match(text):
         return text
     return "".join('\\"' if c == '"' else _character(c) for c in text)
 
 
-def sentence(text: str) -> str:
-    """`prose` that ends like a sentence, so that a docstring never ends in a quote."""
-    text = prose(text)
-    return text if text.endswith((".", "!", "?")) else f"{text}."
-
-
-def wrapped(text: str, width: int) -> list[str]:
-    """The words of ``text`` on lines of at most ``width`` characters, as far as words allow."""
-    if len(text) <= width:
-        return [text]
-    lines, line = [], ""
-    for word in text.split():
-        if line and len(line) + 1 + len(word) > width:
-            lines.append(line)
-            line = word
-        else:
-            line = f"{line} {word}" if line else word
-    return [*lines, line]
-
-
 def docstring(indent: int, paragraphs: Iterable[str]) -> str:
     """Paragraphs (of `prose`) between triple quotes; the first line stands without its indentation."""
-    paragraphs = list(paragraphs)
     pad = " " * indent
-    if len(paragraphs) == 1:
-        text = f'"""{paragraphs[0]}"""'
-        if len(text) + indent <= WIDTH or " " not in paragraphs[0]:
-            return text
-        lines = wrapped(text[:-3], WIDTH - indent)
-        if len(lines) == 1:  # only the closing quotes do not fit
-            lines = wrapped(text[:-3], len(lines[0]) - 1)
-        return f"\n{pad}".join(lines) + f'\n{pad}"""'
-    blocks = []
-    for number, paragraph in enumerate(paragraphs):
-        first = "" if number else '"""'
-        blocks.append(f"\n{pad}".join(wrapped(first + paragraph, WIDTH - indent)))
-    text = f"\n\n{pad}".join(blocks)
+    first, *others = paragraphs
+    if not others and (len(first) + 6 + indent <= WIDTH or " " not in first):
+        return f'"""{first}"""'
+    blocks = [f'"""{first}', *others]
+    text = f"\n\n{pad}".join(f"\n{pad}".join(wrapped(block, WIDTH - indent)) for block in blocks)
     return f'{text}\n{pad}"""'

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from icdgen.backends.rust import comments, names
-from icdgen.backends.rust.names import Enums
-from icdgen.backends.rust.text import arm, doc, implementation, integer, signature, string
-from icdgen.icd.model import Enum, Node
+from icdgen.backends.rust import names
+from icdgen.backends.rust.text import arm, doc, integer, prose, string
+from icdgen.describe import EnumDescription
 
 
 class Variant(NamedTuple):
@@ -24,29 +23,23 @@ class Variant(NamedTuple):
 class EnumRow:
     """What the template is given of an enumeration."""
 
-    def __init__(self, enum: Enum, node: Node, enums: Enums) -> None:
-        self.type = names.type_name(enum, node)
-        self.name = string(enum.name)
-        self.doc = doc(comments.enum(enum))
-        bits = enums.storage(enum)
-        self.raw = f"u{bits}"
-        self.other = names.catch_all(enum, node)
+    def __init__(self, enum: EnumDescription) -> None:
+        self.type = names.type_name(enum)
+        self.doc = doc(map(prose, enum.comment.paragraphs))
+        self.raw = f"u{enum.storage.bits}"
+        self.other = names.catch_all(enum)
         self.members = []
-        for member in enum.members:
-            name = names.variant_name(member, node)
+        for one in enum.members:
+            name, value = names.type_name(one), one.member.value
             self.members.append(
                 Variant(
                     name,
-                    doc(comments.member(member), "    "),
-                    member.value == 0,
-                    arm("            ", integer(member.value), f"Self::{name}"),
-                    arm("            ", f"Self::{name}", integer(member.value)),
-                    arm("            ", f"Self::{name}", string(member.name)),
+                    doc(map(prose, one.comment.paragraphs), "    "),
+                    value == 0,
+                    arm(integer(value), f"Self::{name}"),
+                    arm(f"Self::{name}", integer(value)),
+                    arm(f"Self::{name}", string(one.member.name)),
                 )
             )
-        self.complete = len(enum.members) == 1 << bits
+        self.complete = len(enum.members) == 1 << enum.storage.bits
         self.has_zero = any(member.default for member in self.members)
-        self.enumeration_head = implementation("Enumeration", self.type)
-        self.from_raw_head = implementation(f"From<{self.raw}>", self.type)
-        self.to_raw_head = implementation(f"From<{self.type}>", self.raw)
-        self.to_raw_signature = signature("fn from", (f"value: {self.type}",), "Self")

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from icdgen.backends.rust.text import doc, integer, prose, sentence, string
+from icdgen.backends.rust.text import doc, integer, prose, string
+from icdgen.describe.comments import sentence
 
 STEP = "    "
 
@@ -32,7 +33,7 @@ class Struct(NamedTuple):
     flat: bool = False
 
 
-class Rows(tuple):
+class Rows(tuple[object, ...]):
     """A reference to an array, one element a line."""
 
     __slots__ = ()
@@ -77,7 +78,7 @@ def _literal(value: object, why: Callable[[str], str | None], indent: str) -> st
     for part in value.parts:
         reason = why(part.source) if part.source else None
         if reason:
-            lines.append(doc([f"Assumed. {sentence(prose(reason))}"], indent + STEP, "//"))
+            lines.append(doc([f"Assumed. {prose(sentence(reason))}"], indent + STEP, "//"))
         lines.append(f"{indent}{STEP}{part.name}: {_literal(part.value, why, indent + STEP)},")
     return f"{value.name} {{\n" + "\n".join(lines) + f"\n{indent}}}"
 

@@ -1,9 +1,11 @@
-"""Names in Rust: identifiers of everything that the generated crate declares, and the words that cannot be."""
+"""Names in Rust: of types, variants and modules, and the words that cannot be names."""
 
 from __future__ import annotations
 
-from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
-from icdgen.naming import camel, snake, upper, words
+from icdgen.describe import EnumDescription, FieldDescription, MessageDescription
+from icdgen.describe.enums import MemberDescription
+from icdgen.icd.model import Node
+from icdgen.naming import camel
 
 # Strict, reserved and weak keywords of the editions 2015 to 2024 that no item, field or variant may be called without `r#`.
 RESERVED = frozenset("""
@@ -25,84 +27,40 @@ USED_IN_NODES = (ENUMS_MODULE, "u8", "u16", "u32", "u64", "usize", "str", "serde
 CATCH_ALL = ("Unknown", "Unlisted", "Unnamed", "AnyOther")
 
 
-def parts(thing: Message | Field | Enum | Member, node: Node) -> tuple[str, ...]:
-    """Words of the thing's name."""
-    return words(thing.identifier or thing.name, node.vocabulary)
+def type_name(one: MessageDescription | EnumDescription | MemberDescription) -> str:
+    """``EstimatedAttitudeAngles``; of a member, the name of its variant: ``NoControl``."""
+    return camel(one.words)
 
 
-def type_name(thing: Message | Enum, node: Node) -> str:
-    """``EstimatedAttitudeAngles``"""
-    return camel(parts(thing, node))
-
-
-def file_name(message: Message, node: Node) -> str:
-    """Module of a message."""
-    return snake(parts(message, node))
-
-
-def field_name(field: Field, node: Node) -> str:
-    """``estimated_roll_angle``"""
-    return snake(parts(field, node))
-
-
-def constant_name(field: Field, node: Node) -> str:
-    """``ESTIMATED_ROLL_ANGLE``"""
-    return upper(parts(field, node))
-
-
-def physical_name(field: Field, name: str) -> str:
-    """Name of the physical getter of the field that is called ``name``: ``estimated_roll_angle_deg``."""
-    return f"{name}_{field.unit.identifier if field.unit else 'physical'}"
-
-
-def variant_name(member: Member, node: Node) -> str:
-    """``NoControl``"""
-    return camel(parts(member, node))
-
-
-def catch_all(enum: Enum, node: Node) -> str:
+def catch_all(enum: EnumDescription) -> str:
     """The variant for values without a name."""
-    taken = {variant_name(member, node) for member in enum.members}
+    taken = {type_name(member) for member in enum.members}
     return next((name for name in CATCH_ALL if name not in taken), CATCH_ALL[0])
 
 
-class Enums:
-    """Where each enumeration's type stands, and the integer that holds its values."""
-
-    def __init__(self, icd: Icd) -> None:
-        self._nodes = {node.name: node for node in icd.nodes}
-        self._bits: dict[tuple[str, str], int] = {}
-        self._paths: dict[tuple[str, str, str], str] = {}
-        for node in icd.nodes:
-            for enum in node.enums:
-                self._widen(enum, max((member.value.bit_length() for member in enum.members), default=1))
-            for message in node.messages:
-                for field in message.fields:
-                    if field.enum is not None:
-                        self._widen(field.enum, field.bits)
-
-    def _widen(self, enum: Enum, bits: int) -> None:
-        key = (enum.node, enum.name)
-        self._bits[key] = max(self._bits.get(key, 1), bits)
-
-    def storage(self, enum: Enum) -> int:
-        """8, 16, 32 or 64: bits of the integer that holds every value of the enumeration."""
-        return storage(self._bits[enum.node, enum.name])
-
-    def path(self, enum: Enum, node: Node) -> str:
-        """The type as the messages of ``node`` write it."""
-        key = (enum.node, enum.name, node.name)
-        if key not in self._paths:
-            name = f"{ENUMS_MODULE}::{type_name(enum, self._nodes[enum.node])}"
-            self._paths[key] = name if enum.node == node.name else f"crate::{enum.node}::{name}"
-        return self._paths[key]
+def enum_path(enum: EnumDescription, node: Node) -> str:
+    """The type as the messages of ``node`` write it."""
+    name = f"{ENUMS_MODULE}::{type_name(enum)}"
+    return name if enum.node.name == node.name else f"crate::{enum.node.name}::{name}"
 
 
-def storage(bits: int) -> int:
-    """The smallest of 8, 16, 32 and 64 that ``bits`` fit in."""
-    return 8 if bits <= 8 else 16 if bits <= 16 else 32 if bits <= 32 else 64
+def message_path(message: MessageDescription, node: Node) -> str:
+    """The type of a message as the module of ``node`` writes it."""
+    return type_name(message) if message.node.name == node.name else f"crate::{message.node.name}::{type_name(message)}"
 
 
-def integer_type(field: Field) -> str:
+def integer_type(field: FieldDescription) -> str:
     """The integer that holds the raw value."""
-    return f"{'i' if field.type == 'int' else 'u'}{storage(field.bits)}"
+    return f"{'i' if field.storage.signed else 'u'}{field.storage.bits}"
+
+
+def raw_type(field: FieldDescription) -> str:
+    """Type of the raw value in the message's struct."""
+    one = field.field
+    if field.enum is not None:
+        return f"Coded<{enum_path(field.enum, field.message.node)}>"
+    if one.type == "bytes":
+        return f"[u8; {one.bits // 8}]"
+    if one.type == "float":
+        return f"f{one.bits}"
+    return "bool" if one.type == "bool" else integer_type(field)

@@ -1,4 +1,4 @@
-"""Text and numbers -> Rust source: documentation comments, literals, and lines laid out as rustfmt would."""
+"""Text and numbers -> Rust source: documentation comments, literals, lines."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterable
 from functools import lru_cache
 
-WIDTH = 100  # rustfmt's max_width
-CALL_WIDTH = 60  # rustfmt's fn_call_width: wider arguments stand one a line
-LITERAL_WIDTH = 18  # rustfmt's struct_lit_width: what is narrower stands on one line
+from icdgen.backends.lines import STEP, bracketed
+
+WIDTH = 100
 
 _MARKDOWN = re.compile(r"[\\`*\[\]<|~$]|(?<![A-Za-z0-9])_|_(?![A-Za-z0-9])|&(?=[#A-Za-z])|(?<=http):|(?<=https):")
 _NUMBERED = re.compile(r"\d+[.)]\Z")
@@ -27,24 +27,18 @@ def plain(text: str) -> str:
 
 @lru_cache(maxsize=8192)
 def prose(text: str) -> str:
-    """``plain`` text that rustdoc shows as it is: no markup, links or HTML."""
+    """``plain`` text that rustdoc shows as it is: no markup, links or HTML but what stands in backticks, as code."""
     text = plain(text)
-    return text if text.replace(" ", "").isalnum() else _MARKDOWN.sub(r"\\\g<0>", text)
-
-
-def code(text: str) -> str:
-    """``plain`` text as a code span, or as prose where it holds a backtick."""
-    text = plain(text)
-    return prose(text) if "`" in text else f"`{text}`"
-
-
-def sentence(text: str) -> str:
-    """The text with a full stop."""
-    return text if text.endswith((".", "!", "?", ":")) else text + "."
+    if text.replace(" ", "").isalnum():
+        return text
+    parts = text.split("`")
+    if len(parts) % 2 == 0:
+        return _MARKDOWN.sub(r"\\\g<0>", text)
+    return "`".join(part if number % 2 else _MARKDOWN.sub(r"\\\g<0>", part) for number, part in enumerate(parts))
 
 
 def doc(paragraphs: Iterable[str], indent: str = "", mark: str = "///") -> str:
-    """A documentation comment of ready paragraphs, wrapped; every line begins with ``indent``."""
+    """A documentation comment of `prose`, wrapped; every line begins with ``indent``."""
     start = f"{indent}{mark} "
     lines: list[str] = []
     for paragraph in paragraphs:
@@ -126,33 +120,18 @@ def double(value: float) -> str:
     return f"{text}e{int(exponent)}" if exponent else text
 
 
-def decimal(value: float) -> str:
-    """A number for people: ``-327.68``; no more digits than the double has."""
-    return repr(int(value)) if value == int(value) and abs(value) < 1e15 else repr(value)
-
-
-def rhs(indent: str, left: str, right: str, end: str) -> str:
+def assigned(left: str, right: str, end: str, indent: str = STEP) -> str:
     """``left right end`` on one line where it fits, else the right side on a line of its own."""
     line = f"{indent}{left} {right}{end}"
-    return line if len(line) <= WIDTH or "\n" in right else f"{indent}{left}\n{indent}    {right}{end}"
+    return line if len(line) <= WIDTH else f"{indent}{left}\n{indent}{STEP}{right}{end}"
 
 
-def arm(indent: str, pattern: str, body: str) -> str:
+def arm(pattern: str, body: str, indent: str = STEP * 3) -> str:
     """An arm of a match."""
     line = f"{indent}{pattern} => {body},"
-    return line if len(line) <= WIDTH else f"{indent}{pattern} => {{\n{indent}    {body}\n{indent}}}"
+    return line if len(line) <= WIDTH else f"{indent}{pattern} => {{\n{indent}{STEP}{body}\n{indent}}}"
 
 
-def signature(start: str, parameters: tuple[str, ...], returns: str, indent: str = "    ") -> str:
-    """A function's head, up to its opening brace."""
-    line = f"{indent}{start}({', '.join(parameters)}) -> {returns} {{"
-    if len(line) <= WIDTH:
-        return line
-    inner = "".join(f"{indent}    {parameter},\n" for parameter in parameters)
-    return f"{indent}{start}(\n{inner}{indent}) -> {returns} {{"
-
-
-def implementation(trait: str, type_: str) -> str:
-    """``impl trait for type {``"""
-    line = f"impl {trait} for {type_} {{"
-    return line if len(line) <= WIDTH else f"impl {trait}\n    for {type_}\n{{"
+def signature(start: str, parameters: tuple[str, ...], returns: str) -> str:
+    """The head of a method, up to its opening brace."""
+    return STEP + bracketed(f"{start}(", parameters, f") -> {returns} {{", WIDTH, STEP)

@@ -6,9 +6,10 @@ import textwrap
 from typing import NamedTuple
 
 from icdgen.backends.rust.literals import Optional, Part, Raw, Rows, Struct, flat, literal
-from icdgen.backends.rust.text import WIDTH, doc, mask, prose, sentence
+from icdgen.backends.rust.text import WIDTH, doc, mask, prose
 from icdgen.backends.rust.transfer import files, operation
 from icdgen.backends.rust.wire_steps import place, step
+from icdgen.describe.comments import sentence
 from icdgen.icd.model import CONFIGURATION, Icd, Message
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Crc, Facts
@@ -75,7 +76,7 @@ def link(known: Facts) -> LinkRow:
 
     text = literal(_link(known), why)
     rest = [
-        f"Assumed (`{one.section}`, `{one.key}`): {sentence(prose(one.why))}"
+        f"Assumed (`{one.section}`, `{one.key}`): {prose(sentence(one.why))}"
         for one in known.assumptions
         if f"{one.section}.{one.key}" not in used
     ]
@@ -189,7 +190,9 @@ def _errors(known: Facts) -> Rows:
 
 def _framing(known: Facts) -> Struct | None:
     form = known.framing
-    return form and Struct(
+    if form is None:
+        return None
+    return Struct(
         "Framing",
         (
             Part("escape", Raw(f"0x{form.escape:02x}")),
@@ -204,7 +207,9 @@ def _framing(known: Facts) -> Struct | None:
 
 def _acknowledge(known: Facts) -> Struct | None:
     form = known.acknowledge
-    return form and flat("Acknowledge", length=form.length, id_at=form.id_at, error_at=form.error_at)
+    if form is None:
+        return None
+    return flat("Acknowledge", length=form.length, id_at=form.id_at, error_at=form.error_at)
 
 
 def _polled(known: Facts) -> Struct | None:
@@ -243,7 +248,9 @@ def _can_types(types: dict[str, int]) -> Struct:
 
 def _extended(can: facts.Can) -> Struct | None:
     form = can.extended
-    return form and Struct(
+    if form is None:
+        return None
+    return Struct(
         "Extended",
         (
             Part("types", _can_types(can.extended_types)),
@@ -259,7 +266,9 @@ def _extended(can: facts.Can) -> Struct | None:
 
 def _checksum(known: Facts) -> Struct | None:
     form = known.checksum
-    return form and Struct(
+    if form is None:
+        return None
+    return Struct(
         "Checksum",
         (
             Part("crc", _crc(form.crc)),
@@ -321,7 +330,9 @@ def span(at: int, size: int) -> Struct:
 
 def _log_file(known: Facts) -> Struct | None:
     form = known.log_file
-    return form and Struct(
+    if form is None:
+        return None
+    return Struct(
         "LogFile",
         (
             Part("mask_at", form.mask_at),
@@ -336,7 +347,9 @@ def _log_file(known: Facts) -> Struct | None:
 
 def _log_message(known: Facts) -> Struct | None:
     form = known.log_message
-    return form and flat("LogMessage", id=form.id, mask_at=form.mask_at, frames_at=form.frames_at)
+    if form is None:
+        return None
+    return flat("LogMessage", id=form.id, mask_at=form.mask_at, frames_at=form.frames_at)
 
 
 def _time(known: Facts) -> Struct | None:

@@ -12,9 +12,9 @@ from pathlib import Path
 from icdgen.diagnostics import Finding, Place
 from icdgen.diff.inputs.git import Spec
 from icdgen.errors import UserError
-from icdgen.icd.load import load
 from icdgen.icd.loaded import Loaded
 from icdgen.icd.model import Icd
+from icdgen.loading import load
 
 _OVERLAY = re.compile(r"^errata:|^ *\"errata\":", re.MULTILINE)
 _ENTRY = re.compile(r"^[ -]*[\"']?id[\"']?: *[\"']?([A-Z][A-Z0-9-]*)[\"']?,? *$", re.MULTILINE)

@@ -13,6 +13,7 @@ from icdgen.diagnostics import Finding, in_order
 from icdgen.icd.errata import Applied
 from icdgen.icd.model import Icd
 from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its rules)
+    checksums,
     composites,
     duplicates,
     errata,
@@ -37,7 +38,7 @@ from icdgen.icd.rules.rule import REGISTERED, Rule
 from icdgen.icd.rules.wording import close_to
 
 if TYPE_CHECKING:
-    from icdgen.backends import Backend
+    from icdgen.icd.identifiers import Language
 
 ALL: dict[str, Rule] = dict(sorted(REGISTERED.items()))
 _RUN = sorted(ALL.values(), key=lambda r: r.last)
@@ -48,13 +49,14 @@ class UnknownRule(LookupError):
 
 
 def check(
-    icd: Icd, applied: Iterable[Applied] = (), complete: bool = True, plug_ins: Sequence[Backend] = ()
+    icd: Icd, applied: Iterable[Applied] = (), complete: bool = True, languages: Sequence[Language] = ()
 ) -> list[Finding]:
     """Everything that breaks a rule and that no erratum accepts, in the order of the files.
 
-    ``complete`` is False where broken items were left out of the model: rules about what is absent stay silent then.
+    Names must do for the ``languages``. ``complete`` is False where broken items were left out of the model: rules about what is
+    absent stay silent then.
     """
-    context = Context(icd, applied, complete, plug_ins)
+    context = Context(icd, applied, complete, languages)
     findings: list[Finding] = []
     accepted = {(code, id(owner)) for one in context.applied for code, _, owner, _, _ in one.accepts}
     for rule in _RUN:

@@ -11,7 +11,7 @@ from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.icd.rules.rule import Fault
 
 if TYPE_CHECKING:
-    from icdgen.backends import Backend
+    from icdgen.icd.identifiers import Language
 
 # Keys of a field that only few fields have.
 RARE = ("enum", "unit", "formula", "formula_for", "const", "special", "min", "max", "above", "below", "bitfields")
@@ -32,10 +32,10 @@ class Context:
         icd: Icd,
         applied: Iterable[Applied] = (),
         complete: bool = True,
-        plug_ins: Sequence[Backend] = (),
+        languages: Sequence[Language] = (),
     ) -> None:
         self.icd = icd
-        self.plug_ins = plug_ins  # backends of other packages that are generated for
+        self.languages = languages  # that names must do for
         self.applied = tuple(applied)
         self.complete = complete
         self.raised: list[tuple[str, Fault]] = []  # code and fault, of the rules that ran already

@@ -1,12 +1,11 @@
-"""What the backends would declare for a model, as far as it is sound."""
+"""What the languages would declare for a model, as far as it is sound."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import NamedTuple
 
-from icdgen import backends
-from icdgen.backends import Identifier
+from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Icd, Message
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED
@@ -17,7 +16,7 @@ TWINS = frozenset(
 
 
 class Declared(NamedTuple):
-    """What one backend declares."""
+    """What one language declares."""
 
     language: str
     reserved: frozenset[str]
@@ -25,12 +24,12 @@ class Declared(NamedTuple):
 
 
 def declared(ctx: Context) -> list[Declared]:
-    """What each built-in backend declares, and each plug-in that is generated for; worked out once a run."""
+    """What each language declares, worked out once a run."""
     if ctx.declared is None:
         icd = _sound(ctx)
         ctx.declared = []
-        for backend in (*map(backends.get, backends.names()), *ctx.plug_ins) if icd.nodes else ():
-            ctx.declared.append(Declared(backend.name, backend.reserved, list(backend.identifiers(icd))))
+        for one in ctx.languages if icd.nodes else ():
+            ctx.declared.append(Declared(one.name, one.reserved, list(one.identifiers(icd))))
     return ctx.declared
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from icdgen.backends import Identifier
 from icdgen.diagnostics import Place
+from icdgen.icd.identifiers import Identifier
 from icdgen.icd.located import Map
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.declarations import TWINS, declared

@@ -76,8 +76,8 @@ def aligned(band: Band, edges: list[float]) -> Band:
     return Band(band.page, band.top, band.bottom, edges, moved)
 
 
-def rows(band: Band, header: Header, known: frozenset[str]) -> list[Row]:
-    """The rows of a band whose cells are those of ``header``."""
+def rows(band: Band, header: Header, known: frozenset[str], torn: bool = False) -> list[Row]:
+    """The rows of a band whose cells are those of ``header``. ``torn``: it may begin with the rest of a row."""
     key = next((i for i, role in enumerate(header.roles) if role in KEYS[header.kind]), 0)
     found = lines(band.words)
     if header.kind == "list" and (groups := [i for i, line in enumerate(found) if _is_group(line, band.edges, key)]):
@@ -86,7 +86,7 @@ def rows(band: Band, header: Header, known: frozenset[str]) -> list[Row]:
     if len(keyed) <= 1:
         return [Row(band.texts(known), band.page)] if band.words else []
     made = []
-    for first, last in _stretches(found, keyed):
+    for first, last in _stretches(found, keyed, torn):
         words = [word for line in found[first:last] for word in line.words]
         made.append(Row(Band(band.page, band.top, band.bottom, band.edges, words).texts(known), band.page))
     return made
@@ -127,11 +127,11 @@ def _text_in(line: Line, edges: list[float], column: int) -> str:
     return " ".join(w.text for w in line.words if index_of((w.x0 + w.x1) / 2, edges) == column)
 
 
-def _stretches(found: list[Line], keyed: list[int]) -> list[tuple[int, int]]:
+def _stretches(found: list[Line], keyed: list[int], torn: bool) -> list[tuple[int, int]]:
     """The lines of each row, given those that hold its key; what stands before belongs to a row torn above."""
     gaps = [b.middle - a.middle for a, b in itertools.pairwise(found)]
     usual = median(gaps) if gaps else 0.0
-    starts = [_first_start(found, keyed, gaps, usual)]
+    starts = [_first_start(found, keyed, gaps, usual, torn)]
     for before, here in itertools.pairwise(keyed):
         starts.append(_start(found, before, here, gaps, starts[-1]))
     ends = [*starts[1:], len(found)]
@@ -139,13 +139,13 @@ def _stretches(found: list[Line], keyed: list[int]) -> list[tuple[int, int]]:
     return lead + list(zip(starts, ends, strict=True))
 
 
-def _first_start(found: list[Line], keyed: list[int], gaps: list[float], usual: float) -> int:
+def _first_start(found: list[Line], keyed: list[int], gaps: list[float], usual: float, torn: bool) -> int:
     """Lines above the first key belong to its row where the key stands in the middle of its row's height."""
     first = keyed[0]
     if first == 0:
         return 0
     widest = max(range(first), key=lambda i: gaps[i])
-    if gaps[widest] > 1.25 * usual and widest > 0:
+    if gaps[widest] > 1.25 * usual and (widest > 0 or torn):
         return widest + 1
     after = (keyed[1] if len(keyed) > 1 else len(found)) - first - 1
     return 0 if after >= first else first

@@ -96,6 +96,8 @@ def _is_of_a_table(line: Line, near: list[Line], profile: Profile) -> bool:
         return True
     if headings.segmented(line.text.split(), profile) is not None:
         return True
+    if any(one.what and one.value for one in labels.parse(line.text, profile)[:1]):
+        return True
     parts = folded(line.text)  # a part of headings in several lines: the others stand next to it
     tight = any(max(line.top - other.bottom, other.top - line.bottom) < 0.5 * line.size for other in near)
     return tight and bool(parts) and all(part in profile.heading_words for part in parts)
@@ -206,12 +208,19 @@ class _Flow:
                 break
             said = labels.leads(line.text, self.profile)
             gap = line.top - rest[index - 1].bottom
-            if not said and (line.x0 < at - 3 or gap > 1.5 * line.size):
+            if not said and (line.x0 < at - 3 or gap > 1.5 * line.size) and not self.completes(rest[index - 1], line):
                 break
             if said == "description":
                 at = _value_column(line)
             taken = index + 1
         return taken, None
+
+    def completes(self, above: Line, line: Line) -> bool:
+        """Whether a line is the rest of the label above it, in a narrow column."""
+        if line.top - above.bottom > 0.5 * line.size:
+            return False
+        found = labels.parse(above.text, self.profile)
+        return bool(found) and bool(labels.meaning(f"{found[-1].label} {line.text}", self.profile))
 
     def labelled(self, rest: list[Line]) -> int:
         """How many lines the first row of a message's table takes that begins here: one, more where its cells wrap."""
@@ -278,7 +287,11 @@ class _Flow:
             return True
         if _HEADING.match(line.text) and self.stands_out(line) and line.size > size + 0.6:
             return True
-        if self.reads_on(line, found.spans) and not self.has_key(line, found):
+        if (
+            self.reads_on(line, found.spans)
+            and not self.has_key(line, found)
+            and not self.is_group(rest[index:], found)
+        ):
             return True
         gap = line.top - rest[index - 1].bottom if index else 0
         return gap > 2.2 * line.size and not self.has_key(line, found)
@@ -299,6 +312,10 @@ class _Flow:
             or len(runs(line, 0.9)) >= min(3, len(found.spans))
         )
 
+    def is_group(self, rest: list[Line], found: Columns) -> bool:
+        """Whether a line is a group heading of a list, however far it reaches: the next line has a key."""
+        return found.header.kind == "list" and len(rest) > 1 and self.has_key(rest[1], found)
+
     def reads_on(self, line: Line, spans: list[tuple[float, float]]) -> bool:
         """Whether text runs across three headings or more, as it does in a paragraph and not in a cell."""
         for run in runs(line, 0.9):
@@ -314,7 +331,11 @@ class _Flow:
             return False
         if line.x0 < self.extent[0] - 8:
             return False
-        if self.reads_on(line, self.open.spans) and not self.has_key(line, self.open):
+        if (
+            self.reads_on(line, self.open.spans)
+            and not self.has_key(line, self.open)
+            and not self.is_group(rest, self.open)
+        ):
             return False
         if _HEADING.match(line.text) and line.size > self.size + 0.6:
             return False

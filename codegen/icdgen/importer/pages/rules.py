@@ -12,6 +12,7 @@ from icdgen.importer.pages.extract import Fill, Page, Rule
 SNAP = 1.8  # points: rules nearer than this are one
 REACH = 4.0  # points: rules that come as near as this meet
 WIDE = 0.4  # of a region's width: a shorter horizontal rule does not part rows
+ROW = 30.0  # points: the height of a row that interrupts rules
 TALL = 0.7  # of a band's height: a shorter vertical rule does not part cells
 
 
@@ -121,7 +122,28 @@ def regions(page: Page) -> list[Region]:
         region = Region(min(xs), min(ys), max(xs), max(ys), flat, steep)
         if len(distinct([*(r.at for r in steep), region.x0, region.x1], 3.0)) >= 3 and region.bottom - region.top > 6:
             made.append(region)
-    return _outermost(sorted(made, key=lambda r: (r.top, r.x0)))
+    return _stacked(_outermost(sorted(made, key=lambda r: (r.top, r.x0))))
+
+
+def _stacked(regions: list[Region]) -> list[Region]:
+    """Regions put together where rules part the inner columns only, and a row over all of them interrupts the rules."""
+    made: list[Region] = []
+    for one in regions:
+        above = made[-1] if made else None
+        if above is not None and _goes_on(above, one):
+            made[-1] = Region(
+                above.x0, above.top, above.x1, one.bottom, above.across + one.across, above.down + one.down
+            )
+        else:
+            made.append(one)
+    return made
+
+
+def _goes_on(above: Region, below: Region) -> bool:
+    if not (-REACH < below.top - above.bottom < ROW and below.x0 > above.x0 + 8 and below.x1 < above.x1 - 8):
+        return False
+    inner = [rule.at for rule in above.down]
+    return all(any(abs(side - at) < SNAP for at in inner) for side in (below.x0, below.x1))
 
 
 def _sides(down: list[Rule], first: int, parent: list[int], root: Callable[[int], int]) -> None:

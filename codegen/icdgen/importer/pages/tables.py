@@ -70,6 +70,8 @@ class Builder:
         """The draft that this piece goes on with."""
         between = 0
         number = None
+        torn: list[Mark] = []
+        last: Mark | None = None  # of the lines of text between
         for item in reversed(self.out):
             if isinstance(item, Draft):
                 break
@@ -77,9 +79,13 @@ class Builder:
             if match and (_CONTINUED.search(item.text) or self.repeated(item)):
                 number = match["number"]
                 continue
+            if item.kind == "text" and labels.leads(item.text, self.profile):
+                torn.insert(0, item)  # a row above the headings that the page break parted from the first one
+                continue
             if item.kind != "text" or item.size > 8.6:
                 return None
             between += 1
+            last = item
         else:
             return None
         draft = item
@@ -91,6 +97,15 @@ class Builder:
             return None
         if number is None and not self.fits(draft, piece, follows):
             return None
+        header = draft.table.header
+        if number is None and between == 1 and last is not None and last.strong and header and header.kind == "list":
+            draft.table.rows.append(Row([last.text, *[""] * (len(header.roles) - 1)], last.box.page))  # a group heading
+            self.out.remove(last)
+        if torn and (draft.table.header is not None or not draft.table.head):
+            return None
+        for mark in torn:
+            draft.table.head.append(Row([mark.text], mark.box.page))
+            self.out.remove(mark)
         if number is not None:  # a repeated caption
             while self.out[-1] is not draft:
                 self.out.pop()
@@ -160,9 +175,27 @@ class Builder:
             elif headings.repeats(texts, draft.table.header, self.profile):
                 if len(band.edges) == len(draft.edges or ()):
                     draft.edges = band.edges
+            elif fresh and len(draft.table.boxes) > 1 and (rest := self.below_headings(draft, band)) is not None:
+                if rest.words:
+                    waiting.insert(0, rest)
             else:
                 self.body(draft, band, torn=fresh and len(draft.table.boxes) > 1)
                 fresh = False
+
+    def below_headings(self, draft: Draft, band: Band) -> Band | None:
+        """What follows the headings that a page repeats in one band with its rows; None where it repeats none."""
+        header = draft.table.header
+        assert header is not None
+        titles = [squeezed(title) for title in header.titles]
+        found = lines(band.words)
+        for count in range(1, min(5, len(found) + 1)):
+            upper = Band(
+                band.page, band.top, band.bottom, band.edges, [w for line in found[:count] for w in line.words]
+            )
+            if [squeezed(text) for text in upper.texts(self.known)] == titles:
+                words = [w for line in found[count:] for w in line.words]
+                return Band(band.page, found[count].top if words else band.bottom, band.bottom, band.edges, words)
+        return None
 
     def lower_half(self, draft: Draft, texts: list[str]):
         """The headings as a whole where a page break stands between their two lines."""
@@ -203,7 +236,7 @@ class Builder:
 
     def head(self, band: Band, texts: list[str]) -> list[Row]:
         """A band above the headings: one row, or where that labels more, one for each line."""
-        whole = Row(texts, band.page)
+        whole = Row(texts, band.page, edges=tuple(band.edges))
         single = [Row([line.text], band.page) for line in lines(band.words)]
         return single if len(single) > 1 and self.labelled(single) > self.labelled([whole]) else [whole]
 
@@ -234,7 +267,7 @@ class Builder:
             plain = Band(band.page, band.top, band.bottom, draft.edges, band.words)
             if bands.has_keys(plain, header):  # rules part the headings only, the rows stand below them all the same
                 band = plain
-        draft.table.rows += bands.rows(bands.aligned(band, draft.edges), header, self.known)
+        draft.table.rows += bands.rows(bands.aligned(band, draft.edges), header, self.known, torn)
 
     # --- without vertical rules ------------------------------------------------------------------------------------
 
@@ -283,7 +316,9 @@ class Builder:
                 blocks.append(item.table)
             elif index not in used:
                 page, is_heading = item.box.page, item.kind == "heading" or item.strong
-                blocks.append(Heading(item.number, item.text, page) if is_heading else Text(item.text, page))
+                blocks.append(
+                    Heading(item.number, item.text, page, size=item.size) if is_heading else Text(item.text, page)
+                )
         return blocks
 
     def table_from(self, index: int, step: int) -> int | None:

@@ -39,18 +39,19 @@ class Said:
         """The id as one number: the parts in the order in which they are sent, a byte each."""
         if not self.ids:
             return None
-        values = [_value(text) for text in self.ids]
-        if len(values) == 1:
-            return values[0]
+        numbers = [value(text) for text in self.ids]
+        if len(numbers) == 1:
+            return numbers[0]
         made = 0
-        for value in values:
-            if value > 255:
+        for part in numbers:
+            if part > 255:
                 return None
-            made = made * 256 + value
+            made = made * 256 + part
         return made
 
 
-def _value(text: str) -> int:
+def value(text: str) -> int:
+    """The number that ``21h``, ``0x21`` or ``33`` is."""
     if text[-1] in "hH":
         return int(text[:-1], 16)
     return int(text, 16) if text[:2].casefold() == "0x" else int(text)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 
+from icdgen.icd.units import SPELLINGS, STANDARD
 from icdgen.importer.document import Header, Table, Trouble
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import bitfields, counting, descriptions, formulas, numbers, types
@@ -44,12 +46,18 @@ def read(table: Table, profile: Profile, length: int | None, troubles: list[Trou
     """The fields of a table with headings. Raises `Unreadable` where none of them can be held."""
     header = table.header
     assert header is not None
+    _positions_named(header, table)
     found = entries(table, troubles, lambda cells: _stands_alone(cells, header, profile))
     lines = [line for entry in found if (line := _line(entry, header, table, profile, troubles))]
-    if any(numbers.span(entry.get("at") or entry.get("at_bytes")) for entry in found):
+    places = [entry.get("at") or entry.get("at_bytes") for entry in found]
+    is_register = "at" in header.roles and _falls([numbers.span(text) or (number(text), 1) for text in places])
+    if is_register or any(numbers.span(text) for text in places):
         for line in lines:  # beside ranges, a single position is one bit or one byte
             if line.width is None and not (line.type and line.type.bits):
                 line.width, line.units = 1, (line.units[0], line.units[0])
+    if "type" not in header.roles and lines:
+        troubles.append(Trouble("IMP026", f"{table.title}: it prints no types", table.spot,
+                                "one bit is held as bool, the rest as uint; look at the page"))  # fmt: skip
     units = counting.decide(header, [line.extent for line in lines], length, profile)
     if units is None:
         titles = " and ".join(
@@ -76,11 +84,45 @@ def read(table: Table, profile: Profile, length: int | None, troubles: list[Trou
         start = at if implicit else (line.at or 0) * (line.units[0] or units.at) + _within(line, header)
         made += _fields(line, start, bits, table, profile, troubles)
         at = start + bits
-    return made
+    return _mirrored(made, length, table, profile, troubles) if is_register else made
+
+
+def _falls(spans: list[tuple[int | None, int]]) -> bool:
+    """Whether positions count down, as the bits of registers do: bit 0 is the lowest one."""
+    firsts = [first for first, _ in spans]
+    return len(firsts) > 1 and all(a is not None and b is not None and a > b for a, b in pairwise(firsts))
+
+
+def _mirrored(
+    made: list[ReadField], length: int | None, table: Table, profile: Profile, troubles: list[Trouble]
+) -> list[ReadField]:  # fmt: skip
+    """The fields of a register, whose bits are counted from the lowest one, in the order of the node."""
+    node = profile.data["node"]
+    total = 8 * (length or (max((f.at + f.bits for f in made), default=0) + 7) // 8)
+    if node.get("bit_order") == "msb0":
+        for one in made:
+            one.at = total - one.at - one.bits
+    elif node.get("byte_order") == "big" and total > 8:
+        troubles.append(Trouble("IMP037", f"{table.title}: its bits are counted down over {total // 8} bytes, the highest byte "
+                                "first", table.spot, "set `bit_order: msb0` in the profile; it was left out", "error"))  # fmt: skip
+        raise Unreadable
+    return sorted(made, key=lambda f: f.at)
 
 
 def _positions(header: Header) -> bool:
     return "at" in header.roles or "at_bytes" in header.roles
+
+
+def _positions_named(header: Header, table: Table) -> None:
+    """A column `Bits` without one for offsets holds positions where its cells are ranges or count down: ``7:4``, ``3``."""
+    if _positions(header) or "bits" not in header.roles:
+        return
+    column = header.roles.index("bits")
+    cells = [row.cells[column] for row in table.rows if column < len(row.cells) and row.cells[column]]
+    values = [number(cell) for cell in cells]
+    falls = len(values) > 1 and all(a is not None and b is not None and a > b for a, b in pairwise(values))
+    if falls or any(numbers.span(cell) for cell in cells):
+        header.roles[column] = "at"
 
 
 def _stands_alone(cells: dict[str, str], header: Header, profile: Profile) -> bool:
@@ -168,7 +210,7 @@ def _fields(
 ) -> list[ReadField]:  # fmt: skip
     """The field of a row; for an array one for each element."""
     entry, name = line.entry, line.entry.get("name")
-    kind = _kind(line, bits, troubles)
+    kind = _kind(line, bits, "type" in (table.header.roles if table.header else ()), troubles)
     if not name:
         troubles.append(Trouble("IMP025", f"{table.title}: the field at bit {at} has no name", entry.spot,
                                 "name it in the ICD, or by an erratum", "error"))  # fmt: skip
@@ -196,8 +238,10 @@ def _fields(
     return [made]
 
 
-def _kind(line: Line, bits: int, troubles: list[Trouble]) -> str:
-    """The type as the ICD calls it."""
+def _kind(line: Line, bits: int, has_types: bool, troubles: list[Trouble]) -> str:
+    """The type as the ICD calls it. Where the table has no column of types, one finding speaks for all of its fields."""
+    if not has_types:
+        return "bool" if bits == 1 else "uint" if bits <= MOST_BITS else "bytes"
     if line.type is not None:
         if not line.type.is_said:
             troubles.append(Trouble("IMP026", f"{line.where}: the type `{line.entry.get('type')}` does not say whether the "
@@ -220,7 +264,9 @@ def _described(entry: Entry, profile: Profile, is_enum: bool) -> descriptions.De
         made.enum_title = entry.get("values")
     _unit(tidy_unit(entry.get("unit")).strip("()- "), made)
     formula = entry.get("formula").strip()
-    if formula.casefold() not in _NONE:
+    if tidy_unit(formula) in STANDARD or tidy_unit(formula) in SPELLINGS:
+        _unit(tidy_unit(formula), made)  # a column of factors with their units, of which one is 1
+    elif formula.casefold() not in _NONE:
         scaled = formulas.per_step(formula, descriptions.names(profile))
         if scaled is None:
             made.problems.append(f"the formula `{formula}` cannot be read")

@@ -33,7 +33,7 @@ def read(table: Table, profile: Profile, troubles: list[Trouble], about: Around 
     _ids(message, values, both)
     message.kind = _kind(values, both)
     message.names = _names(table.caption, profile, message)
-    _take(message, said)
+    take(message, said)
     length = values.get("telecommand_length") or values.get("telemetry_length") or values.get("length") or said.length
     if length and grows(length):
         message.lacks = f"its length `{length}` depends on a count, which the ICD format cannot hold"
@@ -113,7 +113,7 @@ def _is_titled(table: Table, profile: Profile) -> bool:
     return any(pattern.match(plain(table.caption)) for kind in KINDS for pattern in profile.titles[kind])
 
 
-def _take(message: ReadMessage, said: around.Said) -> None:
+def take(message: ReadMessage, said: around.Said) -> None:
     """What stands around the table, where the table does not say it itself."""
     if message.ids == (None, None, None) and said.ids:
         message.id = said.id

@@ -1,0 +1,48 @@
+"""Every name that the generated package declares, by scope, for the name rules."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.backends import Identifier
+from icdgen.backends.python import names
+from icdgen.describe import Description, MessageDescription
+from icdgen.naming import DEVICES
+
+
+def declared_names(description: Description, package: str) -> Iterator[Identifier]:
+    """All names that come from the ICDs, and what they clash with of the names that are always there."""
+    for node in description.nodes:
+        scope, within = f"package {package}", f"{package}.{node.name}"
+        yield Identifier(scope, node.name, f"node `{node.name}`", node.node.source)
+        if node.name in names.IN_PACKAGE:
+            yield Identifier(scope, node.name, names.IN_PACKAGE[node.name].format(node.name), None)
+        for name in DEVICES:
+            yield Identifier(f"files of {within}", name, "a device of Windows", None)
+        for enum in node.enums:  # messages have files in every language
+            owner_text = f"enumeration `{enum.enum.name}`"
+            yield Identifier(f"files of {within}", names.module_name(enum), owner_text, enum.enum.source)
+        for owner in map(description.node, (*description.icd.included(node.node), node.node)):
+            for one in owner.messages:
+                owner_text = f"message `{one.message.name}`"
+                yield Identifier(f"module {within}", names.class_name(one), owner_text, one.message.source)
+            for enum in owner.enums:
+                owner_text = f"enumeration `{enum.enum.name}`"
+                yield Identifier(f"module {within}", names.class_name(enum), owner_text, enum.enum.source)
+        for enum in node.enums:
+            scope = f"members of {within}.{names.class_name(enum)}"
+            for member in enum.members:
+                owner_text = f"member `{member.member.name}` of `{enum.enum.name}`"
+                yield Identifier(scope, member.name.upper(), owner_text, member.member.source)
+        for one in node.messages:
+            yield from _message(one, f"members of {within}.{names.class_name(one)}")
+
+
+def _message(message: MessageDescription, scope: str) -> Iterator[Identifier]:
+    for field in message.fields:
+        physical = (field.physical_name,) if field.steps is not None else ()
+        for name in (field.name, *physical):
+            owner = f"field `{field.field.name}` of `{message.message.name}`"
+            yield Identifier(scope, name, owner, field.field.source)
+            if name in names.IN_MESSAGE:
+                yield Identifier(scope, name, names.IN_MESSAGE[name].format(name), None)

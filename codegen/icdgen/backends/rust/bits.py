@@ -1,0 +1,172 @@
+"""Fields -> the Rust expressions and statements that read and write them."""
+
+from __future__ import annotations
+
+from icdgen.backends.rust.text import mask
+from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe.storage import holding
+from icdgen.layout import Piece, is_whole_bytes
+
+FLAGS_FROM = 4  # so many flags of one byte are taken from the table of the support module
+
+
+def reading(field: FieldDescription, tables: set[int]) -> str:
+    """Expression of the raw value, from ``bytes``; ``tables`` are the bytes whose flags stand in ``flags_N``."""
+    one, row = field.field, field.pieces
+    if one.type == "bytes":
+        return f"array(bytes, {one.at // 8})"
+    if one.type == "bool":
+        byte, shift = row[0].byte, row[0].shift
+        return f"flags_{byte}[{shift}]" if byte in tables else f"bytes[{byte}] & {mask(1 << shift)} != 0"
+    size = holding(one.bits)
+    if is_whole_bytes(one) and one.bits == size:
+        return _whole(field, size)
+    if len(row) == 1:
+        return _finished(field, _one_byte(row[0]), size)
+    lines = [f"let mut value = {_first(row[0], size)};"]
+    lines += [f"value |= {_placed(piece, size)};" for piece in row[1:]]
+    lines.append(_finished(field, "value", size))
+    body = "".join(f"\n                {line}" for line in lines)
+    return f"{{{body}\n            }}"
+
+
+def _whole(field: FieldDescription, size: int) -> str:
+    one = field.field
+    first = one.at // 8
+    if size == 8:
+        byte = f"bytes[{first}]"
+        if one.type == "enum":
+            return _enum(byte, size, field.storage.bits)
+        return byte if one.type == "uint" else f"i8::from_le_bytes([{byte}])"
+    kind = {"float": "f", "int": "i"}.get(one.type, "u")
+    value = f"{kind}{size}::from_{_order(field)}_bytes(take!(bytes[{first}; {size // 8}]))"
+    return _enum(value, size, field.storage.bits) if one.type == "enum" else value
+
+
+def _order(field: FieldDescription) -> str:
+    return "le" if field.message.node.byte_order == "little" else "be"
+
+
+def _enum(value: str, size: int, wider: int) -> str:
+    return f"Coded::from_raw({value})" if size == wider else f"Coded::from_raw(u{wider}::from({value}))"
+
+
+def _finished(field: FieldDescription, value: str, size: int) -> str:
+    """The unsigned value of ``size`` bits as the field's type."""
+    kind = field.field.type
+    if kind == "enum":
+        return _enum(value, size, field.storage.bits)
+    if kind == "float":
+        return f"f{size}::from_bits({value})"
+    if kind == "uint":
+        return value
+    unused = size - field.field.bits
+    if size == 8:
+        shifted = value if not unused else f"{_parenthesised(value)} << {unused}"
+        signed = f"i8::from_le_bytes([{shifted}])"
+    else:
+        shifted = value if not unused else f"({value} << {unused})"
+        signed = f"i{size}::from_le_bytes({shifted}.to_le_bytes())"
+    return f"{signed} >> {unused}" if unused else signed
+
+
+def _one_byte(piece: Piece) -> str:
+    byte = f"bytes[{piece.byte}]"
+    if piece.shift == 0:
+        return f"{byte} & {mask(piece.mask)}" if piece.bits < 8 else byte
+    if piece.shift + piece.bits == 8:
+        return f"{byte} >> {piece.shift}"
+    return f"({byte} >> {piece.shift}) & {mask((1 << piece.bits) - 1)}"
+
+
+def _parenthesised(text: str) -> str:
+    return f"({text})" if " " in text else text
+
+
+def _first(piece: Piece, size: int) -> str:
+    return _placed(piece, size) if piece.at else _widened(piece, size)
+
+
+def _widened(piece: Piece, size: int) -> str:
+    return _one_byte(piece) if size == 8 else f"u{size}::from({_one_byte(piece)})"
+
+
+def _placed(piece: Piece, size: int) -> str:
+    value = _widened(piece, size)
+    return f"{_parenthesised(value) if size == 8 else value} << {piece.at}" if piece.at else value
+
+
+def fitting(field: FieldDescription) -> str:
+    """The statement that returns with an error if the raw value of a narrow field does not fit its bits."""
+    raw = ".raw()" if field.enum is not None else ""
+    return f"{field.name.upper()}.fit(self.{field.name}{raw})?;"
+
+
+def writing(field: FieldDescription) -> list[str]:
+    """Statements that put the raw value into ``bytes``, without the bits that its field has no room for."""
+    one, row, source = field.field, field.pieces, f"self.{field.name}"
+    if one.type == "bytes":
+        return [f"put_array(&mut bytes, {one.at // 8}, &{source});"]
+    if one.type == "bool":
+        shift = f" << {row[0].shift}" if row[0].shift else ""
+        return [f"bytes[{row[0].byte}] |= u8::from({source}){shift};"]
+    if is_whole_bytes(one) and not field.is_narrow:
+        return _put_whole(field, source)
+    lines, size = [], field.storage.bits
+    if one.type == "enum":
+        source = f"{source}.raw()"
+    elif one.type == "float":
+        source = f"{source}.to_bits()"
+    if len(row) > 1:
+        lines.append(f"let value = {source};")
+        source = "value"
+    if one.type == "int":
+        lines.append(f"let value = u{size}::from_le_bytes({source}.to_le_bytes());")
+        source = "value"
+    return lines + _put_pieces(row, source, size)
+
+
+def _copied(first: int, count: int, source: str) -> str:
+    return f"put!({source} => bytes[{first}; {count}]);"
+
+
+def _put_whole(field: FieldDescription, source: str) -> list[str]:
+    first, size, kind = field.field.at // 8, field.storage.bits, field.field.type
+    if size == 8 and kind != "int":
+        return [f"bytes[{first}] = {source}{'.raw()' if kind == 'enum' else ''};"]
+    to_bytes = f"to_{_order(field)}_bytes()"
+    if kind == "enum":
+        return [f"let value = {source}.raw();", _copied(first, size // 8, f"value.{to_bytes}")]
+    return [_copied(first, size // 8, f"{source}.{to_bytes}")]
+
+
+def _put_pieces(row: tuple[Piece, ...], source: str, size: int) -> list[str]:
+    if size > 8 and all(piece.at % 8 == 0 for piece in row):
+        return [
+            f"let value = {source}.to_le_bytes();",
+            *(_put(piece, f"value[{piece.at // 8}]") for piece in row),
+        ]
+    lines = []
+    for piece in row:
+        part = f"{source} >> {piece.at}" if piece.at else source
+        if size > 8:
+            part = f"{_parenthesised(part)}.to_le_bytes()[0]"
+        lines.append(_put(piece, part))
+    return lines
+
+
+def _put(piece: Piece, part: str) -> str:
+    """The statement that puts the low bits of ``part`` into their byte."""
+    if piece.bits == 8:
+        return f"bytes[{piece.byte}] = {part};"
+    if piece.shift + piece.bits < 8:
+        part = f"{_parenthesised(part)} & {mask((1 << piece.bits) - 1)}"
+    if piece.shift:
+        part = f"{_parenthesised(part)} << {piece.shift}"
+    return f"bytes[{piece.byte}] |= {part};"
+
+
+def flag_tables(message: MessageDescription) -> set[int]:
+    """The bytes that hold so many flags that a table is worth its load."""
+    flags = [field.pieces[0].byte for field in message.fields if field.field.type == "bool"]
+    return {byte for byte in flags if flags.count(byte) >= FLAGS_FROM}

@@ -1,0 +1,49 @@
+"""A telecommand with its checksum that another program of the same device takes for a telecommand of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from icdgen.icd.model import Message, Node
+from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.wording import quote
+
+
+@rule("ICD108", whole=True)
+def checksums_make_no_other_telecommand(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        for other in ctx.icd.nodes:
+            extra = _extra_bytes(ctx, node) or _extra_bytes(ctx, other)
+            if node is other or not extra or not _share_a_line(ctx, node, other):
+                continue
+            longer = {m.telecommand_id: m for m in other.messages if m.telecommand_id is not None}
+            for message in node.messages:
+                taken = longer.get(message.telecommand_id) if message.telecommand_id is not None else None
+                if taken is not None and taken.length == message.length + extra and taken.name != message.name:
+                    yield _fault(ctx, node, message, other, taken)
+
+
+def _fault(ctx: Context, node: Node, message: Message, other: Node, taken: Message) -> Fault:
+    given = ctx.protocol_of(node).get("crc8") or ctx.protocol_of(other).get("crc8", {})
+    data = "" if message.length else f", {message.telecommand_id:02X} {given.get('empty', given.get('init', 0)):02X},"
+    key = "set_id" if "set_id" in message.source else "id"
+    text = (
+        f"{quote(message.name)} of {node.name} with its checksum{data} is {quote(taken.name)} where {other.name} runs"
+    )
+    help = "give one of them another id or length, or accept it in an erratum, and send this one without a checksum"
+    return Fault(message.source, message.source.at(key), text, help)
+
+
+def _extra_bytes(ctx: Context, node: Node) -> int:
+    """Bytes that a checksum adds to telecommands of the node; 0 without one."""
+    crc8 = ctx.protocol_of(node).get("crc8")
+    given = crc8.get("telecommand") if isinstance(crc8, dict) else None
+    extra = given.get("extra_bytes", 1) if isinstance(given, dict) else 0
+    return extra if isinstance(extra, int) else 0
+
+
+def _share_a_line(ctx: Context, node: Node, other: Node) -> bool:
+    """Whether both are told of by one protocol section, as programs of one device are."""
+    here = {id(one) for one in ctx.scope(node) if one.protocol}
+    return any(id(one) in here for one in ctx.scope(other))

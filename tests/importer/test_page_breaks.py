@@ -1,0 +1,21 @@
+"""Tables go on over page breaks whatever the engine, the paper, the rules, the captions and the repetition of headings."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.importer.compare import differences
+from tests.importer.conftest import imported
+from tests.importer.manuals import browser, content
+from tests.importer.manuals.further import FURTHER
+from tests.importer.test_layouts import TITLES
+
+
+@pytest.mark.parametrize(("layout", "skip"), [(name, (60, 20, 34)[i % 3]) for i, name in enumerate(FURTHER)])
+def test_tables_over_page_breaks_come_back_whole(layout, skip, tmp_path):
+    if FURTHER[layout].func is browser.draw and browser.program() is None:
+        pytest.skip("Chromium is not at hand")
+    manual = content.manual(content.shipped("cubeacp", most=12, skip=skip), TITLES)
+    FURTHER[layout](manual, tmp_path / "manual.pdf")
+    _, trees = imported(tmp_path / "manual.pdf")
+    assert [line for name, tree in manual.trees.items() for line in differences(tree, trees[name])] == []
