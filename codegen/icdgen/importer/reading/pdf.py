@@ -6,12 +6,13 @@ import logging
 import os
 import re
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from multiprocessing import get_context
 from pathlib import Path
 
 from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.errors import UserError
 from icdgen.importer.document import Document, Spot, Trouble
 from icdgen.importer.pages import flow, tables
 from icdgen.importer.pages.extract import Page, extract
@@ -22,14 +23,23 @@ MOST_PAGES = 5000
 _WORD = re.compile(r"[^\s]+")
 
 
-def read(path: Path, profile: Profile, progress=None, jobs: int | None = None) -> Document:
-    """The document of a PDF. Raises `Findings` where nothing can be read."""
+def read(
+    path: Path, profile: Profile, progress: Callable[[int, int, int], None] | None = None, jobs: int | None = None,
+    only: tuple[int, int] | None = None,
+) -> Document:  # fmt: skip
+    """The document of a PDF, or of the pages from one to another. Raises `Findings` where nothing can be read."""
     name = str(path)
     count, title = _open(path, name)
-    document = Document(name, pages=count, title=title)
+    wanted = range(count)
+    if only is not None:
+        wanted = range(only[0] - 1, min(only[1], count))
+        if not wanted:
+            raise UserError(f"the manual has {count} pages: none from {only[0]} to {only[1]}", "choose other --pages")
+    document = Document(name, pages=len(wanted), title=title)
+    count = len(wanted)
     pages = []
     seen = 0
-    for page in _pages(path, count, jobs):
+    for page in _pages(path, wanted, jobs):
         pages.append(page)
         if progress:
             seen += _captions(page, profile)
@@ -47,8 +57,6 @@ def _open(path: Path, name: str) -> tuple[int, str]:
         from pdfminer.pdfdocument import PDFEncryptionError, PDFPasswordIncorrect
         from pdfplumber.utils.exceptions import PdfminerException
     except ImportError:
-        from icdgen.errors import UserError
-
         raise UserError("reading a PDF needs pdfplumber", "pip install 'icdgen[import]'") from None
     logging.getLogger("pdfminer").setLevel(logging.CRITICAL)
     try:
@@ -77,18 +85,19 @@ def _refused(name: str, message: str, help: str) -> Findings:
     return Findings([Finding("IMP003", message, Place(name), help)])
 
 
-def _pages(path: Path, count: int, jobs: int | None) -> Iterator[Page]:
+def _pages(path: Path, wanted: range, jobs: int | None) -> Iterator[Page]:
+    count = len(wanted)
     jobs = min(jobs or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1, 8)
     if jobs <= 1 or count < FEW:
         _start_worker(path, ignore=False)
         try:
-            for number in range(count):
+            for number in wanted:
                 yield _work(number)
         finally:
             _end_worker()
         return
     with get_context().Pool(jobs, _start_worker, (path, True)) as pool:
-        yield from pool.imap(_work, range(count), chunksize=max(1, min(8, count // (4 * jobs))))
+        yield from pool.imap(_work, wanted, chunksize=max(1, min(8, count // (4 * jobs))))
 
 
 _open_file = None
