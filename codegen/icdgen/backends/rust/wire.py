@@ -5,9 +5,9 @@ from __future__ import annotations
 import textwrap
 from typing import NamedTuple
 
+from icdgen.backends.rust.file_transfer import files, operation
 from icdgen.backends.rust.literals import Optional, Part, Raw, Rows, Struct, flat, literal
 from icdgen.backends.rust.text import WIDTH, doc, mask, prose
-from icdgen.backends.rust.transfer import files, operation
 from icdgen.backends.rust.wire_steps import place, step
 from icdgen.describe.comments import sentence
 from icdgen.icd.model import CONFIGURATION, Icd, Message
