@@ -1,4 +1,3 @@
-/* {{ origin }} */
 /* Requests about the wire layer. */
 
 #ifndef TESTEE_WIRE_H

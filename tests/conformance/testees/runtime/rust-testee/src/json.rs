@@ -1,5 +1,3 @@
-// {{ origin }}
-{% raw %}
 //! As much of JSON as the protocol needs, integers exact.
 
 use std::fmt::Write;
@@ -257,4 +255,3 @@ fn digit(letter: u8) -> Option<u8> {
         _ => None,
     }
 }
-{% endraw %}

@@ -1,4 +1,3 @@
-/* {{ origin }} */
 #ifndef ICDGEN_SELFTEST_H
 #define ICDGEN_SELFTEST_H
 

@@ -1,4 +1,3 @@
-/* {{ origin }} */
 /* CAN. */
 
 #include "testee_wire.h"

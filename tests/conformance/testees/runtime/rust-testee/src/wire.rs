@@ -1,5 +1,3 @@
-// {{ origin }}
-{% raw %}
 //! Requests about how the messages travel.
 
 use crate::ask::{any, byte, flag, hex_rows, mappings, number, octets, text, BYTE};
@@ -7,8 +5,8 @@ use crate::json::{hex, quoted, Json};
 use crate::logs;
 use crate::nodes::{LINKS, LONGEST, NODES};
 use crate::subject::Refusal;
-use {% endraw %}{{ crate }}{% raw %}::wire::uart::{Decoder, Kind};
-use {% endraw %}{{ crate }}{% raw %}::wire::{can, crc16, crc8, i2c, identify, uart, Error, Link};
+use icd::wire::uart::{Decoder, Kind};
+use icd::wire::{can, crc16, crc8, i2c, identify, uart, Error, Link};
 
 const SENDERS: usize = 16;
 
@@ -285,4 +283,3 @@ fn identity(link: &'static Link, request: &Json) -> Result<String, Refusal> {
         found.node_type, found.interface_version, found.matches
     ))
 }
-{% endraw %}

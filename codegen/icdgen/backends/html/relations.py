@@ -27,7 +27,7 @@ class Contained(NamedTuple):
     at: int
 
 
-class Atlas:
+class Relations:
     """Everything is worked out once."""
 
     def __init__(self, icd: Icd) -> None:
@@ -85,11 +85,6 @@ class Atlas:
     def places_of(self, erratum: Erratum) -> list[Place]:
         """Where the erratum applies."""
         return self.places.get((erratum.id, erratum.title), [])
-
-    def about(self, message: Message) -> list[Erratum]:
-        """Errata of the message and of everything in it, each once."""
-        parts = (message, *message.fields)
-        return list(dict.fromkeys(erratum for part in parts for erratum in part.errata))
 
     def anchors(self, message: Message) -> list[str]:
         """Anchors of the fields, in their order."""

@@ -1,4 +1,3 @@
-/* {{ origin }} */
 /* Logs. */
 
 #include "testee_wire.h"

@@ -1,4 +1,3 @@
-/* {{ origin }} */
 /* Reads one line of JSON into a row of values, and writes answers. Part of the testee, not of the library. */
 
 #ifndef TESTEE_JSON_H

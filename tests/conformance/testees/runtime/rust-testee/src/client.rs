@@ -1,5 +1,3 @@
-// {{ origin }}
-{% raw %}
 //! Scripts for the client: what happens at which time, and what it does then.
 
 use crate::ask::{any, byte, bytes_of, flag, mappings, number, octets, text, BYTE};
@@ -7,7 +5,7 @@ use crate::json::{hex, Json};
 use crate::nodes::LONGEST;
 use crate::subject::Refusal;
 use crate::wire::{can_packet, explained, list, packet_of};
-use {% endraw %}{{ crate }}{% raw %}::wire::{Bus, Client, Error, Event, Link, Reason, Request, Settings, Started};
+use icd::wire::{Bus, Client, Error, Event, Link, Reason, Request, Settings, Started};
 
 pub fn bus(request: &Json) -> Result<Bus, Refusal> {
     match text(request, "bus")? {
@@ -216,4 +214,3 @@ fn shown(event: &Event<'_>) -> String {
     };
     format!("{{\"event\": \"{name}\"{more}}}")
 }
-{% endraw %}

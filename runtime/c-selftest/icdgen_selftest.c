@@ -1,4 +1,3 @@
-/* {{ origin }} */
 
 #include "icdgen_selftest.h"
 

@@ -1,4 +1,3 @@
-/* {{ origin }} */
 /* Scripts for the procedures: what happens at which time, and what they ask for then. */
 
 #include "testee_wire.h"

@@ -1,4 +1,3 @@
-/* {{ origin }} */
 /* Scripts for the client: what happens at which time, and what it does then. */
 
 #include "testee_wire.h"

@@ -1,9 +1,7 @@
-// {{ origin }}
-{% raw %}
 //! What the protocol needs to know of a message and of its values.
 
 use crate::json::{hex, unhex, Json};
-use {% endraw %}{{ crate }}{% raw %}::{Coded, Enumeration, Error};
+use icd::{Coded, Enumeration, Error};
 
 /// Why a request cannot be answered.
 pub enum Refusal {
@@ -177,4 +175,3 @@ pub trait Subject: Copy + Default + 'static {
     fn decode(bytes: &[u8]) -> Result<Self, Error>;
     fn encode(&self) -> Result<Vec<u8>, Error>;
 }
-{% endraw %}

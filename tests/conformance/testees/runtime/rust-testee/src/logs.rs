@@ -1,5 +1,3 @@
-// {{ origin }}
-{% raw %}
 //! Requests about logs, times, hole maps and the index file.
 
 use crate::ask::{any, hex_rows, mappings, number, octets, rows};
@@ -7,8 +5,8 @@ use crate::json::{hex, Json};
 use crate::nodes::LONGEST;
 use crate::subject::Refusal;
 use crate::wire::{list, unnamed};
-use {% endraw %}{{ crate }}{% raw %}::wire::files::{HoleMap, IndexEntries, IndexEntry};
-use {% endraw %}{{ crate }}{% raw %}::wire::{log, DosTime, Link};
+use icd::wire::files::{HoleMap, IndexEntries, IndexEntry};
+use icd::wire::{log, DosTime, Link};
 
 fn log_frame(frame: log::Frame<'_>) -> String {
     let id = frame.id.map_or_else(|| "null".into(), |id| id.to_string());
@@ -193,4 +191,3 @@ pub fn index_encode(link: &'static Link, request: &Json) -> Result<String, Refus
     }
     Ok(format!("\"bytes\": \"{file}\""))
 }
-{% endraw %}

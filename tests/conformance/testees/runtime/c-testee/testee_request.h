@@ -1,4 +1,3 @@
-/* {{ origin }} */
 /* What requests ask for: messages, fields, frames. */
 
 #ifndef TESTEE_REQUEST_H

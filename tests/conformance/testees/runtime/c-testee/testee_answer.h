@@ -1,4 +1,3 @@
-/* {{ origin }} */
 /* Answers, and what they tell of a message. */
 
 #ifndef TESTEE_ANSWER_H

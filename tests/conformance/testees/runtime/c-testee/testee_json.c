@@ -1,4 +1,3 @@
-/* {{ origin }} */
 
 #include "testee_json.h"
 

@@ -1,4 +1,3 @@
-/* {{ origin }} */
 
 #include "testee_answer.h"
 

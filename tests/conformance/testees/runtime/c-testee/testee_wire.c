@@ -1,4 +1,3 @@
-/* {{ origin }} */
 /* Checksums, UART and I2C; which op is asked for. */
 
 #include "testee_wire.h"

@@ -1,4 +1,3 @@
-/* {{ origin }} */
 /* Writes answers. */
 
 #include "testee_json.h"

@@ -1,5 +1,3 @@
-// {{ origin }}
-{% raw %}
 //! Reading the keys of a request.
 
 use crate::json::{unhex, Json};
@@ -86,4 +84,3 @@ pub fn mappings<'a>(request: &'a Json, key: &str) -> Result<&'a [Json], Refusal>
 pub fn hex_rows(request: &Json, key: &str) -> Result<Vec<Vec<u8>>, Refusal> {
     rows(request, key)?.iter().map(bytes_of).collect()
 }
-{% endraw %}

@@ -1,5 +1,3 @@
-// {{ origin }}
-{% raw %}
 //! Scripts for the procedures of file transfer.
 
 use crate::ask::{any, byte, flag, mappings, number, octets, text};
@@ -7,10 +5,10 @@ use crate::client::bus;
 use crate::json::{hex, Json};
 use crate::subject::Refusal;
 use crate::wire::{list, unnamed};
-use {% endraw %}{{ crate }}{% raw %}::wire::files::{
+use icd::wire::files::{
     Download, End, Erase, Format, List, Procedure, ProgramCopy, ProgramInformation, Upload,
 };
-use {% endraw %}{{ crate }}{% raw %}::wire::{Direction, Event, Link, Request};
+use icd::wire::{Direction, Event, Link, Request};
 
 pub fn answer(link: &'static Link, request: &Json) -> Result<String, Refusal> {
     let what = text(request, "do")?;
@@ -164,4 +162,3 @@ fn shown(request: &Request<'_>) -> String {
         }
     }
 }
-{% endraw %}

@@ -1,4 +1,3 @@
-/* {{ origin }} */
 /* Packed times, hole maps, the index file and the identity. */
 
 #include "testee_wire.h"
