@@ -12,7 +12,7 @@ import yaml
 
 from tests.conftest import ROOT
 
-PYTHON = [name for name in ("codegen", "tests", "bench", "examples") if (ROOT / name).is_dir()]
+PYTHON = [name for name in ("codegen", "tests", "bench", "examples", "scripts") if (ROOT / name).is_dir()]
 
 
 def test_generated_is_what_the_backends_make_of_the_shipped_icds():

@@ -2512,6 +2512,9 @@ static inline void icd_client_transferred(
     }
 }
 
+/** Bytes of the longest message that takes part in a procedure, of any node. */
+#define ICD_STEP_BYTES 22u
+
 /* ---- procedures -------------------------------------------------------------------------------------------------- */
 
 /** How a procedure ended. */
@@ -2526,9 +2529,6 @@ typedef enum {
     ICD_CHECKSUM,  /**< After so many rounds the checksum was still wrong. */
     ICD_FAILED     /**< The node tells that what it was asked for failed. */
 } icd_result_t;
-
-/** Bytes of the longest message that takes part in a procedure, of any node. */
-#define ICD_STEP_BYTES 22u
 
 typedef enum { ICDGEN_WANT_NOTHING, ICDGEN_WANT_REQUEST, ICDGEN_WANT_TIME } icdgen_want_t;
 

@@ -38,6 +38,8 @@
 
 #include "wire/client_input.h"
 
+#include "wire/sizes.h"
+
 #include "wire/procedure.h"
 
 #include "wire/list.h"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Set
+from collections.abc import Iterable, Iterator, Set
 
 from icdgen.diagnostics import Finding, Place
 from icdgen.icd.located import Map, Seq
@@ -43,6 +43,7 @@ def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> App
         )  # fmt: skip
         return applied
     seen: dict[str, Place] = {}
+    named = _ByName()
     notes = list(_maps(overlay.get("notes")))  # first: what they speak of is what the vendor prints
     for entry in (*notes, *_maps(overlay.get("entries"))):
         if _is_broken(entry, broken):
@@ -53,11 +54,11 @@ def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> App
                         entry.at("id"), "give this entry an id of its own")
             )  # fmt: skip
         seen[entry["id"]] = entry.at("id")
-        _apply_entry(tree, entry, applied)
+        _apply_entry(tree, entry, applied, named)
     return applied
 
 
-def _apply_entry(tree: Map, entry: Map, applied: Applied) -> None:
+def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> None:
     printed, held = entry.get("printed") or {}, entry.get("held") or {}
     erratum = _erratum(entry)
     (applied.notes if erratum.is_note else applied.entries).append(erratum)
@@ -66,7 +67,7 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied) -> None:
     matched = 0
     wildcard = False
     for one in wheres:
-        targets = list(_targets(tree, one))
+        targets = list(_targets(tree, one, named))
         wild = "*" in (one.get("message"), one.get("field"))
         wildcard |= wild
         if wild:
@@ -79,6 +80,8 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied) -> None:
                 continue
             matched += 1
             _change(target, held, entry)
+            if held:
+                named.forget()
             applied.of.setdefault(id(target), []).append(erratum)
             codes = entry.get("accept") or Seq(entry.place)
             for code, place in zip(codes, codes.items_at, strict=True):
@@ -117,11 +120,11 @@ def _erratum(entry: Map) -> Erratum:
     )
 
 
-def _targets(tree: Map, where: Map) -> Iterator[Map]:
+def _targets(tree: Map, where: Map, named: _ByName) -> Iterator[Map]:
     if "section" in where:
         yield from _section(tree, str(where["section"]))
     elif "enum" in where:
-        for enum in _named(tree, "enums", where["enum"]):
+        for enum in named.of(tree, "enums", where["enum"]):
             if "member" not in where:
                 yield enum
             else:
@@ -130,11 +133,33 @@ def _targets(tree: Map, where: Map) -> Iterator[Map]:
         yield from (row for row in _maps(tree.get("loggable")) if row.get("bit") == where["loggable"])
     elif "message" in where:
         names = where.get("fields") or ([where["field"]] if "field" in where else None)
-        for message in _named(tree, "messages", where["message"]):
+        for message in named.of(tree, "messages", where["message"]):
             if names is None:
                 yield message
             else:
-                yield from (f for name in names for f in _named(message, "fields", name))
+                yield from (f for name in names for f in named.of(message, "fields", name))
+
+
+class _ByName:
+    """Finds what an ICD lists by its name, without looking through the whole list again for each entry."""
+
+    def __init__(self) -> None:
+        self._rows: dict[tuple[int, str], dict[str, list[Map]]] = {}
+
+    def of(self, owner: Map, key: str, name: object) -> Iterable[Map]:
+        if not isinstance(name, str) or name == "*":
+            return _named(owner, key, name)
+        rows = self._rows.get((id(owner), key))
+        if rows is None:
+            rows = self._rows[id(owner), key] = {}
+            for item in _maps(owner.get(key)):
+                if isinstance(item.get("name"), str):
+                    rows.setdefault(item["name"], []).append(item)
+        return rows.get(name, ())
+
+    def forget(self) -> None:
+        """Something was changed, maybe a name."""
+        self._rows.clear()
 
 
 def _named(owner: Map, key: str, name: object) -> Iterator[Map]:

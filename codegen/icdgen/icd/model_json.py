@@ -10,6 +10,7 @@ import json
 from collections.abc import Callable
 from dataclasses import MISSING, fields, is_dataclass
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -65,16 +66,24 @@ class _Writer:
 
 def _attributes(value: Any) -> list[tuple[str, Any]]:
     """What differs from the default, without positions."""
-    if isinstance(value, tuple):
-        defaults = value._field_defaults
-        return [(k, v) for k, v in value._asdict().items() if k not in defaults or v != defaults[k]]
     found = []
-    for one in fields(value):
-        item = getattr(value, one.name)
-        default = one.default if one.default_factory is MISSING else one.default_factory()
-        if one.compare and (default is MISSING or item != default or type(item) is not type(default)):
-            found.append((one.name, item))
+    for name, default in _defaults(type(value)):
+        item = getattr(value, name)
+        if item is not default and (default is MISSING or item != default or type(item) is not type(default)):
+            found.append((name, item))
     return found
+
+
+@cache
+def _defaults(kind: Any) -> list[tuple[str, Any]]:
+    """The names of a class's attributes, but for positions, and what each is by default."""
+    if issubclass(kind, tuple):
+        return [(name, kind._field_defaults.get(name, MISSING)) for name in kind._fields]
+    return [
+        (one.name, one.default if one.default_factory is MISSING else one.default_factory())
+        for one in fields(kind)
+        if one.compare
+    ]
 
 
 class _Reader:

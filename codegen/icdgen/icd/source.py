@@ -13,6 +13,8 @@ from typing import Any, Protocol, cast
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.icd.located import Map, Seq
 
+_new = tuple.__new__  # places are made by the ten thousand, and `Place(...)` takes three times as long
+
 MAX_BYTES = 4_000_000
 MAX_DEPTH = 40
 MAX_SCALAR = 20_000
@@ -119,12 +121,16 @@ class _Builder:
         root: list[object] = []
         stack: list[list[Any]] = []  # [container, pending key, place of pending key]
         parser = event_parser(self.text)
+        known = self.scalars  # it stands for 'not seen yet' too
         try:
             while True:
                 event = parser.get_event()
                 kind = type(event)
                 if kind is events.ScalarEvent:
-                    value = self.scalar(event)
+                    plain = not event.style and event.anchor is None and event.tag is None
+                    value = known.get(event.value, known) if plain else known
+                    if value is known:
+                        value = self.scalar(event)
                     self.put(stack, root, value, event)
                 elif kind is events.MappingStartEvent or kind is events.SequenceStartEvent:
                     if event.anchor is not None:
@@ -231,7 +237,7 @@ class _Builder:
     def place(self, event: Event) -> Place:
         start, end = event.start_mark, event.end_mark
         length = end.column - start.column if end.line == start.line else 1
-        return Place(self.name, start.line + 1, start.column + 1, length if length > 0 else 1)
+        return _new(Place, (self.name, start.line + 1, start.column + 1, length if length > 0 else 1))
 
     def unprintable(self) -> Place:
         """Where the first character stands that YAML does not allow; the beginning if there is none."""

@@ -82,6 +82,7 @@ class Table:
     line: int | None = None
     doubts: list[str] = field(default_factory=list)  # what makes the reading less than certain
     order: int | None = None  # which table of the document it is
+    section: str = ""  # the heading above it
 
     @property
     def spot(self) -> Spot:
@@ -95,6 +96,8 @@ class Table:
     def title(self) -> str:
         """How a reader finds it: number and caption."""
         number = f"table {self.number}" if self.number is not None else "a table without number"
+        if not self.caption and self.number is None and self.section:
+            return f"the table below `{self.section[:60]}`"
         return f"{number}: {self.caption}" if self.caption else number
 
 
@@ -106,6 +109,7 @@ class Heading:
     text: str
     page: int | None = None
     line: int | None = None
+    size: float = 0.0  # of its type; larger headings hold smaller ones that have no number
 
 
 @dataclass(slots=True)

@@ -184,8 +184,9 @@ def complete(node: NodeParts, troubles: list[Trouble]) -> None:
         needed = max((f.at + f.bits + 7) // 8 for f in message.fields) if message.fields else 0
         if message.length is None:
             message.length = needed
-            troubles.append(Trouble("IMP032", f"{title}: it does not say its length; the fields need {needed} bytes", spot,
-                                    "look at the page", "error"))  # fmt: skip
+            severity = "error" if messages.gaps(message) else "warning"
+            troubles.append(Trouble("IMP032", f"{title}: it does not say its length; the fields need {needed} "
+                                    f"byte{'s' if needed != 1 else ''}", spot, "look at the page", severity))  # fmt: skip
         elif needed > message.length:
             troubles.append(Trouble("IMP033", f"{title}: its fields need {needed} bytes, its length is {message.length}",
                                     spot, "look at the page; `icdgen check` tells the fields"))  # fmt: skip

@@ -1,3 +1,9 @@
+#ifndef ICDGEN_SUPPORT_BITS_H
+#define ICDGEN_SUPPORT_BITS_H
+
+#include "base.h"
+#include "words.h"
+
 /* The two's complement number that the bits stand for. */
 ICDGEN_INLINE int8_t icdgen_i8(uint8_t bits)
 {
@@ -202,3 +208,5 @@ ICDGEN_INLINE int icdgen_join_8(const void *message, size_t offset, bool falling
             ? icdgen_join_8(message, offsetof(type, a), true)                                                          \
             : (((message)->a << 7) | ((message)->b << 6) | ((message)->c << 5) | ((message)->d << 4) |                 \
                ((message)->e << 3) | ((message)->f << 2) | ((message)->g << 1) | (message)->h))
+
+#endif /* ICDGEN_SUPPORT_BITS_H */

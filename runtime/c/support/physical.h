@@ -1,3 +1,9 @@
+#ifndef ICDGEN_SUPPORT_PHYSICAL_H
+#define ICDGEN_SUPPORT_PHYSICAL_H
+
+#include "base.h"
+#include "bits.h"
+
 /* The nearest whole number to a quotient, ties to even; the divisor is above 0. */
 static inline int32_t icdgen_nearest32(int32_t value, int32_t divisor)
 {
@@ -326,3 +332,5 @@ static inline icd_status_t icdgen_set_u8(
 }
 
 #endif /* ICDGEN_NO_DOUBLE */
+
+#endif /* ICDGEN_SUPPORT_PHYSICAL_H */

@@ -1,3 +1,9 @@
+#ifndef ICDGEN_SUPPORT_ROWS_H
+#define ICDGEN_SUPPORT_ROWS_H
+
+#include "base.h"
+#include "words.h"
+
 /*
  * A row of neighbouring members of one size, from the first to the last named: they are words in the buffer, one after
  * the other, and are moved as one where the machine has their byte order.
@@ -60,3 +66,5 @@ ICDGEN_INLINE void icdgen_write_row(
     icdgen_write_row(                                                                                                  \
         message, offsetof(type, first), buffer, ICDGEN_ROW(type, sizeof((message)->first), count, first, last),        \
         sizeof((message)->first), false)
+
+#endif /* ICDGEN_SUPPORT_ROWS_H */

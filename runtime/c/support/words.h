@@ -1,3 +1,8 @@
+#ifndef ICDGEN_SUPPORT_WORDS_H
+#define ICDGEN_SUPPORT_WORDS_H
+
+#include "base.h"
+
 /*
  * Words are loaded and stored as they lie in memory where the processor can do that at any address, and swapped if its
  * byte order is the other one; elsewhere they are put together byte by byte.
@@ -165,3 +170,5 @@ ICDGEN_INLINE void icdgen_store_u64be(uint8_t *bytes, uint64_t value)
     icdgen_store_u32be(&bytes[0], ICDGEN_U32(value >> 32));
 #endif
 }
+
+#endif /* ICDGEN_SUPPORT_WORDS_H */

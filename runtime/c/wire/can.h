@@ -1,3 +1,10 @@
+#ifndef ICDGEN_WIRE_CAN_H
+#define ICDGEN_WIRE_CAN_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+
 /* ---- CAN --------------------------------------------------------------------------------------------------------- */
 
 /** A CAN frame: identifier of 29 bits, and data. */
@@ -105,3 +112,5 @@ static inline bool icd_can_next(icd_can_splitter_t *splitter, icd_can_packet_t *
     splitter->next++;
     return true;
 }
+
+#endif /* ICDGEN_WIRE_CAN_H */

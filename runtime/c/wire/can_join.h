@@ -1,3 +1,12 @@
+#ifndef ICDGEN_WIRE_CAN_JOIN_H
+#define ICDGEN_WIRE_CAN_JOIN_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+#include "events.h"
+#include "can.h"
+
 /** A message of several packets on its way. */
 typedef struct {
     uint8_t *data; /* of all its packets; the byte before it is the id of the message */
@@ -301,3 +310,5 @@ static inline void icd_can_feed(
     }
     icdgen_can_tell(link, packet->id, ICD_EVENT_UNKNOWN_TYPE, 0, on_event, context);
 }
+
+#endif /* ICDGEN_WIRE_CAN_JOIN_H */

@@ -1,3 +1,15 @@
+#ifndef ICDGEN_WIRE_CLIENT_H
+#define ICDGEN_WIRE_CLIENT_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+#include "events.h"
+#include "uart.h"
+#include "i2c.h"
+#include "can.h"
+#include "can_join.h"
+
 /* ---- client ------------------------------------------------------------------------------------------------------ */
 
 typedef enum {
@@ -356,3 +368,5 @@ static inline bool icd_client_transfer(icd_client_t *client, const uint8_t **byt
     }
     return true;
 }
+
+#endif /* ICDGEN_WIRE_CLIENT_H */

@@ -1,3 +1,16 @@
+#ifndef ICDGEN_WIRE_CLIENT_INPUT_H
+#define ICDGEN_WIRE_CLIENT_INPUT_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+#include "events.h"
+#include "uart.h"
+#include "i2c.h"
+#include "can.h"
+#include "can_join.h"
+#include "client.h"
+
 /* The node refused it. A wrong checksum is no fault of the request: it is sent again. */
 static inline void icdgen_client_refused(
     icd_client_t *client, uint32_t now, int64_t code, int64_t parameter, icd_event_fn *on_event, void *context)
@@ -285,3 +298,5 @@ static inline void icd_client_transferred(
         icdgen_client_again(client, now, on_event, context);
     }
 }
+
+#endif /* ICDGEN_WIRE_CLIENT_INPUT_H */

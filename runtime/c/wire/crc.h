@@ -1,3 +1,10 @@
+#ifndef ICDGEN_WIRE_CRC_H
+#define ICDGEN_WIRE_CRC_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+
 /* ---- checksums --------------------------------------------------------------------------------------------------- */
 
 /** A CRC that is fed piece by piece. */
@@ -84,3 +91,5 @@ static inline icd_status_t icd_crc16(const icd_link_t *link, const uint8_t *byte
     *crc = icd_crc(link->crc16, bytes, length);
     return ICD_OK;
 }
+
+#endif /* ICDGEN_WIRE_CRC_H */

@@ -1,3 +1,14 @@
+#ifndef ICDGEN_WIRE_DOWNLOAD_H
+#define ICDGEN_WIRE_DOWNLOAD_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+#include "events.h"
+#include "crc.h"
+#include "files.h"
+#include "procedure.h"
+
 /** Is told of each block of a file. */
 typedef void icd_block_fn(void *context, uint32_t offset, const uint8_t *data, size_t length);
 
@@ -325,3 +336,5 @@ static inline icd_status_t icd_download_init(
     download->context = context;
     return ICD_OK;
 }
+
+#endif /* ICDGEN_WIRE_DOWNLOAD_H */

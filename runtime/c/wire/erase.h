@@ -1,3 +1,12 @@
+#ifndef ICDGEN_WIRE_ERASE_H
+#define ICDGEN_WIRE_ERASE_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+#include "events.h"
+#include "procedure.h"
+
 /** Deletes a file or all of them, or formats the medium. `procedure` goes to the functions of icd_procedure_t. */
 typedef struct {
     icd_procedure_t procedure;
@@ -49,3 +58,5 @@ static inline icd_status_t icd_format_init(icd_format_t *format, const icd_link_
     format->all = true;
     return icdgen_procedure_init(&format->procedure, link, link->format != NULL, icdgen_erase_resume);
 }
+
+#endif /* ICDGEN_WIRE_ERASE_H */

@@ -1,3 +1,8 @@
+#ifndef ICDGEN_WIRE_EVENTS_H
+#define ICDGEN_WIRE_EVENTS_H
+
+#include "forms.h"
+
 /* ---- events ------------------------------------------------------------------------------------------------------ */
 
 typedef enum {
@@ -58,3 +63,5 @@ static inline bool icdgen_reached(uint32_t now, uint32_t time)
 {
     return now - time < UINT32_C(0x80000000);
 }
+
+#endif /* ICDGEN_WIRE_EVENTS_H */

@@ -1,3 +1,10 @@
+#ifndef ICDGEN_WIRE_FILES_H
+#define ICDGEN_WIRE_FILES_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+
 /* ---- hole maps and the index file -------------------------------------------------------------------------------- */
 
 static inline uint8_t icdgen_hole_bit(const icd_hole_map_form_t *form, uint32_t position)
@@ -114,3 +121,5 @@ static inline icd_status_t icd_index_entry_encode(
     }
     return ICD_OK;
 }
+
+#endif /* ICDGEN_WIRE_FILES_H */

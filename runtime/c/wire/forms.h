@@ -1,3 +1,8 @@
+#ifndef ICDGEN_WIRE_FORMS_H
+#define ICDGEN_WIRE_FORMS_H
+
+#include "../icdgen.h"
+
 /* ---- what the ICD says about a node ------------------------------------------------------------------------------ */
 
 typedef enum { ICD_BUS_UART = 0, ICD_BUS_I2C = 1, ICD_BUS_CAN = 2 } icd_bus_t;
@@ -283,3 +288,5 @@ typedef struct {
     const uint8_t *programs; /**< Those that it may be asked for, NULL for all. */
     uint16_t program_count;
 } icd_operation_form_t;
+
+#endif /* ICDGEN_WIRE_FORMS_H */

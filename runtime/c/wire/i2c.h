@@ -1,3 +1,11 @@
+#ifndef ICDGEN_WIRE_I2C_H
+#define ICDGEN_WIRE_I2C_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+#include "crc.h"
+
 /* ---- I2C --------------------------------------------------------------------------------------------------------- */
 
 /** The checksum of a message's data. The node has checksums. */
@@ -76,3 +84,5 @@ static inline icd_status_t icd_i2c_reply(
     }
     return ICD_OK;
 }
+
+#endif /* ICDGEN_WIRE_I2C_H */

@@ -1,3 +1,9 @@
+#ifndef ICDGEN_WIRE_LINK_H
+#define ICDGEN_WIRE_LINK_H
+
+#include "../icdgen.h"
+#include "forms.h"
+
 /** How a client waits and tries again, in milliseconds. */
 typedef struct {
     uint32_t reply_timeout;
@@ -188,3 +194,5 @@ static inline icd_status_t icd_identify(
         (link->interface_version < 0 || ICDGEN_U32(link->interface_version) == identity->interface_version);
     return ICD_OK;
 }
+
+#endif /* ICDGEN_WIRE_LINK_H */

@@ -1,3 +1,13 @@
+#ifndef ICDGEN_WIRE_LIST_H
+#define ICDGEN_WIRE_LIST_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+#include "events.h"
+#include "sizes.h"
+#include "procedure.h"
+
 /** A file of the node; `time` is packed. */
 typedef struct {
     uint32_t type;
@@ -99,3 +109,5 @@ static inline icd_status_t icd_list_init(icd_list_t *list, const icd_link_t *lin
     list->context = context;
     return icdgen_procedure_init(&list->procedure, link, link->list != NULL, icdgen_list_resume);
 }
+
+#endif /* ICDGEN_WIRE_LIST_H */

@@ -1,3 +1,11 @@
+#ifndef ICDGEN_WIRE_LOG_H
+#define ICDGEN_WIRE_LOG_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+#include "uart.h"
+
 /* ---- telemetry logs ---------------------------------------------------------------------------------------------- */
 
 /** Bytes with a length. */
@@ -288,3 +296,5 @@ static inline icd_status_t icd_log_message_encode(
     *written = form->frames_at + slots;
     return status;
 }
+
+#endif /* ICDGEN_WIRE_LOG_H */

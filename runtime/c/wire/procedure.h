@@ -1,3 +1,13 @@
+#ifndef ICDGEN_WIRE_PROCEDURE_H
+#define ICDGEN_WIRE_PROCEDURE_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+#include "events.h"
+#include "client.h"
+#include "sizes.h"
+
 /* ---- procedures -------------------------------------------------------------------------------------------------- */
 
 /** How a procedure ended. */
@@ -12,8 +22,6 @@ typedef enum {
     ICD_CHECKSUM,  /**< After so many rounds the checksum was still wrong. */
     ICD_FAILED     /**< The node tells that what it was asked for failed. */
 } icd_result_t;
-
-#include "sizes.h"
 
 typedef enum { ICDGEN_WANT_NOTHING, ICDGEN_WANT_REQUEST, ICDGEN_WANT_TIME } icdgen_want_t;
 
@@ -249,3 +257,5 @@ static inline icd_status_t icdgen_procedure_init(
     procedure->result = ICD_RUNNING;
     return supported ? ICD_OK : ICD_ERROR_UNSUPPORTED;
 }
+
+#endif /* ICDGEN_WIRE_PROCEDURE_H */

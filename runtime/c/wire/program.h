@@ -1,3 +1,12 @@
+#ifndef ICDGEN_WIRE_PROGRAM_H
+#define ICDGEN_WIRE_PROGRAM_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+#include "events.h"
+#include "procedure.h"
+
 /** What a node does with a stored program. `procedure` goes to the functions of icd_procedure_t. */
 typedef struct {
     icd_procedure_t procedure;
@@ -71,3 +80,5 @@ static inline icd_status_t icd_program_information_init(
 {
     return icdgen_program_init(information, link, link->program_information, program);
 }
+
+#endif /* ICDGEN_WIRE_PROGRAM_H */

@@ -1,3 +1,10 @@
+#ifndef ICDGEN_WIRE_TIME_H
+#define ICDGEN_WIRE_TIME_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+
 /* ---- packed time ------------------------------------------------------------------------------------------------- */
 
 /** A date and time of day. */
@@ -86,3 +93,5 @@ static inline icd_status_t icd_dos_time_pack(
     *value = packed;
     return ICD_OK;
 }
+
+#endif /* ICDGEN_WIRE_TIME_H */

@@ -1,3 +1,11 @@
+#ifndef ICDGEN_WIRE_UART_H
+#define ICDGEN_WIRE_UART_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+#include "events.h"
+
 /* ---- UART -------------------------------------------------------------------------------------------------------- */
 
 /** Writes a message to the line piece by piece, so that no buffer must hold the whole. */
@@ -236,3 +244,5 @@ static inline icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_
     }
     return ICD_UART_OTHER;
 }
+
+#endif /* ICDGEN_WIRE_UART_H */

@@ -1,3 +1,15 @@
+#ifndef ICDGEN_WIRE_UPLOAD_H
+#define ICDGEN_WIRE_UPLOAD_H
+
+#include "../icdgen.h"
+#include "forms.h"
+#include "link.h"
+#include "events.h"
+#include "crc.h"
+#include "files.h"
+#include "procedure.h"
+#include "download.h"
+
 /** Uploads a file block by block. `procedure` goes to the functions of icd_procedure_t. */
 typedef struct {
     icd_procedure_t procedure;
@@ -275,3 +287,5 @@ static inline icd_status_t icd_upload_init(
     upload->missing = bitmap;
     return ICD_OK;
 }
+
+#endif /* ICDGEN_WIRE_UPLOAD_H */

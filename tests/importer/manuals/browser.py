@@ -47,14 +47,19 @@ def program() -> str | None:
 
 def draw(manual: Manual, path: Path, look: Look) -> None:
     """Writes the PDF."""
+    with tempfile.TemporaryDirectory() as folder:
+        print_page(html(manual, look), path, Path(folder))
+
+
+def print_page(text: str, path: Path, folder: Path) -> None:
+    """Prints a page of HTML; ``folder`` is for what the browser needs meanwhile."""
     browser = program()
     assert browser, "the tests need Chromium"
-    with tempfile.TemporaryDirectory() as folder:
-        page = Path(folder, "manual.html")
-        page.write_text(html(manual, look), encoding="utf-8")
-        command = [browser, "--headless", "--no-sandbox", "--disable-gpu", "--no-pdf-header-footer", f"--user-data-dir={folder}/u",
-                   f"--print-to-pdf={path}", page.as_uri()]  # fmt: skip
-        subprocess.run(command, check=True, capture_output=True, timeout=120)
+    page = folder / "page.html"
+    page.write_text(text, encoding="utf-8")
+    command = [browser, "--headless", "--no-sandbox", "--disable-gpu", "--no-pdf-header-footer", f"--user-data-dir={folder}/u",
+               f"--print-to-pdf={path}", page.as_uri()]  # fmt: skip
+    subprocess.run(command, check=True, capture_output=True, timeout=120)
 
 
 def html(manual: Manual, look: Look) -> str:

@@ -1,29 +1,27 @@
-"""The headers of the runtime, each in one file: what they include of the runtime's parts stands in its place."""
+"""The headers of the runtime, each as one file: in the runtime they are made of parts, which a user need not see."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from pathlib import PurePosixPath
 
 from icdgen.render import Renderer
 
-_INCLUDE = re.compile(r'^#include "(?P<file>[^"]+)"\n', re.MULTILINE)
+_PART = re.compile(r'^#include "(?P<file>\w+/\w+\.h)"\n', re.MULTILINE)
+_GUARDED = re.compile(
+    r"\s*#ifndef (?P<guard>\w+_H)\n#define (?P=guard)\n\n"
+    r"(?:(?:#include \"[^\n]*\n)+\n)?(?P<body>.*)\n#endif /\* (?P=guard) \*/\s*",
+    re.DOTALL,
+)
 
 
 def header(file: str, made: Mapping[str, str], render: Renderer) -> str:
-    """The text of a header of the runtime. ``made`` are parts that come from the ICD, by the path of the part they replace."""
-    parts = frozenset(name for name in render.runtime_files() if "/" in name)
+    """The text of a header with its parts in place. ``made`` are those that come from the ICD, instead of the runtime's samples."""
 
-    def text(file: str) -> str:
-        folder = PurePosixPath(file).parent
+    def part(include: re.Match[str]) -> str:
+        name = include["file"]
+        text = made[name] if name in made else render.source(name)
+        guarded = _GUARDED.fullmatch(text)
+        return guarded["body"] if guarded else text
 
-        def part(include: re.Match[str]) -> str:
-            name = str(folder / include["file"])
-            if name not in parts:
-                return include[0]
-            return made[name] if name in made else text(name)
-
-        return _INCLUDE.sub(part, render.source(file))
-
-    return text(file)
+    return _PART.sub(part, render.source(file))

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 from icdgen import __version__
 from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
-from icdgen.backends.python import links, messages, names, nodes
+from icdgen.backends.python import names
 from icdgen.backends.python.declared_names import declared_names
-from icdgen.backends.python.text import prose
 from icdgen.describe import describe
 from icdgen.icd.model import Icd
 
@@ -32,6 +31,9 @@ class PythonBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The project's files, then the package's, then those of each node."""
+        from icdgen.backends.python import links, messages, nodes  # the rules about names need none of them
+        from icdgen.backends.python.text import prose
+
         root = PurePosixPath(self.package)
         common = {
             "origin": origin(),

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any
 
 from icdgen.backends.python.literals import Call, Noted, Verbatim, expression
 from icdgen.backends.python.text import prose
 from icdgen.describe import describe
 from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
 from icdgen.protocol import facts as read
-from icdgen.protocol.facts import Crc, Facts, Operation, Step
+from icdgen.protocol.declared import facts_of
+from icdgen.protocol.facts import Client, Crc, Facts, HoleMap, LogFile, LogMessage, Step
 
 TYPES = "link"  # the module that declares the types of the facts
 
@@ -20,19 +22,19 @@ def values(icd: Icd, node: Node) -> dict[str, object]:
     return {"title": prose(node.title), "link": expression(link, 0, len("LINK = "))}
 
 
-# Where a field of the facts and the key of the ICD have different names.
-FRAMING = {"start": "start_of_message", "end": "end_of_message", "escaped": "escaped_data", "escapes_id": "escaped_in",
-           "ignores_other": "other"}  # fmt: skip
-CLIENT = {key: f"{key}_ms" for key in ("reply_timeout", "poll_interval", "poll_timeout")}
-EXTENDED = {"left_at": "packets_left_byte", "left_in_last": "packets_left_in_last", "packets": "max_packets",
-            "bytes": "max_bytes", "packet_timeout": "packet_timeout_ms"}  # fmt: skip
-CAN = {"data_bytes": "max_data_bytes", "parts": "identifier"}
-CHECKSUM = {"telecommand_buses": "telecommand", "telemetry_buses": "telemetry"}
-MASK = {"size": "bytes", "msb0": "bit_order", "slot_bytes": "frame_bytes"}
-LOG_MESSAGE = {"frames_at": "frames_byte"}
-FILES = {"counter_bytes": "packet_counter_bytes"}
-OPERATION = {"poll_interval": "poll_interval_ms", "timeout": "timeout_s"}
-HOLE_MAP = {"msb0": "bit_order"}
+# Types whose names in generated code are not those of the facts.
+_TYPES = {
+    Client: "Settings",
+    Crc: "CrcForm",
+    LogFile: "LogFileForm",
+    LogMessage: "LogMessageForm",
+    HoleMap: "HoleMapForm",
+}
+
+
+def type_name(part: type) -> str:
+    """What the type of a part is called in the module of the types."""
+    return _TYPES.get(part, part.__name__)
 
 
 class Maker:
@@ -52,7 +54,7 @@ class Maker:
             "longest": facts.longest,
             "longest_data": facts.longest_data,
             "telemetry_ids": (facts.telemetry_ids.first, facts.telemetry_ids.last),
-            "settings": self.part("Settings", facts.client, "client", CLIENT),
+            "settings": self.part(facts.client, "client"),
             "errors": self.rest("errors", facts.errors),
             "commands": {id: self.sent(message) for id, message in sorted(facts.telecommands.items())},
             "frames": {id: message.length for id, message in sorted(facts.telemetry.items())},
@@ -60,25 +62,25 @@ class Maker:
             "TELEMETRY": Verbatim("TELEMETRY"),
         }
         optional = {
-            "framing": self.part("Framing", facts.framing, "uart.framing", FRAMING),
-            "acknowledge": self.part("Acknowledge", facts.acknowledge, "uart.acknowledge"),
+            "framing": self.part(facts.framing, "uart.framing"),
+            "acknowledge": self.part(facts.acknowledge, "uart.acknowledge"),
             "polled": self.rest("i2c.acknowledge", self.polled()),
             "i2c_address": facts.i2c_address,
             "can": self.can(),
             "checksum": facts.checksum
-            and self.part("Checksum", facts.checksum, "crc8", CHECKSUM, crc=self.crc("crc8", facts.checksum.crc)),
-            "crc16": facts.crc16 and self.rest("crc16", self.crc("crc16", facts.crc16)),
+            and self.part(facts.checksum, "crc8", crc=self.facts_in(facts.checksum.crc, "crc8")),
+            "crc16": self.part(facts.crc16, "crc16"),
             "mask": self.mask(),
-            "log_file": self.part("LogFileForm", facts.log_file, "telemetry_log"),
-            "log_message": self.part("LogMessageForm", facts.log_message, "unsolicited_log", LOG_MESSAGE),
+            "log_file": self.part(facts.log_file, "telemetry_log"),
+            "log_message": self.part(facts.log_message, "unsolicited_log"),
             "time": self.rest(
                 "msdos_time", {name: made("TimePart", part) for name, part in facts.time.items()} or None
             ),
             "index_file": self.index(),
             "hole_map": self.hole_map(),
             "files": self.files(),
-            "program_copy": self.operation("program_copy", facts.program_copy),
-            "program_information": self.operation("program_information", facts.program_information),
+            "program_copy": self.part(facts.program_copy, "program_copy"),
+            "program_information": self.part(facts.program_information, "program_information"),
             "identification": facts.identification and self.step(facts.identification),
             "statistics": facts.statistics and self.step(facts.statistics),
             "boot_time": facts.boot_ms,
@@ -101,16 +103,23 @@ class Maker:
         notes = tuple(f"Assumed, {key}: {self.why.pop((section, key))}" for key in keys)
         return Noted(value, notes) if notes else value
 
-    def part(
-        self, name: str, part: object, section: str, keys: Mapping[str, str] | None = None, **instead: object
-    ) -> object:
-        """A part of the facts with all its members that are not None."""
+    def part(self, part: object, section: str, **made: object) -> object:
+        """A part of the facts: those that are declared, and what code ``made`` beside them."""
         if part is None:
             return None
-        call = made(name, part, **instead)
-        known = keys or {}
-        given = {key: self.noted(value, section, known.get(key, key)) for key, value in call.keywords.items()}
-        return self.rest(section, Call(call.name, (), given))
+        call = self.facts_in(part, section)
+        return self.rest(section, Call(call.name, (), {**call.keywords, **made}))
+
+    def facts_in(self, part: object, section: str) -> Call:
+        """The facts of a part as they are declared, without those that are None."""
+        given: dict[str, object] = {}
+        for fact in facts_of(part):
+            value = getattr(part, fact.name)
+            if isinstance(value, Step):
+                value = self.step(value)
+            if value is not None:
+                given[fact.name] = self.noted(value, section, fact.key.partition(".")[0])
+        return Call(f"{TYPES}.{type_name(type(part))}", (), given)
 
     def polled(self) -> Call | None:
         polled = self.facts.polled
@@ -125,12 +134,14 @@ class Maker:
         if can is None:
             return None
         parts = {role: made("CanPart", part) for role, part in can.parts.items()}
-        extended = self.part("Extended", can.extended, "can.extended", EXTENDED)
-        return self.part("Can", can, "can", CAN, parts=parts, extended=extended)
-
-    def crc(self, section: str, form: Crc) -> Call:
-        call = made("CrcForm", form)
-        return Call(call.name, (), {key: self.noted(value, section, key) for key, value in call.keywords.items()})
+        made_here = {
+            "parts": self.noted(parts, "can", "identifier"),
+            "types": can.types,
+            "extended_types": can.extended_types,
+        }
+        if can.extended:
+            made_here["extended"] = self.part(can.extended, "can.extended")
+        return self.part(can, "can", **made_here)
 
     def mask(self) -> object:
         mask = self.facts.mask
@@ -140,25 +151,27 @@ class Maker:
             bit: Call(f"{TYPES}.LogBit", (row.bit, row.id, row.length, row.name or ""))
             for bit, row in sorted(mask.bits.items())
         }
-        return self.part("LogMask", mask, "log_mask", MASK, bits=bits)
+        return self.part(mask, "log_mask", bits=bits)
 
     def index(self) -> object:
         index = self.facts.index
         if index is None:
             return None
-        fields = {role: (field.at, field.bytes) for role, field in index.fields.items()}
-        return self.part("Index", index, "index_file", fields=fields)
+        return self.part(
+            index, "index_file", fields={role: (field.at, field.bytes) for role, field in index.fields.items()}
+        )
 
     def hole_map(self) -> object:
-        form, section = self.facts.hole_map, "file_transfer.hole_map"
+        form = self.facts.hole_map
         if form is None:
             return None
-        keys = ("bytes", "message_bytes", "msb0", "received", "beyond_end")
-        parts = {key: self.noted(getattr(form, key), section, HOLE_MAP.get(key, key)) for key in keys}
-        parts["telecommands"] = tuple(message.telecommand_id for message in form.messages)
-        parts["telemetry"] = tuple(message.telemetry_id for message in form.messages)
-        parts["attribute"] = self.attributes(form.messages[0])[form.field]
-        return self.rest(section, Call(f"{TYPES}.HoleMapForm", (), parts))
+        return self.part(
+            form,
+            "file_transfer.hole_map",
+            telecommands=tuple(message.telecommand_id for message in form.messages),
+            telemetry=tuple(message.telemetry_id for message in form.messages),
+            attribute=self.attributes(form.messages[0])[form.field],
+        )
 
     def files(self) -> object:
         files = self.facts.files
@@ -167,13 +180,9 @@ class Maker:
         steps = {path: self.in_procedure(path, self.step(step)) for path, step in files.steps.items()}
         counts = {path: self.in_procedure(path, number) for path, number in files.numbers.items()}
         ids = {bus: self.in_procedure(f"download.{bus}", id) for bus, id in files.packet_ids.items()}
-        return self.part("Files", files, "file_transfer", FILES, steps=steps, numbers=counts, packet_ids=ids)
-
-    def operation(self, section: str, form: Operation | None) -> object:
-        if form is None:
-            return None
-        steps = {"request": self.step(form.request), "progress": self.step(form.progress)}
-        return self.part("Operation", form, section, OPERATION, **steps)
+        return self.part(
+            files, "file_transfer", steps=steps, numbers=counts, packet_ids=ids, destinations=files.destinations
+        )
 
     def in_procedure(self, path: str, value: object) -> object:
         """A value of a procedure of file transfer, by its path there."""
@@ -201,11 +210,9 @@ class Maker:
         return {one.field.name: one.name for one in describe(self.icd).message(message).fields}
 
 
-def made(name: str, part: object, **instead: object) -> Call:
-    """A part of the facts with all its members, of which those that are None stand at the end."""
-    keys = part.__dataclass_fields__  # type: ignore[attr-defined]
-    given = {key: instead.get(key, getattr(part, key)) for key in keys}
-    return Call(f"{TYPES}.{name}", (), {key: value for key, value in given.items() if value is not None})
+def made(name: str, part: Any) -> Call:
+    """A small part with all its members."""
+    return Call(f"{TYPES}.{name}", (), {one.name: getattr(part, one.name) for one in fields(part)})
 
 
 def plain(value: object) -> object:

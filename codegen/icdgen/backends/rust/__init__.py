@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING
 from icdgen import __version__
 from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
-from icdgen.backends.rust import names, nodes
+from icdgen.backends.rust import names
 from icdgen.backends.rust.declared_names import declared_names
-from icdgen.backends.rust.enumerations import EnumRow
-from icdgen.backends.rust.messages import MessageRow
 from icdgen.describe import describe
 from icdgen.icd.model import Icd
 
@@ -34,6 +32,10 @@ class RustBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The crate."""
+        from icdgen.backends.rust import nodes  # the rules about names need none of them
+        from icdgen.backends.rust.enumerations import EnumRow
+        from icdgen.backends.rust.messages import MessageRow
+
         common: dict[str, object] = {"origin": origin(), "version": __version__, "crate": self.crate}
         description = describe(icd)
         id_bits = description.id_bits

@@ -316,7 +316,9 @@ class Builder:
                 blocks.append(item.table)
             elif index not in used:
                 page, is_heading = item.box.page, item.kind == "heading" or item.strong
-                blocks.append(Heading(item.number, item.text, page) if is_heading else Text(item.text, page))
+                blocks.append(
+                    Heading(item.number, item.text, page, size=item.size) if is_heading else Text(item.text, page)
+                )
         return blocks
 
     def table_from(self, index: int, step: int) -> int | None:

@@ -34,6 +34,9 @@ class Units(NamedTuple):
 def decide(header: Header, rows: list[Extent], length: int | None, profile: Profile) -> Units | None:
     """The units of the table's offsets and widths; None where nothing tells."""
     at, width = _said(header, "at", profile), _said(header, "bits", profile)
+    has_widths = "bits" in header.roles or "bits_bytes" in header.roles
+    if not has_widths:
+        width = at  # ranges of positions
     places = [row.at for row in rows if row.at is not None and not row.at_unit]
     widths = [row.width for row in rows if row.width is not None and not row.width_unit]
     if not places or at:
@@ -44,7 +47,7 @@ def decide(header: Header, rows: list[Extent], length: int | None, profile: Prof
     if len(at_choices) == len(width_choices) == 1:
         return Units(at_choices[0], width_choices[0])
     ranked = []
-    for choice in (Units(a, w) for a, w in product(at_choices, width_choices)):
+    for choice in (Units(a, w) for a, w in product(at_choices, width_choices) if has_widths or not widths or a == w):
         support = _support(rows, length, choice)
         if support is not None:
             ranked.append((support, choice))

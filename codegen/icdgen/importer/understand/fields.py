@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from itertools import pairwise
 
+from icdgen.icd.units import SPELLINGS, STANDARD
 from icdgen.importer.document import Header, Table, Trouble
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import bitfields, counting, descriptions, formulas, numbers, types
@@ -263,7 +264,9 @@ def _described(entry: Entry, profile: Profile, is_enum: bool) -> descriptions.De
         made.enum_title = entry.get("values")
     _unit(tidy_unit(entry.get("unit")).strip("()- "), made)
     formula = entry.get("formula").strip()
-    if formula.casefold() not in _NONE:
+    if tidy_unit(formula) in STANDARD or tidy_unit(formula) in SPELLINGS:
+        _unit(tidy_unit(formula), made)  # a column of factors with their units, of which one is 1
+    elif formula.casefold() not in _NONE:
         scaled = formulas.per_step(formula, descriptions.names(profile))
         if scaled is None:
             made.problems.append(f"the formula `{formula}` cannot be read")

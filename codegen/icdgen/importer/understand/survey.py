@@ -46,7 +46,7 @@ def survey(document: Document, profile: Profile) -> Survey:
     used: set[str] = set()  # headings whose id a table has
     for block in document.blocks:
         if isinstance(block, Heading):
-            sections = [s for s in sections if _depth(s) < _depth(block)] + [block]
+            sections = [s for s in sections if _holds(s, block)] + [block]
             prose = []
         elif isinstance(block, Text):
             prose = [block.text, *prose][:NEAR]
@@ -57,6 +57,7 @@ def survey(document: Document, profile: Profile) -> Survey:
                 run += 1
             last = block.number
         titles = tuple(s.text for s in sections)
+        block.section = titles[-1] if titles else next((text for text in prose if len(text) < 60), "")
         inner = [title for title in reversed(titles) if title not in used]
         about = Around(block.caption, prose, inner if inner and inner[0] == titles[-1] else [])
         what, thing = classify(block, profile, made.troubles, titles, about)
@@ -105,9 +106,11 @@ def _is_grid(table: Table) -> bool:
     return len(rows) + (table.header is not None) > 1
 
 
-def _depth(heading: Heading) -> int:
-    """How deep a section lies; one without a number lies within those that have one."""
-    return heading.number.count(".") if heading.number else 99
+def _holds(outer: Heading, inner: Heading) -> bool:
+    """Whether a section goes on when another one begins: numbers tell, else the size of the type."""
+    if outer.number and inner.number:
+        return outer.number.count(".") < inner.number.count(".")
+    return bool(outer.number) or (not inner.number and outer.size > inner.size + 0.4)
 
 
 def _by_section(sections: tuple[str, ...], profile: Profile) -> str:

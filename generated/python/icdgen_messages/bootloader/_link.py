@@ -119,14 +119,14 @@ LINK = link.Link(
     ),
     i2c_address=87,
     can=link.Can(
+        node_address=1,
+        data_bytes=8,
         parts={
             "type": link.CanPart(bits=5, shift=24),
             "channel": link.CanPart(bits=8, shift=16),
             "source": link.CanPart(bits=8, shift=8),
             "destination": link.CanPart(bits=8, shift=0),
         },
-        node_address=1,
-        data_bytes=8,
         types={
             "telecommand": 1,
             "acknowledge": 2,
@@ -168,6 +168,7 @@ LINK = link.Link(
     },
     index_file=link.Index(
         entry_bytes=37,
+        file_type=15,
         fields={
             "type": (0, 1),
             "counter": (1, 1),
@@ -176,17 +177,16 @@ LINK = link.Link(
             "time": (8, 4),
             "meta": (12, 25),
         },
-        file_type=15,
     ),
     hole_map=link.HoleMapForm(
         bytes=128,
         message_bytes=16,
         msb0=False,
-        received=1,
+        received=True,
         # Assumed: What the bits beyond the end of a short block are is not said.
         #   Marked as received, nothing is sent for them; from the node they are
         #   ignored.
-        beyond_end=1,
+        beyond_end=True,
         telecommands=(120, 121, 122, 123, 124, 125, 126, 127),
         telemetry=(247, 248, 249, 250, 251, 252, 253, 254),
         attribute="hole_map",

@@ -71,7 +71,7 @@ class HoleMap:
             if bit >= self.packets:
                 state = form.beyond_end
             else:
-                state = form.received if self._there[bit] else 1 - form.received
+                state = form.received == self._there[bit]
             out[bit >> 3] |= state << self._weight(bit)
         return bytes(out)
 

@@ -31,9 +31,13 @@ class Settings(NamedTuple):
     """How a client waits and tries again, in milliseconds."""
 
     reply_timeout: Number
+    """How long a reply may take, in milliseconds."""
     retries: int
+    """How often a request is sent again."""
     poll_interval: Number
+    """Time between two polls for an acknowledge, in milliseconds."""
     poll_timeout: Number
+    """How long a telecommand may take to be processed, in milliseconds."""
 
 
 class Sent(NamedTuple):
@@ -48,19 +52,28 @@ class Framing(NamedTuple):
     """How messages are delimited on the UART: escape byte and one of the others."""
 
     escape: int
+    """The escape byte."""
     start: int
+    """Follows the escape byte at the beginning of a message."""
     end: int
+    """Follows the escape byte at the end of a message."""
     escaped: int
+    """Follows the escape byte where the escape byte itself is meant as data."""
     escapes_id: bool
+    """Whether the id is escaped like the data."""
     ignores_other: bool
+    """Whether an escape byte before any other byte is skipped with it, or an error."""
 
 
 class Acknowledge(NamedTuple):
     """The acknowledge on the UART, with its first byte."""
 
     length: int
+    """Bytes of the message."""
     id_at: int
+    """Where the id of the telecommand stands."""
     error_at: int
+    """Where the error code stands."""
 
 
 class Polled(NamedTuple):
@@ -77,22 +90,33 @@ class CrcForm(NamedTuple):
     """Parameters of a CRC, as catalogues give them. ``empty``: of no bytes at all."""
 
     width: int
+    """Bits of the checksum."""
     polynomial: int
+    """Generator polynomial, most significant bit first, without the leading term."""
     init: int
+    """Value of the register at the beginning."""
     reflect_in: bool
+    """Whether each byte enters least significant bit first."""
     reflect_out: bool
+    """Whether the bits of the register are reversed at the end."""
     xor_out: int
+    """What the register is combined with at the end."""
     empty: int | None = None
+    """Checksum of no bytes at all, where it is not what the algorithm gives."""
 
 
 class Checksum(NamedTuple):
     """The optional checksum of telecommands and frames."""
 
-    crc: CrcForm
     covers_id: bool
+    """Whether the id byte is part of what the checksum covers."""
     telecommand_buses: tuple[str, ...]
+    """Where telecommands have it."""
     telemetry_buses: tuple[str, ...]
+    """Where telemetry has it."""
     bytes: int
+    """Bytes that it adds to a message."""
+    crc: CrcForm
 
 
 class CanPart(NamedTuple):
@@ -106,20 +130,29 @@ class Extended(NamedTuple):
     """CAN messages of several packets."""
 
     data_bytes: int
+    """Data bytes of a packet."""
     left_at: int
+    """Index of the byte that counts the packets still to come."""
     left_in_last: int
+    """What that byte counts in the last packet."""
     packets: int
+    """Most packets of a message."""
     bytes: int
+    """Most bytes of a message."""
     fill: int
+    """Value of the bytes of the last packet that hold no data."""
     packet_timeout: int
+    """Longest time between two packets of a message, in milliseconds."""
 
 
 class Can(NamedTuple):
     """Parts of the identifier by role, and message types by kind."""
 
-    parts: dict[str, CanPart]
     node_address: int
+    """Address of the node."""
     data_bytes: int
+    """Most data bytes of one packet, of which CAN 2.0 has up to 8."""
+    parts: dict[str, CanPart]
     types: dict[CanKind, int]
     extended_types: dict[CanKind, int]
     extended: Extended | None = None
@@ -138,9 +171,13 @@ class LogMask(NamedTuple):
     """The mask of a log, and the slots of an entry."""
 
     size: int
+    """Length of the mask."""
     msb0: bool
+    """Whether bit 0 is the most significant one of a byte."""
     slot_bytes: int
+    """Length of each frame in a log."""
     fill: int
+    """Value of the bytes after a short frame."""
     bits: dict[int, LogBit]
 
     def selected(self, mask: bytes) -> list[LogBit]:
@@ -157,19 +194,28 @@ class LogFileForm(NamedTuple):
     """The file form of a log. Times are (offset in the entry, bytes)."""
 
     mask_at: int
+    """Where the mask stands in the header."""
     header_bytes: int
+    """Bytes of the header."""
     seconds: tuple[int, int]
+    """Where the Unix time stands in an entry."""
     milliseconds: tuple[int, int]
+    """Where the milliseconds stand in an entry."""
     frames_at: int
+    """Where in an entry the selected frames begin."""
     file_type: int | None = None
+    """Type of such a file."""
 
 
 class LogMessageForm(NamedTuple):
     """The unsolicited form of a log. Offsets count from the id."""
 
     id: int
+    """Id of such messages."""
     mask_at: int
+    """Where the mask stands."""
     frames_at: int
+    """Where the selected frames begin, counted from the id."""
 
 
 class TimePart(NamedTuple):
@@ -185,18 +231,25 @@ class Index(NamedTuple):
     """Entries of the index file: by role, offset and bytes."""
 
     entry_bytes: int
+    """Length of an entry."""
     fields: dict[str, tuple[int, int]]
     file_type: int | None = None
+    """Type of such a file."""
 
 
 class HoleMapForm(NamedTuple):
     """A bit for each packet of a block, in messages that have a set and a get id."""
 
     bytes: int
+    """Length of the map."""
     message_bytes: int
+    """Bytes of the map in each message."""
     msb0: bool
-    received: int
-    beyond_end: int
+    """Whether bit 0 is the most significant one of a byte."""
+    received: bool
+    """Value of the bit of a received packet."""
+    beyond_end: bool
+    """Value of the bits of packets beyond the end of the block."""
     telecommands: tuple[int, ...]
     telemetry: tuple[int, ...]
     attribute: str
@@ -214,11 +267,17 @@ class Files(NamedTuple):
     """File transfer: messages, numbers and truth values by their path in the ICD."""
 
     packet_bytes: int
+    """Bytes of the file in a packet."""
     counter_bytes: int
+    """Bytes of the packet counter before them."""
     first_packet: int
+    """Number of the first packet of a block."""
     fill: int
+    """Value of the bytes of the last packet beyond the end of the file."""
     block_packets: int
+    """Most packets of a block."""
     block_bytes: int
+    """Most bytes of a block."""
     steps: dict[str, Step]
     numbers: dict[str, int]
     packet_ids: dict[str, int]
@@ -234,11 +293,15 @@ class Operation(NamedTuple):
     """What a telecommand starts, and a frame tells the end of. Times in milliseconds."""
 
     request: Step
+    """Starts it."""
     progress: Step
+    """Tells when it is done."""
     poll_interval: int
+    """Time between two polls of that frame, in milliseconds."""
     timeout: int
+    """How long it may take, in milliseconds."""
     programs: tuple[int, ...] = ()
-    """Those that it may be asked for; none: all."""
+    """The programs that it may be asked for, if not all."""
 
 
 class Link(NamedTuple):

@@ -1,0 +1,383 @@
+"""The parts of a node's protocol: what the ICD says of each, declared once. See `icdgen.protocol.declared`.
+
+A part stands for a section of the ICD (`PLACES`). Times are milliseconds, sizes bytes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message
+from icdgen.protocol.declared import (
+    BYTE,
+    U16,
+    U32,
+    allowed,
+    buses,
+    code,
+    flag,
+    number,
+    octet,
+    octets,
+    span,
+    telecommand,
+    telemetry,
+    time,
+)
+
+_BITS = ("lsb0", "msb0")
+_MSB0 = "whether bit 0 is the most significant one of a byte"
+_POLL = "time between two polls of "
+
+
+@dataclass(frozen=True, slots=True)
+class Direction:
+    """Ids of one direction."""
+
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True)
+class Framing:
+    """How messages are delimited on the UART. The escape byte comes before each of the other three."""
+
+    escape: int = octet("escape", "the escape byte")
+    start: int = octet("start_of_message", "follows the escape byte at the beginning of a message")
+    end: int = octet("end_of_message", "follows the escape byte at the end of a message")
+    escaped: int = octet("escaped_data", "follows the escape byte where the escape byte itself is meant as data")
+    escapes_id: bool = flag(
+        "escaped_in", "whether the id is escaped like the data", True, ("data", "id"), "id",
+        "the parts of a message in which the escape byte is doubled",
+    )  # fmt: skip
+    ignores_other: bool = flag(
+        "other", "whether an escape byte before any other byte is skipped with it, or an error", False,
+        ("error", "ignore"), key_about="what any other byte after the escape byte is",
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Acknowledge:
+    """The acknowledge as a message on the UART, which counts from its first byte."""
+
+    length: int = octets("", "bytes of the message")
+    id_at: int = octets("", "where the id of the telecommand stands")
+    error_at: int = octets("", "where the error code stands")
+
+
+@dataclass(frozen=True, slots=True)
+class Polled:
+    """The frame that tells what became of a telecommand, with the names of its fields."""
+
+    message: Message
+    id: str
+    processed: str
+    error: str
+    parameter: str
+
+
+@dataclass(frozen=True, slots=True)
+class Crc:
+    """Parameters of a CRC in the notation of the usual catalogues."""
+
+    width: int = number("width", "bits of the checksum", 1, 64, holds=U32)
+    polynomial: int = code("polynomial", "generator polynomial, most significant bit first, without the leading term")
+    init: int = code("init", "value of the register at the beginning")
+    reflect_in: bool = flag("reflect_in", "whether each byte enters least significant bit first")
+    reflect_out: bool = flag("reflect_out", "whether the bits of the register are reversed at the end")
+    xor_out: int = code("xor_out", "what the register is combined with at the end")
+    empty: int | None = code("empty", "checksum of no bytes at all, where it is not what the algorithm gives", None)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Checksum:
+    """The optional checksum of telecommands and frames."""
+
+    crc: Crc
+    covers_id: bool = flag("covers_id", "whether the id byte is part of what the checksum covers", False)
+    telecommand_buses: tuple[str, ...] = buses("telecommand", "where telecommands have it")
+    telemetry_buses: tuple[str, ...] = buses("telemetry", "where telemetry has it")
+    bytes: int = octets("", "bytes that it adds to a message", 1, BYTE)
+
+
+@dataclass(frozen=True, slots=True)
+class CanPart:
+    """A part of the CAN identifier."""
+
+    bits: int
+    shift: int
+
+
+def _all_packets(known: dict[str, Any]) -> int:
+    return int(known["data_bytes"] * known["packets"])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extended:
+    """CAN messages of several packets."""
+
+    data_bytes: int = octets("data_bytes", "data bytes of a packet", 1, 8)
+    left_at: int = octets("packets_left_byte", "index of the byte that counts the packets still to come", 0, 7)
+    left_in_last: int = number(
+        "packets_left_in_last", "what that byte counts in the last packet", 0, default=0, holds=BYTE
+    )
+    packets: int = number("max_packets", "most packets of a message", 1, default=CAN_PACKETS)
+    bytes: int = octets("max_bytes", "most bytes of a message", 1, U32, _all_packets)
+    fill: int = octet("fill", "value of the bytes of the last packet that hold no data", 0)
+    packet_timeout: int = time("packet_timeout_ms", "longest time between two packets of a message", 1000)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Can:
+    """CAN: parts of the identifier by role (type, channel, source, destination), and types by kind of message."""
+
+    node_address: int = octet("node_address", "address of the node")
+    data_bytes: int = octets(
+        "max_data_bytes",
+        "most data bytes of one packet, of which CAN 2.0 has up to 8",
+        1,
+        CAN_DATA_BYTES,
+        CAN_DATA_BYTES,
+    )
+    parts: dict[str, CanPart]
+    types: dict[str, int]  # kind -> message type; see `KINDS` of `icdgen.protocol.can`
+    extended_types: dict[str, int]
+    extended: Extended | None
+
+
+@dataclass(frozen=True, slots=True)
+class LogBit:
+    """A bit of the log mask and the frame that it selects; ``id`` and ``name`` are None for an unassigned bit."""
+
+    bit: int
+    id: int | None
+    length: int  # bytes of the frame, at most those of a slot
+    name: str | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LogMask:
+    """The mask of a log. Frames stand in slots, in the order of rising bits."""
+
+    size: int = octets("bytes", "length of the mask", 1, BYTE)
+    msb0: bool = flag("bit_order", _MSB0, False, _BITS, key_about="which bit of byte 0 is bit 0")
+    slot_bytes: int = octets("frame_bytes", "length of each frame in a log")
+    fill: int = octet("fill", "value of the bytes after a short frame", 0)
+    bits: dict[int, LogBit]  # the assigned ones
+
+    def selected(self, mask: bytes) -> list[LogBit]:
+        """The slots of an entry, in order."""
+        found = []
+        for bit in range(self.size * 8):
+            weight = 7 - bit % 8 if self.msb0 else bit % 8
+            if mask[bit // 8] >> weight & 1:
+                found.append(self.bits.get(bit) or LogBit(bit, None, self.slot_bytes, None))
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class LogFile:
+    """The file form of a log."""
+
+    mask_at: int = octets("", "where the mask stands in the header")
+    header_bytes: int = octets("", "bytes of the header")
+    seconds: tuple[int, int] = span("where the Unix time stands in an entry")
+    milliseconds: tuple[int, int] = span("where the milliseconds stand in an entry")
+    frames_at: int = octets("frames_byte", "where in an entry the selected frames begin", 0)
+    file_type: int | None = number("file_type.value", "type of such a file", 0, BYTE, None)
+
+
+@dataclass(frozen=True, slots=True)
+class LogMessage:
+    """The unsolicited form of a log. Places count from the id."""
+
+    id: int = number("id", "id of such messages", holds=BYTE)
+    mask_at: int = octets("", "where the mask stands")
+    frames_at: int = octets("frames_byte", "where the selected frames begin, counted from the id", 0)
+
+
+@dataclass(frozen=True, slots=True)
+class TimePart:
+    at: int
+    bits: int
+    factor: int
+    offset: int
+
+
+@dataclass(frozen=True, slots=True)
+class IndexField:
+    at: int
+    bytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Index:
+    """Entries of the index file: fields by role (type, counter, checksum, size, time, meta)."""
+
+    entry_bytes: int = octets("entry_bytes", "length of an entry")
+    file_type: int | None = number("file_type.value", "type of such a file", 0, BYTE, None)
+    fields: dict[str, IndexField]
+
+
+def _share(known: dict[str, Any]) -> int:
+    return int(known["bytes"] // len(known["messages"]))
+
+
+def _received(known: dict[str, Any]) -> bool:
+    return bool(known["received"])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HoleMap:
+    """A bit for each packet of a block."""
+
+    bytes: int = octets("bytes", "length of the map")
+    message_bytes: int = octets("message_bytes", "bytes of the map in each message", default=_share)
+    msb0: bool = flag("bit_order", _MSB0, False, _BITS, key_about="which bit of byte 0 stands for packet 0")
+    received: bool = flag("received", "value of the bit of a received packet", True, (0, 1))
+    beyond_end: bool = flag("beyond_end", "value of the bits of packets beyond the end of the block", _received, (0, 1))
+    messages: tuple[Message, ...]
+    field: str
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A message that plays a part in a procedure, and its fields by role."""
+
+    message: Message
+    fields: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Listing:
+    """How the list of files is read one by one."""
+
+    reset: Step = telecommand("reset", "returns to the first file")
+    advance: Step = telecommand("advance", "goes on to the next file")
+    information: Step = telemetry("information", "describes a file")
+    poll_interval: int = time("poll_interval_ms", f"{_POLL}the busy flag")
+    timeout: int = time("timeout_ms", "how long the busy flag may stay set")
+
+
+_COVERS_FILL = "whether the checksum of a block covers the fill of its last packet"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Download:
+    """How a file is downloaded."""
+
+    load: Step = telecommand("load", "loads a block")
+    ready: Step = telemetry("ready", "tells whether the block is loaded")
+    burst: Step = telecommand("burst", "starts the transfer of the block")
+    message_length: int = number("message_length", "what the burst telecommand gives as length", 0, U32)
+    checksum_covers_fill: bool = flag("checksum_covers_fill", _COVERS_FILL, False)
+    index_counter: int = number("index_counter", "counter that goes with the type of the index file", 0, BYTE, 0)
+    poll_interval: int = time("poll_interval_ms", f"{_POLL}the ready flag")
+    ready_timeout: int = time("ready_timeout_ms", "how long a block may take to load")
+    silence: int = time("silence_ms", "a burst is over if no packet came for this long")
+    rounds: int = number("rounds", "most bursts for one block", 1, U32)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Upload:
+    """How a file is uploaded."""
+
+    initiate: Step = telecommand("initiate", "erases the destination")
+    initiated: Step = telemetry("initiated", "tells whether the destination is erased")
+    begin: Step = telecommand("begin", "begins a block")
+    packet: Step = telecommand("packet", "carries a packet")
+    checksum: Step = telemetry("checksum", "tells the checksum of the block received")
+    finalize: Step = telecommand("finalize", "commits a block")
+    finalized: Step = telemetry("finalized", "tells whether the block is committed")
+    block_size: int = number("block_size", "what `initiate` gives as block size", 0, U32)
+    checksum_covers_fill: bool = flag("checksum_covers_fill", _COVERS_FILL, False)
+    poll_interval: int = time("poll_interval_ms", f"{_POLL}a busy flag")
+    erase_timeout: int = time("erase_timeout_s", "how long the destination may take to be erased")
+    finalize_timeout: int = time("finalize_timeout_ms", "how long committing a block may take")
+    rounds: int = number("rounds", "most rounds of packets for one block", 1, U32)
+    destination_bytes: int | None = octets(
+        "destination_bytes", "bytes that a destination holds: no file may be larger", 1, U32, None
+    )
+    destinations: tuple[int, ...] = allowed(
+        "destinations", "the destinations that are supported, if not all", "the destinations that are supported"
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Erasure:
+    """How files are deleted, or their medium is formatted."""
+
+    request: Step = telecommand("request", "begins it")
+    progress: Step = telemetry("progress", "tells whether it is done")
+    poll_interval: int = time("poll_interval_ms", f"{_POLL}the busy flag")
+    timeout: int = time("timeout_ms", "how long it may take")
+
+
+PROCEDURES: dict[str, type[Any]] = {
+    "list": Listing, "download": Download, "upload": Upload, "erase": Erasure, "format": Erasure,
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Files:
+    """File transfer. Steps by path: ``list.reset``, ``download.load``, ``upload.packet``, ``erase.request`` ..."""
+
+    packet_bytes: int = octets("packet_bytes", "bytes of the file in a packet")
+    counter_bytes: int = octets("packet_counter_bytes", "bytes of the packet counter before them", 0, 4)
+    first_packet: int = number("first_packet", "number of the first packet of a block", 0, U16, 0)
+    fill: int = octet("fill", "value of the bytes of the last packet beyond the end of the file", 0)
+    block_packets: int = octets("block_packets", "most packets of a block", 1, U16 + 1)
+    block_bytes: int = octets("block_bytes", "most bytes of a block", 1, U32)
+    steps: dict[str, Step]
+    numbers: dict[str, int]  # ``download.silence_ms`` and the like, as the ICD has them; truth values as 0 and 1
+    packet_ids: dict[str, int]  # bus -> id that heads a download packet there
+    destinations: tuple[int, ...]  # of uploads; none: all
+    procedures: dict[str, Any]  # those of `PROCEDURES` that the ICD describes completely
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Operation:
+    """What a telecommand starts; its frame says when it is done: ``busy`` is clear, or ``ready`` is set."""
+
+    request: Step = telecommand("request", "starts it")
+    progress: Step = telemetry("progress", "tells when it is done")
+    poll_interval: int = time("poll_interval_ms", f"{_POLL}that frame")
+    timeout: int = time("timeout_s", "how long it may take")
+    programs: tuple[int, ...] = allowed(
+        "programs",
+        "the programs that it may be asked for, if not all",
+        "the programs that it can be asked for, if not all",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Client:
+    """How a client waits and tries again, unless it is told otherwise."""
+
+    reply_timeout: int = time("reply_timeout_ms", "how long a reply may take", 1000)
+    retries: int = number("retries", "how often a request is sent again", 0, BYTE, 3)
+    poll_interval: int = time("poll_interval_ms", "time between two polls for an acknowledge", 20)
+    poll_timeout: int = time("poll_timeout_ms", "how long a telecommand may take to be processed", 5000)
+
+
+PLACES: tuple[tuple[str, type[Any]], ...] = (
+    ("client", Client),
+    ("uart.framing", Framing),
+    ("uart.acknowledge", Acknowledge),
+    ("can", Can),
+    ("can.extended", Extended),
+    ("crc8", Crc),
+    ("crc8", Checksum),
+    ("crc16", Crc),
+    ("log_mask", LogMask),
+    ("telemetry_log", LogFile),
+    ("unsolicited_log", LogMessage),
+    ("index_file", Index),
+    ("file_transfer", Files),
+    ("file_transfer.hole_map", HoleMap),
+    *((f"file_transfer.{name}", part) for name, part in PROCEDURES.items()),
+    ("program_copy", Operation),
+    ("program_information", Operation),
+)
+"""Where the facts of each part stand in the protocol section of an ICD."""

@@ -1,0 +1,32 @@
+"""Writes what is declared of the protocol into the JSON Schema of an ICD and into the types of `runtime/`.
+
+python -m scripts.protocol_facts
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from scripts.protocol_types import python, schema
+
+ROOT = Path(__file__).parent.parent
+MAKERS = {
+    "codegen/icdgen/icd/schema.json": schema.written,
+    "runtime/python/icdgen_runtime/wire/link.py": python.written,
+}
+
+
+def out_of_date() -> dict[Path, str]:
+    """The files that are not what is declared, with the text that they should have."""
+    made = {ROOT / path: make((ROOT / path).read_text(encoding="utf-8")) for path, make in MAKERS.items()}
+    return {path: text for path, text in made.items() if text != path.read_text(encoding="utf-8")}
+
+
+def main() -> None:
+    for path, text in out_of_date().items():
+        path.write_text(text, encoding="utf-8")
+        print(f"written: {path.relative_to(ROOT)}")
+
+
+if __name__ == "__main__":
+    main()

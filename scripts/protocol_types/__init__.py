@@ -1,0 +1,1 @@
+"""The declared facts of the protocol in the words of each language."""

@@ -1,0 +1,59 @@
+"""The facts as members of the named tuples of the Python runtime."""
+
+from __future__ import annotations
+
+import ast
+import textwrap
+
+from icdgen.backends.python.links import type_name
+from icdgen.protocol.declared import Fact, Kind, facts_of
+from icdgen.protocol.sections import PLACES, PROCEDURES, Client
+
+_TYPES = {
+    Kind.FLAG: "bool", Kind.BUSES: "tuple[str, ...]", Kind.SPAN: "tuple[int, int]",
+    Kind.ALLOWED: "tuple[int, ...]", Kind.STEP: "Step",
+}  # fmt: skip
+
+
+def written(text: str) -> str:
+    """The module with the members of all facts. Members that are no facts stand behind them."""
+    # A procedure of file transfer is looked up by the keys of the ICD, and has no type.
+    for part in dict.fromkeys(part for _, part in PLACES if part not in PROCEDURES.values()):
+        text = _with_facts(text, part)
+    return text
+
+
+def _with_facts(text: str, part: type) -> str:
+    name, facts = type_name(part), facts_of(part)
+    one = next(node for node in ast.parse(text).body if isinstance(node, ast.ClassDef) and node.name == name)
+    lines, names = text.splitlines(), {fact.name for fact in facts}
+    members, begin, end = {}, one.body[0].end_lineno or 0, one.body[0].end_lineno or 0
+    for statement, after in zip(one.body[1:], [*one.body[2:], None], strict=True):
+        if isinstance(statement, ast.FunctionDef):
+            break
+        end = statement.end_lineno or end
+        if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name):
+            is_told = isinstance(after, ast.Expr)
+            own = lines[statement.lineno - 1 : after.end_lineno if is_told and after else statement.end_lineno]
+            members[statement.target.id] = own, statement.value is not None
+    rest = [own for key, own in members.items() if key not in names]
+    made = [([_member(fact, part), *_about(fact)], fact.default in (None, ())) for fact in facts]
+    ordered = sorted([*made, *rest], key=lambda member: member[1])
+    found = [line for own, _ in ordered for line in own]
+    return "\n".join([*lines[:begin], "", *found, *lines[end:]]) + "\n"
+
+
+def _member(fact: Fact, part: type) -> str:
+    kind = _TYPES.get(fact.kind, "int")
+    if part is Client and fact.kind is Kind.TIME:
+        kind = "Number"  # users set it, in fractions if they like
+    if fact.is_optional:
+        return f"    {fact.name}: {kind} | None = None"
+    return f"    {fact.name}: {kind}" + (" = ()" if fact.default == () else "")
+
+
+def _about(fact: Fact) -> list[str]:
+    """The docstring of a member."""
+    meaning = fact.meaning[0].upper() + fact.meaning[1:]
+    first, *rest = textwrap.wrap(f'"""{meaning}."""', 84)
+    return [f"    {line}" for line in (first, *rest)]

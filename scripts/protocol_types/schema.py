@@ -1,0 +1,56 @@
+"""The facts in the JSON Schema of an ICD's protocol section."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from icdgen.protocol.declared import Fact, Kind, facts_of
+from icdgen.protocol.sections import PLACES
+
+Schema = dict[str, Any]
+_LAST = "assumptions"  # the key before which a new one is put
+
+
+def written(text: str) -> str:
+    """The schema with the keys of all facts; what else it says of the protocol stays."""
+    schema = json.loads(text)
+    for path, part in PLACES:
+        for fact in facts_of(part):
+            if fact.key and fact.kind not in (Kind.STEP, Kind.BUSES):
+                *sections, key = f"{path}.{fact.key}".split(".")
+                _put(_section(schema["$defs"]["protocol"], sections), key, fragment(fact))
+    return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
+
+
+def _section(schema: Schema, path: list[str]) -> Schema:
+    for key in path:
+        schema = schema["properties"][key]
+    return schema
+
+
+def _put(section: Schema, key: str, fragment: Schema) -> None:
+    known = section["properties"]
+    last = {} if key in known or _LAST not in known else {_LAST: known.pop(_LAST)}
+    known[key] = fragment
+    known.update(last)
+
+
+def fragment(fact: Fact) -> Schema:
+    """What may stand under the key of a fact."""
+    about = fact.key_about or fact.about
+    if fact.kind is Kind.OCTET:
+        return {"$ref": "#/$defs/byte", "description": about}
+    if fact.kind is Kind.ALLOWED:
+        value = {"type": "integer", "minimum": 0, "maximum": 255, "description": "value of the enumeration"}
+        return {"type": "array", "items": value, "minItems": 1, "uniqueItems": True, "description": about}
+    if fact.listed:
+        entry = {"enum": sorted(fact.words, key=lambda word: word != fact.listed)}
+        return {"type": "array", "items": entry, "minItems": 1, "uniqueItems": True, "description": about}
+    if fact.kind is Kind.FLAG:
+        plain = fact.words[0] is False
+        return {"type": "boolean", "description": about} if plain else {"enum": [*fact.words], "description": about}
+    if fact.kind is Kind.TIME:
+        about += ", in milliseconds" if fact.factor == 1 else ", in seconds"
+    limits = {"minimum": fact.least} | ({} if fact.most is None else {"maximum": fact.most})
+    return {"type": "integer", **limits, "description": about}

@@ -1,0 +1,262 @@
+"""Documents of the kind that vendors of sensors and modems publish, each with the ICD that it prints and the profile it needs."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+
+import fpdf
+from reportlab.lib import colors
+from reportlab.lib.pagesizes import A4, LETTER
+from reportlab.lib.styles import getSampleStyleSheet
+from reportlab.platypus import Paragraph, SimpleDocTemplate, Spacer, Table, TableStyle
+
+from tests.importer.manuals import browser
+
+TYPES = {"uint": "unsigned", "int": "signed"}
+
+
+def field(at: int, bits: int, name: str, kind: str = "uint", **facts: str) -> dict:
+    return {"at": at, "bits": bits, "name": name, "type": kind, **facts}
+
+
+MESSAGES = [
+    {"name": "Motor State", "id": 0x21, "kind": "telemetry", "length": 9, "fields": [
+        field(0, 8, "Mode"), field(8, 16, "Speed", unit="rpm"), field(24, 16, "Current", "int", unit="mA", formula="raw*10"),
+        field(40, 32, "Uptime", unit="ms")]},
+    {"name": "Temperatures", "id": 0x22, "kind": "telemetry", "length": 6, "fields": [
+        field(0, 16, "Winding", "int", unit="degC", formula="raw*0.01"),
+        field(16, 16, "Bridge", "int", unit="degC", formula="raw*0.01"),
+        field(32, 16, "Supply", unit="mV")]},
+    {"name": "Limits", "id": 0x7F, "kind": "telemetry", "length": 5, "fields": [
+        field(0, 8, "Profile"), field(8, 32, "Energy", unit="J")]},
+]  # fmt: skip
+REGISTERS = [
+    {"name": "CTRL_A", "set_id": 0x20, "get_id": 0x20, "kind": "configuration", "length": 1, "fields": [
+        field(0, 1, "EN", "bool"), field(1, 1, "BOOT", "bool"), field(3, 2, "MODE"), field(5, 3, "ODR")]},
+    {"name": "STATUS", "id": 0x27, "kind": "telemetry", "length": 1, "fields": [
+        field(0, 1, "READY", "bool"), field(7, 1, "OVR", "bool")]},
+    {"name": "OUT_X", "id": 0x28, "kind": "telemetry", "length": 1, "fields": [field(0, 8, "X")]},
+]  # fmt: skip
+FRAMES = [
+    {"name": "Power", "id": 0x31, "kind": "telemetry", "length": 8, "fields": [
+        field(0, 16, "Voltage"), field(16, 16, "Current"), field(32, 8, "Load"), field(40, 24, "Energy")]},
+    {"name": "Drive", "id": 0x32, "kind": "telemetry", "length": 8, "fields": [
+        field(0, 32, "Position"), field(32, 16, "Torque"), field(48, 8, "Gear"), field(56, 8, "Faults")]},
+]  # fmt: skip
+PROSE = "The host asks for it by its number; the module answers within ten milliseconds, and never without being asked."
+
+
+@dataclass(frozen=True)
+class Wild:
+    """A layout: how it is drawn, what it prints, and what a profile must say of it."""
+
+    draw: Callable[[Path], None]
+    messages: list[dict]
+    profile: str
+
+
+def _size(one: dict, name: str = "") -> str:
+    return {"uint": {8: "U8", 16: "U16", 32: "U32"}, "int": {8: "S8", 16: "S16", 32: "S32"}}[one["type"]][one["bits"]]
+
+
+def _scaled(one: dict) -> str:
+    factor = one.get("formula", "").removeprefix("raw*")
+    return f"{factor} {one.get('unit', '')}".strip() or "-"
+
+
+def platypus(path: Path, page: tuple[float, float], story: list, rules: str = "grid") -> None:
+    style = getSampleStyleSheet()
+    small = style["BodyText"].clone("small", fontSize=8, leading=10)
+    made: list = []
+    for one in story:
+        if isinstance(one, str):
+            heading = one.startswith("# ")
+            made.append(Paragraph(escape(one.removeprefix("# ")), style["Heading2"] if heading else style["BodyText"]))
+            continue
+        rows, spans, widths = one
+        table = Table([[Paragraph(escape(cell), small) for cell in row] for row in rows], colWidths=widths)
+        grid = [("GRID", (0, 0), (-1, -1), 0.5, colors.black)]
+        ends = [("LINEABOVE", (0, 0), (-1, 1), 0.8, colors.black), ("LINEBELOW", (0, -1), (-1, -1), 0.8, colors.black)]
+        table.setStyle(TableStyle([*(grid if rules == "grid" else ends), *spans]))
+        made += [table, Spacer(1, 10)]
+    SimpleDocTemplate(str(path), pagesize=page, title="Motor controller", invariant=1).build(made)
+
+
+def web(path: Path, style: str, body: str) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        browser.print_page(
+            f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Motor controller</title><style>{style}</style>'
+            f"</head><body>{body}</body></html>", path, Path(folder),
+        )  # fmt: skip
+
+
+def sections(path: Path) -> None:
+    """Ids in section headings, offsets and sizes in bytes, a factor in a column of its own."""
+    story: list = ["# 4 Telemetry", PROSE]
+    for index, message in enumerate(MESSAGES, 1):
+        rows = [["Offset", "Size", "Field", "Type", "Unit", "Scale"]]
+        for one in message["fields"]:
+            factor = one.get("formula", "raw*1").removeprefix("raw*")
+            rows.append(
+                [str(one["at"] // 8), str(one["bits"] // 8), one["name"], _size(one), one.get("unit", "-"), factor]
+            )
+        story += [
+            f"# 4.{index} {message['name']} (0x{message['id']:02X})",
+            PROSE,
+            (rows, [], [45, 40, 110, 60, 60, 60]),
+        ]
+    platypus(path, A4, story)
+
+
+def prose(path: Path) -> None:
+    """Ids in the prose, no offsets, types as C has them, no vertical rules."""
+    body = "<h1>Housekeeping</h1>"
+    for message in MESSAGES:
+        rows = "".join(
+            f"<tr><td>{one['name']}<td>{one['type']}{one['bits']}_t<td>{_scaled(one)}</tr>" for one in message["fields"]
+        )
+        body += f"<h2>{message['name']}</h2><p>Message ID: {message['id']}. {PROSE}</p>"
+        body += f"<table><tr><th>Field<th>Type<th>Unit</tr>{rows}</table>"
+    web(
+        path,
+        "table {border-collapse: collapse; width: 70%} tr {border-bottom: 1px solid #777} td, th {text-align: left}",
+        body,
+    )
+
+
+def registers(path: Path) -> None:
+    """A register map whose cells span the bits of a field."""
+    pdf = fpdf.FPDF(format="A4")
+    pdf.add_page()
+    pdf.set_font("Helvetica", size=9)
+    pdf.cell(0, 10, "7 Register map", new_x="LMARGIN", new_y="NEXT")
+    with pdf.table(col_widths=(16, 20, 12, *(9,) * 8)) as table:
+        table.row(["Addr", "Register", "R/W", *(str(bit) for bit in range(7, -1, -1))])
+        for message in REGISTERS:
+            row = table.row()
+            row.cell(f"0x{message.get('id', message.get('set_id')):02X}")
+            row.cell(message["name"])
+            row.cell("R/W" if message["kind"] == "configuration" else "R")
+            bit = 7
+            while bit >= 0:
+                one = next((f for f in message["fields"] if f["at"] + f["bits"] - 1 == bit), None)
+                row.cell(one["name"] if one else "-", colspan=one["bits"] if one else 1)
+                bit -= one["bits"] if one else 1
+    pdf.output(str(path))
+
+
+def bit_tables(path: Path) -> None:
+    """A table for each register, bits counted down, address and access in the heading."""
+    story: list = ["# Registers", PROSE]
+    for message in REGISTERS:
+        rows = [["Bits", "Name", "Description"]]
+        for one in sorted(message["fields"], key=lambda f: -f["at"]):
+            high = one["at"] + one["bits"] - 1
+            rows.append([str(high) if one["bits"] == 1 else f"{high}:{one['at']}", one["name"], "see the text"])
+        access = "R/W" if message["kind"] == "configuration" else "read-only"
+        story += [
+            f"# {message['name']} (0x{message.get('id', message.get('set_id')):02X}), {access}",
+            (rows, [], [50, 90, 200]),
+        ]
+    platypus(path, LETTER, story)
+
+
+def ranges(path: Path) -> None:
+    """Bytes as ranges, unit and factor in one cell, ids in captions without numbers."""
+    body = "<h1>Telemetry</h1>"
+    for message in MESSAGES:
+        rows = ""
+        for one in message["fields"]:
+            first, last = one["at"] // 8, (one["at"] + one["bits"]) // 8 - 1
+            where = f"{first}" if first == last else f"{first}-{last}"
+            rows += f"<tr><td>{where}<td>{one['name']}<td>{TYPES[one['type']]}<td>{_scaled(one)}</tr>"
+        body += f"<p>{PROSE}</p><p><b>{message['name']}: 0x{message['id']:04X}</b></p>"
+        body += f"<table><tr><th>Byte<th>Parameter<th>Format<th>Unit</tr>{rows}</table>"
+    web(
+        path,
+        "table {border-collapse: collapse} td, th {border: 1px solid #333; padding: 3px 9px; text-align: left}",
+        body,
+    )
+
+
+def two_heads(path: Path) -> None:
+    """A heading over two columns, the byte and the bit in it."""
+    story: list = ["# Telemetry", PROSE]
+    for message in MESSAGES:
+        rows = [["Position", "", "Length (bits)", "Name", "Type", "Unit"], ["Byte", "Bit", "", "", "", ""]]
+        for one in message["fields"]:
+            rows.append([str(one["at"] // 8), "0", str(one["bits"]), one["name"], _size(one), _scaled(one)])
+        spans = [("SPAN", (0, 0), (1, 0)), *(("SPAN", (i, 0), (i, 1)) for i in range(2, 6))]
+        story += [f"# {message['name']} (0x{message['id']:02X})", (rows, spans, [40, 40, 70, 110, 60, 70])]
+    platypus(path, A4, story)
+
+
+WILD = {
+    "sections": Wild(sections, MESSAGES, ""),
+    "prose": Wild(prose, MESSAGES, "patterns: ['Message ID: {id}']\ndefaults: {kind: telemetry}\n"),
+    "registers": Wild(registers, REGISTERS, ""),
+    "bit tables": Wild(bit_tables, REGISTERS, 'patterns: ["{name} ({hex}), {kind}"]\n'),
+    "ranges": Wild(ranges, MESSAGES, ""),
+    "two heads": Wild(two_heads, MESSAGES, "defaults: {kind: telemetry}\n"),
+}
+
+
+# Held back until the importer was done with the others.
+
+
+def bare(path: Path) -> None:
+    """No rules at all, ids in headings without numbers, bytes."""
+    pdf = fpdf.FPDF(format="Letter")
+    pdf.add_page()
+    pdf.set_font("Times", "B", 16)
+    pdf.cell(0, 10, "Telemetry", new_x="LMARGIN", new_y="NEXT")
+    for message in MESSAGES:
+        pdf.set_font("Times", "B", 12)
+        pdf.cell(0, 9, f"{message['name']} - 0x{message['id']:02X}", new_x="LMARGIN", new_y="NEXT")
+        pdf.set_font("Times", size=10)
+        pdf.multi_cell(0, 5, PROSE, new_x="LMARGIN", new_y="NEXT")
+        pdf.ln(2)
+        with pdf.table(borders_layout="NONE", col_widths=(15, 15, 30, 20, 20)) as table:
+            table.row(["Start Byte", "Bytes", "Signal", "Data Type", "Scaling"])
+            for one in message["fields"]:
+                table.row([str(one["at"] // 8), str(one["bits"] // 8), one["name"], _size(one), _scaled(one)])
+        pdf.ln(4)
+    pdf.output(str(path))
+
+
+def frames(path: Path) -> None:
+    """Frames of eight bytes as columns, a table for each."""
+    body = "<h1>Telemetry</h1>"
+    for message in FRAMES:
+        cells = "".join(f"<td colspan={one['bits'] // 8}>{one['name']}</td>" for one in message["fields"])
+        body += f"<h2>{message['name']} (0x{message['id']:02X})</h2><p>{PROSE}</p><table><tr>"
+        body += "".join(f"<th>Byte{n}</th>" for n in range(8)) + f"</tr><tr>{cells}</tr></table>"
+    web(path, "table {border-collapse: collapse; width: 100%} td, th {border: 1px solid #333; padding: 4px}", body)
+
+
+def lined(path: Path) -> None:
+    """Rules above and below only, ids in the labelled prose, widths in words."""
+    story: list = ["# 3 Telemetry"]
+    for index, message in enumerate(MESSAGES, 1):
+        rows = [["Byte Offset", "Size", "Parameter", "Encoding", "Conversion"]]
+        for one in message["fields"]:
+            count = one["bits"] // 8
+            words = f"{count} byte{'s' if count > 1 else ''}"
+            rows.append([str(one["at"] // 8), words, one["name"], TYPES[one["type"]], _scaled(one)])
+        story += [
+            f"# 3.{index} {message['name']}",
+            f"Telemetry ID {message['id']}. {PROSE}",
+            (rows, [], [70, 60, 110, 80, 80]),
+        ]
+    platypus(path, LETTER, story, "ends")
+
+
+UNSEEN = {
+    "bare": Wild(bare, MESSAGES, ""),
+    "frames": Wild(frames, FRAMES, ""),
+    "lined": Wild(lined, MESSAGES, ""),
+}

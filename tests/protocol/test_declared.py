@@ -1,0 +1,65 @@
+"""A fact of the protocol is declared once: everything else is made from that, and is what it is made from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import pytest
+
+from icdgen.icd import schema
+from icdgen.protocol.declared import Kind, facts_of, flag, number, octets, read, time
+from icdgen.protocol.sections import PLACES
+from scripts.protocol_facts import ROOT, out_of_date
+
+FACTS = [(path, fact) for path, part in PLACES for fact in facts_of(part)]
+
+
+def twice(known):
+    return known["pages"] * 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Book:
+    pages: int = number("pages", "how many pages it has", 1, 9)
+    sheets: int = octets("paper.sheets", "sheets of paper", default=twice)
+    lent: int = time("lent_s", "how long it is lent", 5)
+    back: bool = flag("order", "whether it is read from the back", False, ("front", "back"))
+    bound: bool = flag("in", "whether it is bound", False, ("paper", "leather"), "leather")
+
+
+def test_schema_and_runtimes_are_what_is_declared():
+    late = [str(path.relative_to(ROOT)) for path in out_of_date()]
+    assert late == [], "run `python -m scripts.protocol_facts`"
+
+
+def test_what_an_icd_leaves_out_has_the_declared_default():
+    assert read(Book, {"pages": 3}) == Book(pages=3, sheets=6, lent=5, back=False, bound=False)
+
+
+def test_what_an_icd_says_is_read_in_the_unit_of_the_fact():
+    given = {"pages": 3, "paper": {"sheets": 4}, "lent_s": 2, "order": "back", "in": ["paper", "leather"]}
+    assert read(Book, given) == Book(pages=3, sheets=4, lent=2000, back=True, bound=True)
+
+
+def test_without_a_key_that_has_no_default_the_part_is_not_described():
+    assert read(Book, {"lent_s": 2}) is None
+
+
+def test_a_part_has_its_facts_in_the_order_in_which_they_are_declared():
+    assert [fact.name for fact in facts_of(Book)] == [one.name for one in fields(Book)]
+
+
+@pytest.mark.parametrize(("path", "fact"), [(path, fact) for path, fact in FACTS if fact.key and fact.most is not None])
+def test_the_format_refuses_what_a_fact_cannot_be(path, fact):
+    section = schema._schema()["$defs"]["protocol"]
+    for key in f"{path}.{fact.key}".split("."):
+        section = section["properties"][key]
+    if fact.kind is Kind.OCTET:
+        section = schema._follow(section)
+    assert (section["minimum"], section["maximum"]) == (fact.least, fact.most)
+
+
+def test_every_fact_says_what_it_means_and_what_fits():
+    for path, fact in FACTS:
+        assert fact.about and not fact.about.endswith("."), (path, fact.name)
+        assert (fact.most or 0) * fact.factor <= fact.holds, (path, fact.name)

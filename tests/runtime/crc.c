@@ -1,0 +1,29 @@
+/* The CRC of the digits 1 to 9, in two pieces; its parameters are the arguments. */
+#include "wire/crc.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+int main(int argc, char **argv)
+{
+    static const uint8_t digits[] = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
+    icd_crc_form_t form = {0};
+    icd_crc_t crc;
+    if (argc != 7) {
+        return 2;
+    }
+    form.width = (uint8_t)strtoul(argv[1], NULL, 10);
+    form.polynomial = (uint32_t)strtoul(argv[2], NULL, 10);
+    form.init = (uint32_t)strtoul(argv[3], NULL, 10);
+    form.reflect_in = argv[4][0] == '1';
+    form.reflect_out = argv[5][0] == '1';
+    form.xor_out = (uint32_t)strtoul(argv[6], NULL, 10);
+    icd_crc_init(&crc, &form);
+    icd_crc_feed(&crc, digits, 4);
+    icd_crc_feed(&crc, digits + 4, 5);
+    if (icd_crc_result(&crc) != icd_crc(&form, digits, sizeof digits)) {
+        return 1;
+    }
+    printf("%lu\n", (unsigned long)icd_crc_result(&crc));
+    return 0;
+}

@@ -1,0 +1,84 @@
+"""The checksums of the runtimes, where they lie, against the check values of the usual catalogues."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from tests.conftest import ROOT
+from tests.rust.tools import Toolchain, run
+
+RUNTIME = ROOT / "runtime"
+HERE = Path(__file__).parent
+
+
+class Catalogued(NamedTuple):
+    """A CRC, and what it makes of the digits 1 to 9."""
+
+    name: str
+    width: int
+    polynomial: int
+    init: int
+    reflect_in: int
+    reflect_out: int
+    xor_out: int
+    check: int
+
+
+CATALOGUE = [
+    Catalogued("CRC-8/SMBUS", 8, 0x07, 0x00, 0, 0, 0x00, 0xF4),
+    Catalogued("CRC-8/MAXIM-DOW", 8, 0x31, 0x00, 1, 1, 0x00, 0xA1),
+    Catalogued("CRC-8/I-432-1", 8, 0x07, 0x00, 0, 0, 0x55, 0xA1),
+    Catalogued("CRC-12/UMTS", 12, 0x80F, 0x000, 0, 1, 0x000, 0xDAF),
+    Catalogued("CRC-16/XMODEM", 16, 0x1021, 0x0000, 0, 0, 0x0000, 0x31C3),
+    Catalogued("CRC-16/IBM-3740", 16, 0x1021, 0xFFFF, 0, 0, 0x0000, 0x29B1),
+    Catalogued("CRC-16/KERMIT", 16, 0x1021, 0x0000, 1, 1, 0x0000, 0x2189),
+    Catalogued("CRC-16/MODBUS", 16, 0x8005, 0xFFFF, 1, 1, 0x0000, 0x4B37),
+    Catalogued("CRC-16/IBM-SDLC", 16, 0x1021, 0xFFFF, 1, 1, 0xFFFF, 0x906E),
+    Catalogued("CRC-24/OPENPGP", 24, 0x864CFB, 0xB704CE, 0, 0, 0x000000, 0x21CF02),
+    Catalogued("CRC-32/ISO-HDLC", 32, 0x04C11DB7, 0xFFFFFFFF, 1, 1, 0xFFFFFFFF, 0xCBF43926),
+]
+DIGITS = b"123456789"
+
+
+@pytest.mark.parametrize("one", CATALOGUE, ids=lambda one: one.name)
+def test_python(one):
+    code = "import json, sys; from icdgen_runtime.wire.crc import Crc; from icdgen_runtime.wire.link import CrcForm\n"
+    code += "form = CrcForm(*json.loads(sys.argv[1]), None)\n"
+    code += f"whole = Crc(form).feed({DIGITS!r}).result()\n"
+    code += f"assert whole == Crc(form, table=False).feed({DIGITS[:4]!r}).feed({DIGITS[4:]!r}).result()\nprint(whole)"
+    command = [sys.executable, "-B", "-c", code, json.dumps(one[1:7])]
+    done = subprocess.run(command, cwd=RUNTIME / "python", check=True, capture_output=True, text=True)
+    assert int(done.stdout) == one.check
+
+
+@pytest.fixture(scope="module")
+def c_program(tmp_path_factory) -> Path:
+    program = tmp_path_factory.mktemp("c") / "crc"
+    checked = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+    run("gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", *checked, "-I", RUNTIME / "c", HERE / "crc.c", "-o", program)
+    return program
+
+
+@pytest.fixture(scope="module")
+def rust_program(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("rust")
+    toolchain = Toolchain("default")
+    options = ("--crate-type", "lib", "--crate-name", "icdgen_runtime", "--out-dir", folder)
+    run("rustc", "--edition", "2021", *options, RUNTIME / "rust" / "src" / "lib.rs")
+    extern = f"icdgen_runtime={folder / 'libicdgen_runtime.rlib'}"
+    run("rustc", "--edition", "2021", "-D", "warnings", "--extern", extern, "-o", folder / "crc", HERE / "crc.rs")
+    toolchain.formatted(HERE / "crc.rs")
+    return folder / "crc"
+
+
+@pytest.mark.parametrize("language", ["c_program", "rust_program"])
+def test_compiled(language, request):
+    program = request.getfixturevalue(language)
+    for one in CATALOGUE:
+        assert run(program, *map(str, one[1:7])) == f"{one.check}\n", one.name
