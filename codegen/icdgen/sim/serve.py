@@ -8,7 +8,7 @@ import os
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
+from typing import Any, cast
 
 from icdgen.errors import UserError
 from icdgen.sim.control import Control
@@ -102,8 +102,7 @@ async def udp(server: Server, host: str, port: int) -> tuple[str, object]:
             self.peer: tuple[Any, ...] | None = None
 
         def connection_made(self, transport: asyncio.BaseTransport) -> None:
-            assert isinstance(transport, asyncio.DatagramTransport)
-            self.transport = transport
+            self.transport = cast(asyncio.DatagramTransport, transport)
             server.clients.append(self.send)
 
         def datagram_received(self, data: bytes, addr: tuple[Any, ...]) -> None:
