@@ -1,1 +1,1 @@
-from icdgen import link as link  # makes the runtime importable
+from icdgen import link as link

@@ -17,8 +17,8 @@ from icdgen_runtime.wire import (
     identify,
 )
 
+from icdgen.backends.python.objects.links import link_of
 from icdgen.errors import UserError
-from icdgen.link.links import link_of
 from icdgen.link.ports import Can, PortError, Serial, open_port
 from icdgen.link.session import session
 from icdgen.protocol import facts

@@ -1,7 +1,4 @@
-"""Talking to a device: ports, and the wire layer that users of the Python runtime get, `icdgen_runtime`.
-
-Importing this makes ``icdgen_runtime`` importable, from where it lies in the checkout or in the wheel.
-"""
+"""Talking to a device: ports, and sessions over them of the Python runtime, which importing this makes importable."""
 
 from icdgen import shipped
 

@@ -50,7 +50,7 @@ def open_session(
     on_event: OnEvent | None = None,
 ) -> Iterator[BusSession]:
     """A session with a node, of which ``known`` are the facts. Raises `icdgen.errors.UserError`."""
-    from icdgen.link.links import link_of
+    from icdgen.backends.python.objects.links import link_of
     from icdgen.link.ports import open_port
     from icdgen.link.session import session
 

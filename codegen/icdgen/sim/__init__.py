@@ -2,7 +2,9 @@
 
 `computer.Computer` is the device, without clock and without I/O; `line.Line` puts it on a UART with faults on demand;
 `serve` carries that line over a pseudo-terminal, TCP or UDP. Framing, checksums, logs, hole maps and index files are those of the
-Python runtime (`icdgen.link` makes it importable); what a device does with them is here.
+Python runtime, which importing this makes importable; what a device does with them is here.
 """
 
-from icdgen import link as link
+from icdgen import shipped
+
+shipped.provide_runtime()

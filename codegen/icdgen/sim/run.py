@@ -14,9 +14,9 @@ from typing import Any
 from icdgen_runtime._errors import IcdError
 from icdgen_runtime.wire.times import dos_time_pack
 
+from icdgen.backends.python.objects.links import link_of
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Node
-from icdgen.link.links import link_of
 from icdgen.protocol import facts
 from icdgen.sim import control, faults, serve
 from icdgen.sim.computer import Computer, has_protocol

@@ -9,9 +9,9 @@ from icdgen_runtime.wire.link import Link
 
 from icdgen.backends.python.links import Maker
 from icdgen.backends.python.literals import Call, Noted, Verbatim
+from icdgen.backends.python.objects.messages import ModelMessages
 from icdgen.describe import describe
 from icdgen.icd.model import Icd
-from icdgen.link.messages import ModelMessages
 from icdgen.protocol.facts import Facts
 
 
