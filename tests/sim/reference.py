@@ -9,8 +9,9 @@ from icdgen import codec
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.link.ports import Can, Port
 from icdgen.protocol import facts
-from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Machine, Request
-from icdgen.protocol.facts import CAN, UART, Client
+from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Client, Request
+from icdgen.protocol.facts import CAN, UART
+from icdgen.protocol.facts import Client as Settings
 from icdgen.protocol.transfer import OUTCOMES, Procedure
 
 LONGEST_WAIT = 3600.0  # s
@@ -24,15 +25,15 @@ class Session:
         icd: Icd,
         node: Node,
         port: Port | Can,
-        checked: bool = False,
+        crc: bool = False,
         address: int = 0,
-        settings: Client | None = None,
+        settings: Settings | None = None,
         on_event: Callable[[dict], None] | None = None,
     ) -> None:
         self.icd, self.node, self.port = icd, node, port
         self.known = facts.of(icd, node)
         self.bus = CAN if isinstance(port, Can) else UART
-        self.machine = Machine(self.known, self.bus, checked, address, settings)
+        self.client = Client(self.known, self.bus, crc, address, settings)
         self.on_event = on_event or (lambda event: None)
 
     def close(self) -> None:
@@ -51,7 +52,7 @@ class Session:
 
     def ask(self, request: Request) -> dict:
         """Sends a request and waits for its end: ``done``, ``refused`` or ``timeout``. Raises `PortError`."""
-        events = self.machine.start(self.now, request)
+        events = self.client.start(self.now, request)
         try:
             while True:
                 self._write()
@@ -59,9 +60,9 @@ class Session:
                     if event["event"] in OUTCOMES:
                         return event
                     self.on_event(event)
-                events = self._wait(self.machine.deadline)
+                events = self._wait(self.client.deadline)
         finally:
-            self.machine.cancel()  # else a port that fails leaves it busy
+            self.client.cancel()  # else a port that fails leaves it busy
 
     def telemetry(self, message: Message) -> bytes | None:
         """The frame; None if there was no answer."""
@@ -94,7 +95,7 @@ class Session:
         try:
             return self._driven(procedure, progress)
         finally:
-            self.machine.cancel()
+            self.client.cancel()
 
     def _driven(self, procedure: Procedure, progress: Callable[[], None] | None) -> str:
         waiting: list[dict] = []
@@ -103,15 +104,15 @@ class Session:
         while procedure.result is None:
             request = asked if again else procedure.next(self.now)
             if request is not None and not again:
-                asked, left = request, self.machine.settings.retries
+                asked, left = request, self.client.settings.retries
             again = False
             if progress:
                 progress()
             if request is not None:
-                waiting = self.machine.start(self.now, request)
+                waiting = self.client.start(self.now, request)
                 self._write()
             elif procedure.result is None:
-                times = [at for at in (procedure.deadline, self.machine.deadline) if at is not None]
+                times = [at for at in (procedure.deadline, self.client.deadline) if at is not None]
                 waiting = self._wait(min(times, default=None))
                 self._write()
             for event in waiting:
@@ -136,12 +137,12 @@ class Session:
         timeout = LONGEST_WAIT if deadline is None else max(0.0, (deadline - self.now) / 1000)
         if isinstance(self.port, Can):
             packet = self.port.receive(timeout)
-            return self.machine.packet(self.now, packet) if packet else self.machine.tick(self.now)
+            return self.client.packet(self.now, packet) if packet else self.client.tick(self.now)
         data = self.port.read(timeout)
-        return self.machine.received(self.now, data) if data else self.machine.tick(self.now)
+        return self.client.received(self.now, data) if data else self.client.tick(self.now)
 
     def _write(self) -> None:
-        out, self.machine.out = self.machine.out, []
+        out, self.client.out = self.client.out, []
         for one in out:
             if isinstance(self.port, Can):
                 self.port.send(one)

@@ -64,7 +64,7 @@ def refusable(client) -> set[str]:
 
 
 def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
-    with session(checked=True) as client:
+    with session(crc=True) as client:
         assert client.telecommand(client.known.telecommands[17], bytes(6))["event"] == "done"
         wrong = bytes([17]) + bytes(6) + b"\x01"
         assert raw_exchange(client, wrong)["code"] == client.known.errors["checksum"]
