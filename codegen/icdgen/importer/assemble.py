@@ -43,7 +43,8 @@ def assemble(document: Document, survey: Survey, profile: Profile, prose: bool =
         references.enums(node, nodes, everything, _runs(survey), survey.troubles)
     for node in nodes:
         references.complete(node, survey.troubles)
-    return {node.name: trees.tree(node, document, profile, prose, survey.troubles) for node in nodes}
+    held = [node for node in nodes if node.messages or node.enums or node.logs]
+    return {node.name: trees.tree(node, document, profile, prose, survey.troubles) for node in held}
 
 
 def _runs(survey: Survey) -> dict[int, int]:

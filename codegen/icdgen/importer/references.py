@@ -173,7 +173,8 @@ def complete(node: NodeParts, troubles: list[Trouble]) -> None:
         if all(value is None for value in message.ids) or not message.kind:
             what = "no id" if message.kind else "nothing that says whether it is a telecommand or telemetry"
             troubles.append(Trouble("IMP031", f"{title}: {what}; it was left out", spot,
-                                    "add the words to `labels:`, `titles:` or `patterns:` of the profile, or `defaults:`",
+                                    "in the profile: `patterns: [\"{name} ({id})\"]`, or `defaults: {kind: telemetry}`"
+                                    if message.kind else "in the profile: `defaults: {kind: telemetry}`, or words under `kinds:`",
                                     "error"))  # fmt: skip
             continue
         if not message.name:

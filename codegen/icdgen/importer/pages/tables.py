@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from icdgen.importer import headings, labels
 from icdgen.importer.document import Block, Header, Heading, Row, Table, Text
-from icdgen.importer.pages import bands, columns
+from icdgen.importer.pages import bands, columns, guessed
 from icdgen.importer.pages.bands import Band
 from icdgen.importer.pages.flow import Item, Mark, Piece
 from icdgen.importer.pages.lines import Line, lines
@@ -298,6 +298,7 @@ class Builder:
         for item in self.out:
             if isinstance(item, Draft) and item.loose:
                 self.cut(item)
+        self.out = _with_guessed(self.out)
         captions = [i for i, item in enumerate(self.out) if isinstance(item, Mark) and item.kind == "caption"]
         after = {i: self.table_from(i, 1) for i in captions}
         before = {i: self.table_from(i, -1) for i in captions}
@@ -362,6 +363,30 @@ class Builder:
         table.number = int(re.split("[-.]", number)[-1]) if not number.isdigit() else int(number)
         table.caption = _CONTINUED.sub("", match["title"]).strip()
         table.page = min(mark.box.page, table.page or mark.box.page)
+
+
+def _with_guessed(out: list[Draft | Mark]) -> list[Draft | Mark]:
+    """Runs of lines that look like tables, though nobody knows their headings, made tables: they must not pass unseen."""
+    made: list[Draft | Mark] = []
+    marks: list[Mark] = []
+
+    def flush() -> None:
+        at = 0
+        for start, end, table in guessed.tables(marks):
+            made.extend(marks[at:start])
+            made.append(Draft(table))
+            at = end
+        made.extend(marks[at:])
+        marks.clear()
+
+    for item in out:
+        if isinstance(item, Mark):
+            marks.append(item)
+        else:
+            flush()
+            made.append(item)
+    flush()
+    return made
 
 
 def _bands(piece: Piece, edges: list[float]) -> list[Band]:

@@ -9,6 +9,7 @@ from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.importer import headings, labels
 from icdgen.importer.document import Block, Document, Heading, Row, Table, Text
 from icdgen.importer.profile import Profile
+from icdgen.importer.understand import grids
 from icdgen.importer.words import plain
 
 _RULE = re.compile(r"\s*:?-{2,}:?\s*\Z")
@@ -73,7 +74,7 @@ class _Reader:
             self.blocks.append(Text(plain(text), self.page, number))
 
     def row(self, row: Row) -> None:
-        if self.raw and labels.begins(" ".join(c for c in row.cells if c), self.profile):
+        if self.raw and (labels.begins(" ".join(c for c in row.cells if c), self.profile) or grids.is_heading(row)):
             self.close()
         self.raw.append(row)
 

@@ -64,7 +64,7 @@ def read(table: Table, profile: Profile, length: int | None, troubles: list[Trou
             f"`{title}`" for role, title in zip(header.roles, header.titles, strict=True) if role in ("at", "bits")
         )
         troubles.append(Trouble("IMP036", f"{table.title}: nothing tells whether {titles} count bits or bytes", table.spot,
-                                "name the heading in the profile under at, at_bytes, bits or bits_bytes; it was left out",
+                                "it was left out; in the profile: `headings: {fields: {at_bytes: [...], bits_bytes: [...]}}`",
                                 "error"))  # fmt: skip
         raise Unreadable
     made: list[ReadField] = []
@@ -251,7 +251,7 @@ def _kind(line: Line, bits: int, has_types: bool, troubles: list[Trouble]) -> st
     what = f"the type `{text}` is unknown" if text else "it has no type"
     fallback = "uint" if bits <= MOST_BITS else "bytes"
     troubles.append(Trouble("IMP026", f"{line.where}: {what}", line.entry.spot,
-                            f"held as {fallback}; add the name to `types:` of the profile", "error"))  # fmt: skip
+                            f"held as {fallback}; in the profile: `types: {{{text or '?'}: ...}}`", "error"))  # fmt: skip
     return fallback
 
 
