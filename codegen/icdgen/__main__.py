@@ -23,7 +23,7 @@ def _main() -> None:
         note = cache.recall("runs", name)
     except OSError:
         name, note = "", None
-    if note is not None and _said(note.decode("utf-8", "surrogateescape")):
+    if note is not None and _was_printed(note.decode("utf-8", "surrogateescape")):
         sys.exit(0)
     import gc
 
@@ -36,7 +36,7 @@ def _main() -> None:
         gc.freeze()  # nor does it free anything that matters when the interpreter ends
 
 
-def _said(note: str) -> bool:
+def _was_printed(note: str) -> bool:
     """Whether the note, if there is one, could be printed; the way through `cli` knows what to say if not."""
     try:
         print(note, end="\n" if note else "", flush=True)

@@ -109,7 +109,7 @@ def main(arguments: list[str], run: str = "") -> None:
         _complain("out of memory")
         status = 2
     if status != 0:
-        _let_go()
+        _drop_unwritten_output()
     sys.exit(status)
 
 
@@ -130,7 +130,7 @@ def _run(arguments: list[str], run: str) -> int:
     return status if isinstance(status, int) else 0
 
 
-def _let_go() -> None:
+def _drop_unwritten_output() -> None:
     """What could not be written is not tried again, with a traceback, when Python ends."""
     try:
         if sys.stdout is not None:

@@ -46,7 +46,7 @@ USER = """\
 cmake_minimum_required(VERSION 3.20)
 project(user C)
 include("{module}")
-icdgen_add_library("messages" LANG c ICDS "my icd/main.yaml" OUT generated)
+icdgen_add_library("messages" LANG c ICDS "my icd/device.yaml" OUT generated)
 add_library(one OBJECT one.c)
 target_link_libraries(one PRIVATE messages)
 add_library(two OBJECT two.c)
@@ -71,9 +71,9 @@ def test_only_what_a_changed_icd_concerns_is_built_again(tmp_path, generator):
     icds = tmp_path / "my icd"
     icds.mkdir()
     (tmp_path / "CMakeLists.txt").write_text(USER.format(module=(ROOT / "cmake" / "icdgen.cmake").as_posix()))
-    (icds / "main.yaml").write_text(NODE.format(name="main", include="shared.yaml", message="One", id=1))
+    (icds / "device.yaml").write_text(NODE.format(name="device", include="shared.yaml", message="One", id=1))
     (icds / "shared.yaml").write_text(NODE.format(name="shared", include="", message="Two", id=2))
-    (tmp_path / "one.c").write_text('#include "main/one.h"\nmain_one_t one;\n')
+    (tmp_path / "one.c").write_text('#include "device/one.h"\ndevice_one_t one;\n')
     (tmp_path / "two.c").write_text('#include "shared/two.h"\nshared_two_t two;\n')
     build = tmp_path / "build"
     configure(tmp_path, build, generator)
@@ -95,8 +95,8 @@ def test_a_wrong_icd_stops_the_build_and_says_why(tmp_path):
     icds = tmp_path / "my icd"
     icds.mkdir()
     (tmp_path / "CMakeLists.txt").write_text(USER.format(module=(ROOT / "cmake" / "icdgen.cmake").as_posix()))
-    (icds / "main.yaml").write_text(
-        NODE.format(name="main", include="", message="One", id=1).replace("bits: 8", "bits: 9")
+    (icds / "device.yaml").write_text(
+        NODE.format(name="device", include="", message="One", id=1).replace("bits: 8", "bits: 9")
     )
     for name in ("one.c", "two.c"):
         (tmp_path / name).write_text("int unused;\n")
@@ -105,4 +105,4 @@ def test_a_wrong_icd_stops_the_build_and_says_why(tmp_path):
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "codegen")}
     done = subprocess.run(["cmake", "--build", build], capture_output=True, text=True, env=environment)
     assert done.returncode != 0
-    assert "main.yaml:" in done.stdout + done.stderr and "Level" in done.stdout + done.stderr
+    assert "device.yaml:" in done.stdout + done.stderr and "Level" in done.stdout + done.stderr

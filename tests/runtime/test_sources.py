@@ -11,6 +11,7 @@ from tests.conftest import ROOT
 from tests.rust.tools import STD, Toolchain, run, toolchains
 
 C, PYTHON, RUST = (ROOT / "runtime" / name for name in ("c", "python", "rust"))
+SELFTEST = ROOT / "runtime" / "c-selftest"
 STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only")
 
 
@@ -29,18 +30,23 @@ def test_python_is_formatted_linted_and_typed(command, tmp_path):
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 def test_every_c_header_stands_alone_and_compiles_without_a_warning(compiler, tmp_path):
-    headers = sorted(C.rglob("*.h"))
+    headers = sorted((*C.rglob("*.h"), *SELFTEST.glob("*.h")))
     assert len(headers) > 20
     for header in headers:
         for language, standard in (("c", "c99"), ("c++", "c++11")):
             program = tmp_path / f"{header.stem}.{language}"
             program.write_text(f'#include "{header}"\n#include "{header}"\ntypedef int something;\n')
-            run(compiler, f"-std={standard}", *STRICT, "-x", language, program)
+            run(compiler, f"-std={standard}", *STRICT, "-I", C, "-x", language, program)
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_the_c_self_test_compiles_without_a_warning(compiler):
+    run(compiler, "-std=c99", *STRICT, "-I", C, SELFTEST / "icdgen_selftest.c")
 
 
 @pytest.mark.skipif(not shutil.which("clang-format"), reason="needs clang-format")
 def test_c_is_as_clang_format_lays_it_out():
-    run("clang-format", "--dry-run", "-Werror", *sorted(C.rglob("*.h")))
+    run("clang-format", "--dry-run", "-Werror", *sorted((*C.rglob("*.h"), *SELFTEST.iterdir())))
 
 
 @pytest.mark.parametrize("options", [(), STD], ids=["core", "std"])

@@ -9,8 +9,9 @@ from dataclasses import asdict, replace
 
 import pytest
 
-from icdgen.protocol import crc, i2c, reading, uart
+from icdgen.protocol import crc, declared, i2c, uart
 from icdgen.protocol.facts import of as facts_of
+from icdgen.protocol.sections import Crc
 from icdgen.values import parse_hex
 from icdgen.values.errors import BadHex
 from tests.conftest import ROOT
@@ -71,13 +72,13 @@ def facts(seed: int) -> dict:
 def test_checksums_are_those_of_the_generator():
     cases = [[facts(seed), list(random.Random(seed).randbytes(seed % 12))] for seed in range(300)]
     found = node("(cases) => cases.map(([facts, data]) => frames.crc(facts, data))", cases)
-    assert found == [crc.compute(reading.crc(one), bytes(data)) for one, data in cases]
+    assert found == [crc.compute(declared.read(Crc, one), bytes(data)) for one, data in cases]
 
 
 @pytest.mark.parametrize(("node_name", "key"), [("cubeacp", "crc8"), ("common", "crc16")])
 def test_checksums_give_the_check_value_of_the_icd(shipped, node_name, key):
     protocol = shipped.node(node_name).protocol[key]
-    assert crc.compute(reading.crc(protocol), b"123456789") == protocol["check"]
+    assert crc.compute(declared.read(Crc, protocol), b"123456789") == protocol["check"]
 
 
 WIRE = {

@@ -6,13 +6,13 @@ import re
 from dataclasses import replace
 
 from icdgen.backends.html import wire
-from icdgen.backends.html.atlas import Atlas
+from icdgen.backends.html.relations import Relations
 from icdgen.protocol import i2c
 
 
 def lines(icd, node: str, name: str, data: bytes) -> dict[str, list[tuple[str, str]]]:
     message = next(m for m in icd.node(node).messages if m.name == name)
-    found = wire.buses(message, Atlas(icd).wire(message), data)
+    found = wire.buses(message, Relations(icd).wire(message), data)
     return {bus.name: [(line.label, " ".join(c.text for c in line.chunks)) for line in bus.lines] for bus in found}
 
 
@@ -30,7 +30,7 @@ def test_an_optional_checksum_covers_the_parameters(shipped):
 
 def test_what_the_icd_says_about_the_id_holds_for_the_bytes(shipped):
     message = next(m for m in shipped.node("cubeacp").messages if m.name == "ASGP4 Run Mode")
-    known, section, checked = Atlas(shipped).wire(message)
+    known, section, checked = Relations(shipped).wire(message)
     covering = [replace(one.facts, checksum=replace(one.facts.checksum, covers_id=True)) for one in checked]
     plain = replace(known, framing=replace(known.framing, escapes_id=False))
     other = wire.Wire(plain, section, [wire.Speaker(one, section) for one in covering])

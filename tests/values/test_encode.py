@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from icdgen.describe.numbers import exact_text
 from icdgen.values import BadValue, decode, encode, numbers
 
 SPEED = {"x": "1", "y": "-1", "timeout": "0"}
@@ -219,4 +220,4 @@ def test_the_shortest_text_of_a_float_is_read_back():
     ],
 )
 def test_exact_numbers_are_shown_as_decimals_where_they_end(value, text):
-    assert numbers.exact_text(value) == text
+    assert exact_text(value) == text

@@ -19,7 +19,6 @@ from icdgen.vectors.patterns import values
 from icdgen.vectors.settings import NEVER
 
 WIDTH = 116
-SHARED = ("icdgen_selftest.h", "icdgen_selftest.c")
 TYPES = {"bool": "BOOL", "bytes": "BYTES", "int": "SIGNED"}
 
 
@@ -119,8 +118,8 @@ class CSelftestBackend:
 
 def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
     """The engine, the list of nodes, and one file of vectors a node."""
-    for name in SHARED:
-        yield PurePosixPath(name), render(f"{name}.j2", origin=origin())
+    for name in render.runtime_files():
+        yield PurePosixPath(name), f"/* {origin()} */\n{render.source(name)}"
     nodes = [node.name for node in icd.nodes]
     yield PurePosixPath("icdgen_selftest_nodes.c"), render("nodes.c.j2", origin=origin(), nodes=nodes)
     for node in describe(icd).nodes:

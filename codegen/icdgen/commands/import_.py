@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -16,8 +17,24 @@ from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
 
 if TYPE_CHECKING:
+    from icdgen.importer.profile import Profile
     from icdgen.importer.run import Result
 
+
+class _Pages(click.ParamType):  # type: ignore[type-arg]  # older versions of click know no argument
+    """``12``, ``20-35``"""
+
+    name = "pages"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[int, int]:
+        match = re.fullmatch(r"([0-9]{1,6})(?:-([0-9]{1,6}))?", str(value))
+        first, last = (int(match[1]), int(match[2] or match[1])) if match else (0, 0)
+        if not 0 < first <= last:
+            self.fail(f"`{value}` names no pages: write 12 or 20-35", param, ctx)
+        return first, last
+
+
+PAGES = _Pages()
 ABOUT_FILES = frozenset({"IMP002", "IMP003"})
 
 
@@ -40,6 +57,10 @@ ABOUT_FILES = frozenset({"IMP002", "IMP003"})
     help="Write a page (HTML) with each doubtful table as a picture beside what was read.",
 )
 @click.option("--descriptions", is_flag=True, help="Hold the manual's descriptions as summaries.")
+@click.option(
+    "--explore", is_flag=True, help="Say what kinds of tables there are, and propose a profile; import nothing."
+)
+@click.option("--pages", type=PAGES, help="Read these pages of a PDF only: 12 or 20-35.")
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @click.option("--jobs", type=click.IntRange(1, 64), help="Processes that read pages (default: one a core).")
 def import_(
@@ -50,6 +71,8 @@ def import_(
     dry_run: bool,
     page: Path | None,
     descriptions: bool,
+    explore: bool,
+    pages: tuple[int, int] | None,
     form: str,
     jobs: int | None,
 ) -> None:
@@ -62,11 +85,17 @@ def import_(
     try:
         vocabulary = profile.load(profile.find(words))
         with _progress() as progress:
-            result, trees = run.run(manual, vocabulary, progress, jobs, descriptions)
-        run.aim(result, trees, out, update)
+            result, trees = run.run(manual, vocabulary, progress, jobs, descriptions, pages)
+        if not explore:
+            run.aim(result, trees, out, update)
     except Findings as error:
         _refuse(error, manual, form)
         sys.exit(1)
+    if explore:
+        _explore(result, vocabulary, form)
+        if page is not None:
+            _write_page(page, result)
+        return
     if not dry_run:
         run.write(result)
     if form == "json":
@@ -76,6 +105,15 @@ def import_(
     if page is not None:
         _write_page(page, result)
     sys.exit(1 if result.failed else 0)
+
+
+def _explore(result: Result, vocabulary: Profile, form: str) -> None:
+    from icdgen.importer import explore
+
+    if form == "json":
+        click.echo(explore.as_json(result))
+    else:
+        say(explore.report(result, vocabulary).rstrip("\n"))
 
 
 def _say(result: Result, dry_run: bool) -> None:

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Final, NamedTuple
 
-from icdgen.icd.model import Limits
+from icdgen.describe.steps import steps
+from icdgen.icd.model import Field, Limits
 
 
 class Kind(NamedTuple):
@@ -51,3 +52,14 @@ def bounds(limits: Limits | None) -> tuple[Bound, ...]:
         return ()
     found = ((kind, getattr(limits, kind.key)) for kind in KINDS)
     return tuple(Bound(kind, value) for kind, value in found if value is not None)
+
+
+def allowed_ends(field: Field) -> tuple[Fraction | None, Fraction | None]:
+    """Smallest and largest physical value, as far as the type and inclusive limits tell."""
+    low = field.limits.min if field.limits else None
+    high = field.limits.max if field.limits else None
+    if field.type in ("uint", "int"):
+        scaled = steps(field)
+        least, most = scaled.span if scaled else (Fraction(field.raw_min), Fraction(field.raw_max))
+        low, high = least if low is None else low, most if high is None else high
+    return low, high

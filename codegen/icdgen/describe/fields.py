@@ -40,7 +40,7 @@ class FieldDescription:
 
     @property
     def fresh(self) -> int:
-        """The raw value in a new message: the only valid one, or 0. (The bits of a float; 0 for bytes, which are all 0.)"""
+        """The raw value in a new message, as a number: see `icdgen.describe.fresh`."""
         return self.field.const or 0
 
     @property

@@ -100,7 +100,11 @@ def _change(rule: Rule, pair: Pair, found: Found) -> Change:
 def _decisions(pair: Pair, keys: tuple[str, ...]) -> tuple[str, ...]:
     """Errata that came, went or changed, and that hold something else for one of these keys of the pair."""
     old, new = ({e.id: e for e in getattr(side, "errata", ())} for side in (pair.old, pair.new))
-    if old == new or not hasattr(pair.any, "source") or (not hasattr(pair, "owner") and not hasattr(pair, "rehomed")):
+    if (
+        old == new
+        or not hasattr(pair.any, "source")
+        or (not hasattr(pair, "owner") and not hasattr(pair, "is_of_another_node"))
+    ):
         return ()
     said = []
     for key in sorted(old.keys() | new.keys()):

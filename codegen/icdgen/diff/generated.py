@@ -32,15 +32,15 @@ Names = dict[int, tuple[Name, ...]]  # id(pair) -> names
 class Generated:
     """Names of the pairs whose names may have changed: all others keep theirs.
 
-    ``clothed`` are those of the new things if the message or enumeration that holds them, and their node, had kept their old
-    names: a field's names are not said to change only because its message has another name.
+    ``under_old_owners`` are those of the new things if the message or enumeration that holds them, and their node, had kept
+    their old names: a field's names are not said to change only because its message has another name.
     """
 
     def __init__(self, match: Match, changed: Iterable[Pair]) -> None:
         self._match, self._changed = match, list(changed)
 
-    def _cut(self, side: int, clothed: int = NOTHING) -> _Cut:
-        return _Cut(self._match, side, self._kept, clothed)
+    def _cut(self, side: int, old_names: int = NOTHING) -> _Cut:
+        return _Cut(self._match, side, self._kept, old_names)
 
     @cached_property
     def _kept(self) -> set[int]:
@@ -84,23 +84,23 @@ class Generated:
         return cut.names(cut.icd)
 
     @cached_property
-    def clothed(self) -> Names:
+    def under_old_owners(self) -> Names:
         owners = [(pair.old, pair.new) for pair in self._match.pair_of.values() if pair.both]
         if self._nodes_keep_names and all((a.name, a.identifier) == (b.name, b.identifier) for a, b in owners):
             return self.new
-        return self._dressed.names(self._dressed.icd)
+        return self._under_old_owners.names(self._under_old_owners.icd)
 
     @cached_property
-    def _dressed(self) -> _Cut:
+    def _under_old_owners(self) -> _Cut:
         return self._cut(1, OWNERS)
 
     @cached_property
     def _types(self) -> tuple[Types, Types]:
-        return _types(self._before.icd), _types(self._dressed.icd)
+        return _types(self._before.icd), _types(self._under_old_owners.icd)
 
     def renamed(self, pair: Pair) -> list[tuple[Name | None, Name | None]]:
         """Old and new name of everything that is generated for the pair, where they differ. Its parts are left out."""
-        after = self._at_home if isinstance(pair, MessagePair | EnumPair) else self.clothed
+        after = self._at_home if isinstance(pair, MessagePair | EnumPair) else self.under_old_owners
         old, new = self.old.get(id(pair), ()), after.get(id(pair), ())
         real = dict(zip(new, self.new.get(id(pair), ()), strict=False))
         found: list[tuple[Name | None, Name | None]] = []
@@ -117,8 +117,8 @@ class Generated:
         """Language, old and new type of the raw value, where they differ."""
         if not _is_sound(pair.old) or not _is_sound(pair.new):
             return []
-        message_old, message_new = pair.owner.old, self._dressed.message_of(pair.owner)
-        field_new = self._dressed.field_of(pair)
+        message_old, message_new = pair.owner.old, self._under_old_owners.message_of(pair.owner)
+        field_new = self._under_old_owners.field_of(pair)
         found = []
         for language in LANGUAGES:
             before = self._types[0](language, pair.owner.old_node, message_old, pair.old)
@@ -133,10 +133,10 @@ def may_rename(pair: Pair) -> bool:
     if not pair.both or (pair.old.name, pair.old.identifier) != (pair.new.name, pair.new.identifier):
         return True
     if isinstance(pair, FieldPair):
-        return pair.owner.revoiced or _decisive(pair.old) != _decisive(pair.new)
+        return pair.owner.has_another_vocabulary or _decisive(pair.old) != _decisive(pair.new)
     if isinstance(pair, MemberPair):
-        return pair.owner.revoiced
-    return pair.rehomed or pair.revoiced
+        return pair.owner.has_another_vocabulary
+    return pair.is_of_another_node or pair.has_another_vocabulary
 
 
 def _decisive(field: Field) -> tuple:
@@ -159,8 +159,8 @@ def _parts(pair: Pair) -> list[Pair]:
 class _Cut:
     """One of both ICDs, with what is to be kept of it; every part has a mark of its own, by which its names are found."""
 
-    def __init__(self, match: Match, side: int, kept: set[int], clothed: int = NOTHING) -> None:
-        self.match, self.side, self.kept, self.clothed = match, side, kept, clothed
+    def __init__(self, match: Match, side: int, kept: set[int], old_names: int = NOTHING) -> None:
+        self.match, self.side, self.kept, self.old_names = match, side, kept, old_names
         self.marks: dict[int, Pair] = {}
         self.alive: list[Map] = []  # marks go by identity
         self.enums: dict[int, Enum] = {}
@@ -191,16 +191,16 @@ class _Cut:
         return pair.new if self.side else pair.old
 
     def name_of(self, pair: Pair) -> str:
-        return pair.old.name if self.clothed and pair.old is not None else self.side_of(pair).name
+        return pair.old.name if self.old_names and pair.old is not None else self.side_of(pair).name
 
-    def dress(self, one, pair: Pair | None, **more: object):
+    def marked(self, one, pair: Pair | None, **more: object):
         """The thing with a mark, and under its old name where that is asked for."""
         if pair is not None:
             mark = Map(Place(""))
             self.marks[id(mark)] = pair
             self.alive.append(mark)
             more["source"] = mark
-            if self.clothed == OWNERS and pair.old is not None and isinstance(pair, MessagePair | EnumPair):
+            if self.old_names == OWNERS and pair.old is not None and isinstance(pair, MessagePair | EnumPair):
                 more.update(name=pair.old.name, identifier=pair.old.identifier)
         return replace(one, **more)
 
@@ -208,8 +208,8 @@ class _Cut:
         pair = self.match.pair_of.get(id(enum))
         members = {id(self.side_of(p)): p for p in getattr(pair, "members", ())}
         kept = [m for m in enum.members if id(m) in members and id(members[id(m)]) in self.kept]
-        own = tuple(self.dress(m, members[id(m)]) for m in kept)
-        made = self.dress(enum, pair, members=own, node=names.get(enum.node, enum.node))
+        own = tuple(self.marked(m, members[id(m)]) for m in kept)
+        made = self.marked(enum, pair, members=own, node=names.get(enum.node, enum.node))
         self.enums[id(enum)] = made
         return made
 
@@ -221,10 +221,10 @@ class _Cut:
             if id(fields[id(one)]) not in self.kept or not _is_sound(one):
                 continue
             enum = self.enums.get(id(one.enum), one.enum)
-            made = self.dress(one, fields.get(id(one)), enum=enum)
+            made = self.marked(one, fields.get(id(one)), enum=enum)
             self.fields[id(fields.get(id(one)))] = made
             own.append(made)
-        made = self.dress(message, pair, fields=tuple(own), node=names.get(message.node, message.node))
+        made = self.marked(message, pair, fields=tuple(own), node=names.get(message.node, message.node))
         self.messages[id(pair)] = made
         return made
 

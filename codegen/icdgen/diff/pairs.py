@@ -66,7 +66,7 @@ class FieldPair(Pair):
 
     @property
     def changed(self) -> bool:
-        return self.old != self.new or self.owner.revoiced
+        return self.old != self.new or self.owner.has_another_vocabulary
 
     @cached_property
     def same_bits(self) -> bool:
@@ -83,17 +83,17 @@ class FieldPair(Pair):
 class EnumPair(Pair):
     old_node: Node | None = None
     new_node: Node | None = None
-    rehomed: bool = False  # another node declares it now
+    is_of_another_node: bool = False  # another node declares it now
     members: list[MemberPair] = field(default_factory=list)
     old: Enum | None
     new: Enum | None
 
     @cached_property
     def changed(self) -> bool:
-        return self.old != self.new or self.revoiced
+        return self.old != self.new or self.has_another_vocabulary
 
     @property
-    def revoiced(self) -> bool:
+    def has_another_vocabulary(self) -> bool:
         """Whether words are split in another way, so that its names may differ."""
         return self.old_node.vocabulary != self.new_node.vocabulary
 
@@ -110,7 +110,7 @@ class EnumPair(Pair):
 class MessagePair(Pair):
     old_node: Node | None = None
     new_node: Node | None = None
-    rehomed: bool = False  # another node declares it now
+    is_of_another_node: bool = False  # another node declares it now
     fields: list[FieldPair] = field(default_factory=list)
     old: Message | None
     new: Message | None
@@ -125,10 +125,10 @@ class MessagePair(Pair):
 
     @cached_property
     def changed(self) -> bool:
-        return self.old != self.new or self.reordered or self.revoiced
+        return self.old != self.new or self.reordered or self.has_another_vocabulary
 
     @property
-    def revoiced(self) -> bool:
+    def has_another_vocabulary(self) -> bool:
         """Whether words are split in another way, so that its names may differ."""
         return self.old_node.vocabulary != self.new_node.vocabulary
 

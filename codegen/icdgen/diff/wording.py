@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
+from icdgen.describe.numbers import bit_range, factor_text
 from icdgen.icd.formula import Scale
 from icdgen.icd.model import Field
 from icdgen.icd.rules.wording import count, listing, quote
@@ -27,26 +28,12 @@ def bits(number: int) -> str:
 
 def span(field: Field) -> str:
     """``bits 16 to 31``"""
-    return f"bit {field.at:,}" if field.bits == 1 else f"bits {field.at:,} to {field.at + field.bits - 1:,}"
+    return bit_range(field.at, field.bits)
 
 
 def number(value: Fraction | int | None) -> str:
     """Exact: ``0.01``, ``1/3``; empty where there is none."""
-    if value is None:
-        return ""
-    value = Fraction(value)
-    rest = value.denominator
-    for factor in (2, 5):
-        while rest % factor == 0:
-            rest //= factor
-    if rest != 1:
-        return f"{value.numerator}/{value.denominator}"
-    places, scaled = 0, value
-    while scaled.denominator != 1:
-        scaled, places = scaled * 10, places + 1
-    digits = f"{abs(scaled.numerator):0{places + 1}d}"
-    text = f"{digits[:-places]}.{digits[-places:]}" if places else digits
-    return f"-{text}" if value < 0 else text
+    return "" if value is None else factor_text(Fraction(value))
 
 
 def formula(scale: Scale | None) -> str:

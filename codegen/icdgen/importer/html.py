@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import io
+from collections import Counter
 from collections.abc import Iterator
 
 from icdgen.importer.document import CERTAIN, Box, Table, Trouble
@@ -49,9 +50,16 @@ def report(result: Result) -> str:
         f"<style>{_STYLE}</style></head><body>\n<h1>Import of {name}</h1>",
         *(f"<p>{html.escape(line)}</p>" for line in console.summary(result)),
     ]
-    loose = list(about.get(None, []))
+    errors = [t for t in result.troubles if t.severity == "error"]
+    if errors:
+        parts += [
+            "<h2>To do first: what is missing from the ICD, or may be wrong in it</h2>",
+            _list(errors, linked=True),
+        ]
+    loose = [t for t in about.get(None, []) if t.severity != "error"]
     if loose:
         parts += ["<h2>About the document</h2>", _list(loose)]
+    doubtful.sort(key=lambda one: _stake(about.get(one.table.order, [])))
     with _Pictures(result) as pictures:
         for one in doubtful:
             parts += _table(one, result, about.get(one.table.order, []), pictures)
@@ -61,11 +69,19 @@ def report(result: Result) -> str:
     return "\n".join(parts) + "\n</body></html>\n"
 
 
-def _list(troubles: list[Trouble]) -> str:
+def _stake(troubles: list[Trouble]) -> tuple[int, int]:
+    """Tables with most errors first, then with most warnings."""
+    counts = Counter(t.severity for t in troubles)
+    return -counts["error"], -counts["warning"]
+
+
+def _list(troubles: list[Trouble], linked: bool = False) -> str:
     items = []
     for t in troubles:
         place = f" (page {t.spot.page})" if t.spot.page else f" (line {t.spot.line})" if t.spot.line else ""
         help = f" <i>{html.escape(t.help)}.</i>" if t.help else ""
+        if linked and t.spot.order is not None:
+            place += f' <a href="#table-{t.spot.order}">table</a>'
         items.append(
             f'<li class="{t.severity}"><b>{t.severity}</b> {t.code}{place}: {html.escape(t.message)}{help}</li>'
         )
@@ -105,7 +121,7 @@ class _Pictures:
 
     def __enter__(self) -> _Pictures:
         if any(one.table.boxes for one in self.result.survey.found):
-            import pypdfium2
+            import pypdfium2  # type: ignore[import-untyped]
 
             try:
                 self.file = pypdfium2.PdfDocument(self.result.document.file)

@@ -6,9 +6,10 @@ import os
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from icdgen.errors import UserError
-from icdgen.importer import assemble, damage, emit, profile, reading, update
+from icdgen.importer import assemble, emit, profile, reading, repairs, update
 from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Document, Table, Trouble
 from icdgen.importer.understand import survey
 from icdgen.importer.understand.survey import Survey
@@ -22,7 +23,7 @@ class Target:
 
     path: Path
     text: str
-    tree: dict
+    tree: dict[str, Any]
     changes: list[str] | None = None
     same: bool = False
 
@@ -51,7 +52,7 @@ class Result:
         """How many tables were read how surely; those that were not understood are not counted."""
         return Counter(self.sure_of(one.table) for one in self.survey.found if one.what != survey.UNKNOWN)
 
-    def sure_of(self, table) -> str:
+    def sure_of(self, table: Table) -> str:
         """How sure the reading of a table is."""
         about = [t for t in self.survey.troubles if t.spot.order == table.order and t.code != "IMP035"]
         what = next((one.what for one in self.survey.found if one.table is table), "")
@@ -61,28 +62,32 @@ class Result:
 
 
 def run(
-    manual: Path, words: profile.Profile, progress=None, jobs: int | None = None, prose: bool = False
-) -> tuple[Result, dict[str, dict]]:
+    manual: Path, words: profile.Profile, progress: reading.Progress | None = None, jobs: int | None = None,
+    prose: bool = False, pages: tuple[int, int] | None = None,
+) -> tuple[Result, dict[str, dict[str, Any]]]:  # fmt: skip
     """Reads a manual. Raises `Findings` for a file that cannot be read; one that holds nothing to import gives no tree
-    and the finding IMP004."""
-    document = reading.read(manual, words, progress, jobs)
+    and the finding IMP004. ``pages``: the first and the last one to read of a PDF."""
+    document = reading.read(manual, words, progress, jobs, pages)
     document.count_tables()
-    damage.mend(document, words)
+    repairs.mend(document, words)
     found = survey.survey(document, words)
     trees = assemble.assemble(document, found, words, prose)
     if not trees:
-        found.troubles.append(_nothing(document))
+        found.troubles.append(_nothing(document, found))
     return Result(document, found), trees
 
 
-def _nothing(document: Document) -> Trouble:
-    """That nothing was found, with the headings that were seen."""
+def _nothing(document: Document, found: Survey) -> Trouble:
+    """That nothing was found, with the headings that were seen, or that nothing of what was found can be held."""
+    if any(one.thing is not None for one in found.found):
+        return Trouble(NOTHING, "no message and no enumeration can be held, though tables of them were found",
+                       help="the other errors say why", severity="error", sure=DOUBTFUL)  # fmt: skip
     message = "no message and no enumeration was found"
     seen = Counter(" | ".join(cells) for table in document.tables if len(cells := _first_cells(table)) > 1)
     if seen:
         shown = ", ".join(f"`{text[:80]}`" + (f" ({n} times)" if n > 1 else "") for text, n in seen.most_common(5))
         message += f"; tables begin with {shown}"
-        help = "give their headings their roles in a profile (--profile), see docs/import.md"
+        help = "give their headings their roles in a profile (--profile): --explore proposes one"
     elif document.tables:
         help = f"its {len(document.tables)} tables have one column; is this the right document?"
     else:
@@ -95,7 +100,7 @@ def _first_cells(table: Table) -> list[str]:
     return next(([c for c in cells if c] for cells in rows if any(cells)), [])
 
 
-def aim(result: Result, trees: dict[str, dict], out: Path, over: bool) -> None:
+def aim(result: Result, trees: dict[str, dict[str, Any]], out: Path, over: bool) -> None:
     """Prepares the files. Raises `UserError` where one exists and ``over`` does not allow to update it."""
     taken = [out / f"{name}.yaml" for name in trees if os.path.lexists(out / f"{name}.yaml")]
     if taken and not over:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from fractions import Fraction
-from math import lcm
 
 from icdgen import layout, naming
+from icdgen.describe.steps import Steps, steps
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.layout import Piece
 from icdgen.protocol.facts import Facts, LogBit, need
@@ -47,13 +46,9 @@ class Column:
         return self.field.unit.symbol if self.field and self.field.unit else ""
 
     @property
-    def linear(self) -> tuple[int, int, int] | None:
-        """The scale as whole numbers: physical = (raw * a + b) / d."""
-        if self.field is None or self.field.scale is None:
-            return None
-        factor, offset = Fraction(self.field.scale.factor), Fraction(self.field.scale.offset)
-        d = lcm(factor.denominator, offset.denominator)
-        return int(factor * d), int(offset * d), d
+    def steps(self) -> Steps | None:
+        """How the physical value is computed from the raw one; None without a scale."""
+        return steps(self.field) if self.field is not None else None
 
 
 @dataclass(frozen=True, slots=True)

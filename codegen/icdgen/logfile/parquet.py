@@ -7,7 +7,7 @@ import queue
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from icdgen.errors import UserError
 from icdgen.logfile.columns import TIME, Column, Plan
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     import numpy as np
     import pyarrow as pa
 
-EXACT = 1 << 53  # whole numbers below it are exact as doubles, and so is the rounding of their quotient
 PIECE = 6 << 20  # bytes that are decoded at once: what stays in the cache
 GROUP = 24 << 20  # bytes of the log that become a row group, about
 
@@ -53,7 +52,7 @@ def _groups(source: Source, decoder: Decoder, head: int | None, done: Callable[[
 
 def _ahead(items: Iterator[pa.Table]) -> Iterator[pa.Table]:
     """The items, made in a thread, one ahead."""
-    made: queue.Queue = queue.Queue(maxsize=1)
+    made: queue.Queue[Any] = queue.Queue(maxsize=1)
     stop = threading.Event()
 
     def put(item: object) -> None:
@@ -141,7 +140,7 @@ class _Reader:
                 return pa.dictionary(pa.int32(), pa.string())
             self.names = pa.array(self._named(range(1 << column.field.bits)))
             return pa.dictionary(pa.uint8(), pa.string())
-        if column.linear:
+        if column.steps:
             return pa.float64()
         size = next(size for size in (8, 16, 32, 64) if column.field.bits <= size)
         return pa.type_for_alias(f"{'int' if column.field.signed else 'uint'}{size}")
@@ -162,7 +161,7 @@ class _Reader:
             different, where = np.unique(raw, return_inverse=True)
             names = pa.array(self._named(int(one) for one in different), pa.string())
             return pa.DictionaryArray.from_arrays(pa.array(where.astype(np.int32)), names)
-        if column.linear:
+        if column.steps:
             return pa.array(self._physical(raw))
         if column.kind == "bool":
             return pa.array(raw != 0)
@@ -202,9 +201,10 @@ class _Reader:
         """The correctly rounded doubles."""
         import numpy as np
 
-        assert self.column.field and self.column.linear
-        (a, b, d), field = self.column.linear, self.column.field
-        if max(abs(field.raw_min * a + b), abs(field.raw_max * a + b), field.raw_max, abs(b), d) < EXACT:
+        steps = self.column.steps
+        assert steps
+        a, b, d = steps.terms
+        if steps.exact_in_doubles:
             value = raw.astype(np.float64)
             if a != 1:
                 value *= a

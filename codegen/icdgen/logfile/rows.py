@@ -54,10 +54,10 @@ def _raw(column: Column) -> Callable[[bytes], int]:
 
 
 def _integer(column: Column) -> Callable[[bytes], Value]:
-    raw, linear = _raw(column), column.linear
-    if linear is None:
+    raw, steps = _raw(column), column.steps
+    if steps is None:
         return raw
-    a, b, d = linear
+    a, b, d = steps.terms
     return lambda entry: (raw(entry) * a + b) / d
 
 

@@ -300,7 +300,7 @@ class Upload:
         "destination_bytes", "bytes that a destination holds: no file may be larger", 1, U32, None
     )
     destinations: tuple[int, ...] = allowed(
-        "destinations", "the destinations that are supported, if not all", "the destinations that are supported"
+        "destinations", "the destinations that are supported; none: all", "the destinations that are supported"
     )
 
 
@@ -346,7 +346,7 @@ class Operation:
     timeout: int = time("timeout_s", "how long it may take")
     programs: tuple[int, ...] = allowed(
         "programs",
-        "the programs that it may be asked for, if not all",
+        "the programs that it may be asked for; none: all",
         "the programs that it can be asked for, if not all",
     )
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from fractions import Fraction
 from pathlib import Path
 
+from icdgen.describe.bounds import bounds
 from icdgen.icd.model import Enum, Erratum, Field, Icd, Limits, Loggable, Message, Node
 
 FORMAT = 1
@@ -106,10 +106,7 @@ def _loggable(row: Loggable) -> _Object:
 
 def _limits(limits: Limits | None) -> dict[str, str] | None:
     """Bounds as exact numbers, ``p`` or ``p/q``, like ``scale``."""
-    if limits is None:
-        return None
-    bounds: dict[str, Fraction | None] = {key: getattr(limits, key) for key in ("min", "max", "above", "below")}
-    return {key: str(bound) for key, bound in bounds.items() if bound is not None}
+    return {bound.key: str(bound.value) for bound in bounds(limits)} if limits is not None else None
 
 
 def _errata(node: Node, is_note: bool) -> list[_Object]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 
+from icdgen.describe.errata import errata_of_enum, errata_of_message
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Erratum, Icd, Message, Node
 from icdgen.show.fields import field_table
 from icdgen.tables import Column, clean, render
@@ -131,7 +132,7 @@ def _message(icd: Icd, message: Message, width: int | None) -> str:
     table = field_table(message, width)
     text += "\n" + table if table else ""
     enums = dict.fromkeys(f.enum for f in message.fields if f.enum)
-    errata = dict.fromkeys(e for part in (message, *message.fields) for e in part.errata)
+    errata = errata_of_message(message)
     for part in (*(_enum(e, width) for e in enums), *(_erratum(e, width) for e in errata)):
         text += "\n" + part
     return text
@@ -141,9 +142,7 @@ def _enum(enum: Enum, width: int | None) -> str:
     head = f"{enum.name} (enumeration" + (f", table {enum.table})" if enum.table else ")")
     members = [(str(m.value), m.name, m.summary) for m in enum.members]
     table = render([Column("value", right=True, fixed=True), Column("name"), Column("meaning")], members, width)
-    errata = "".join(
-        "\n" + _erratum(e, width) for e in dict.fromkeys(e for m in (enum, *enum.members) for e in m.errata)
-    )
+    errata = "".join("\n" + _erratum(e, width) for e in errata_of_enum(enum))
     return _lines([head, enum.summary], width) + table + errata
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
-from fractions import Fraction
 
 from icdgen import codec
+from icdgen.describe.fresh import fresh_value
+from icdgen.describe.numbers import exact_text
+from icdgen.describe.steps import steps
 from icdgen.errors import UserError
 from icdgen.icd.model import Field, Icd, Message
 from icdgen.values import numbers
@@ -86,7 +88,7 @@ def _values(
     values: dict[str, int | bytes] = {}
     notes: dict[str, str] = {}
     for field in message.fields:
-        values[field.name] = field.const or 0
+        values[field.name] = fresh_value(field)
         if field.name not in given:
             continue
         text = given[field.name]
@@ -106,11 +108,10 @@ def _values(
 def _fits(field: Field, value: int, text: str, raw: bool) -> None:
     if field.raw_min <= value <= field.raw_max:
         return
-    low, high = Fraction(field.raw_min), Fraction(field.raw_max)
-    if field.scale and not raw:
-        low, high = sorted((field.scale.physical(low), field.scale.physical(high)))
+    scaled = None if raw else steps(field)
+    low, high = scaled.span if scaled else (field.raw_min, field.raw_max)
     unit = f" {field.unit.symbol}" if field.unit and not raw else ""
-    raise BadValue(f"takes {numbers.exact_text(low)} to {numbers.exact_text(high)}{unit}, not {text}")
+    raise BadValue(f"takes {exact_text(low)} to {exact_text(high)}{unit}, not {text}")
 
 
 def _allowed(field: Field, value: int, text: str) -> None:

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from icdgen import codec, layout
+from icdgen.describe.bounds import bounds
+from icdgen.describe.numbers import bit_range, exact_text, value_text
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.values import numbers
 
@@ -26,6 +28,8 @@ class Row:
     @property
     def number(self) -> float | None:
         """The physical value as correctly rounded double, or the number of a float field; else None."""
+        if isinstance(self.raw, bytes):
+            return None
         if self.field.type == "float":
             return codec.float_value(self.field, self.raw)
         return codec.physical_double(self.field, self.raw)
@@ -49,23 +53,27 @@ class Row:
     def text(self) -> str:
         """What the field says, for people: physical value, name of the member, true or false."""
         kind = self.field.type
+        if isinstance(self.raw, bytes):
+            return self.raw_text
         if kind == "enum":
             return self.member if self.member is not None else f"unknown {self.raw}"
         if kind == "bool":
             return "true" if self.raw else "false"
         if kind == "float":
-            return numbers.float_text(self.number, self.field.bits)
+            return numbers.float_text(codec.float_value(self.field, self.raw), self.field.bits)
         physical = self.physical
-        return self.raw_text if physical is None else numbers.exact_text(physical)
+        return self.raw_text if physical is None else exact_text(physical)
 
     def to_json(self) -> dict[str, object]:
         """``{"name", "type", "raw", "value", ...}``; ``value`` is the one to show or plot."""
         kind = self.field.type
         raw: object = self.raw
-        if kind == "bytes":
+        value: object
+        if isinstance(self.raw, bytes):
             raw = value = self.raw.hex()
         elif kind == "float":
-            raw, value = f"{self.raw:0{self.field.bits // 4}x}", _json_number(self.number)
+            raw = f"{self.raw:0{self.field.bits // 4}x}"
+            value = _json_number(codec.float_value(self.field, self.raw))
         elif kind == "bool":
             raw = value = bool(self.raw)
         elif kind == "enum":
@@ -129,16 +137,13 @@ def violations(field: Field, raw: int) -> list[str]:
     """In which way the raw value is not one that the ICD allows: constants, members, limits."""
     found = []
     if field.const is not None and raw != field.const:
-        found.append(f"must be {field.const} (0x{field.const:X})" if field.const >= 0 else f"must be {field.const}")
+        found.append(f"must be {value_text(field.const)}")
     if field.enum and not any(m.value == raw for m in field.enum.members):
         found.append(f"no member of {field.enum.name}")
-    if field.limits:
-        found += _outside(field, raw)
-    return found
+    return found + (_outside(field, raw) if field.limits else [])
 
 
 def _outside(field: Field, raw: int) -> list[str]:
-    limits = field.limits
     value: Fraction | float = raw
     if field.type == "float":
         value = codec.float_value(field, raw)
@@ -147,13 +152,8 @@ def _outside(field: Field, raw: int) -> list[str]:
     elif field.scale:
         value = field.scale.physical(raw)
     unit = f" {field.unit.symbol}" if field.unit else ""
-    checks = [
-        (limits.min, lambda bound: value < bound, "below the minimum"),
-        (limits.max, lambda bound: value > bound, "above the maximum"),
-        (limits.above, lambda bound: value <= bound, "must be above"),
-        (limits.below, lambda bound: value >= bound, "must be below"),
-    ]
-    return [f"{words} {numbers.exact_text(b)}{unit}" for b, is_wrong, words in checks if b is not None and is_wrong(b)]
+    broken = (bound for bound in bounds(field.limits) if not bound.holds(value))
+    return [f"{bound.kind.refusal} {exact_text(bound.value)}{unit}" for bound in broken]
 
 
 def _reserved(node: Node, message: Message, data: bytes) -> list[str]:
@@ -161,9 +161,7 @@ def _reserved(node: Node, message: Message, data: bytes) -> list[str]:
     for gap in layout.gaps(message):
         pieces = layout.pieces_at(gap.at, gap.bits, node.byte_order, node.bit_order)
         if any(data[piece.byte] & piece.mask for piece in pieces):
-            last = gap.at + gap.bits - 1
-            which = f"bit {gap.at} is" if last == gap.at else f"bits {gap.at} to {last} are"
-            found.append(f"reserved {which} not 0")
+            found.append(f"reserved {bit_range(gap.at, gap.bits)} {'is' if gap.bits == 1 else 'are'} not 0")
     return found
 
 

@@ -1,4 +1,4 @@
-"""Numbers as people write them, taken exactly, and exact numbers as people read them."""
+"""Numbers as people write them, taken exactly."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import struct
 from fractions import Fraction
 
 LONGEST = 400
-MOST_DIGITS = 24  # of a decimal that is shown in full
 
 _DECIMAL = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
 _RATIO = re.compile(r"[+-]?[0-9]+/0*[1-9][0-9]*")
@@ -78,20 +77,3 @@ def _reads_as(text: str, wanted: int) -> bool:
         return float_bits(text, 32) == wanted
     except OverflowError:
         return False
-
-
-def exact_text(value: Fraction) -> str:
-    """The decimal if it ends soon enough, else the nearest double."""
-    twos = fives = 0
-    rest = value.denominator
-    while rest % 2 == 0:
-        rest, twos = rest // 2, twos + 1
-    while rest % 5 == 0:
-        rest, fives = rest // 5, fives + 1
-    places = max(twos, fives)
-    scaled = value * 10**places
-    if rest != 1 or len(str(abs(scaled.numerator))) > MOST_DIGITS or places > MOST_DIGITS:
-        return repr(value.numerator / value.denominator)
-    digits = str(abs(scaled.numerator)).rjust(places + 1, "0")
-    text = digits if not places else f"{digits[:-places]}.{digits[-places:]}"
-    return "-" * (value < 0) + text

@@ -15,9 +15,9 @@ from icdgen.icd.model import CONFIGURATION, Icd
 from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
 
-PARTS = ("testee", "testee_json", "testee_answer", "testee_request")
-WIRE_PARTS = ("testee_ask", "testee_wire", "testee_can", "testee_logs", "testee_blocks", "testee_client", "testee_file")
-SHARED = (*(f"{part}{end}" for part in PARTS for end in (".h", ".c")), "testee_json_out.c")
+WIRE_PARTS = frozenset(  # what answers requests about the protocol
+    "testee_ask.c testee_blocks.c testee_can.c testee_client.c testee_file.c testee_logs.c testee_wire.c testee_wire.h".split()
+)
 TYPES = {"bool": "TESTEE_BOOL", "float": "TESTEE_FLOAT", "bytes": "TESTEE_BYTES", "int": "TESTEE_SIGNED"}
 
 
@@ -104,9 +104,11 @@ class CTesteeBackend:
 def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
     """The program: files that are the same for every ICD, the list of nodes, and one file a node."""
     wire = any(icd.protocol_of(node) for node in icd.nodes)
-    parts = (*SHARED, *(f"{part}.c" for part in WIRE_PARTS), "testee_wire.h") if wire else SHARED
-    for name in parts:
+    for name in ("testee.h", "testee.c"):
         yield PurePosixPath(name), render(f"{name}.j2", origin=origin(), wire=wire)
+    for name in render.runtime_files():
+        if wire or name not in WIRE_PARTS:
+            yield PurePosixPath(name), render.source(name)
     nodes = [node.name for node in icd.nodes]
     yield PurePosixPath("testee_nodes.c"), render("nodes.c.j2", origin=origin(), nodes=nodes)
     for node in describe(icd).nodes:

@@ -126,17 +126,17 @@ class RustTesteeBackend:
     templates = TEMPLATES / name
     runtime = RUNTIME / name
 
-    def __init__(self, crate: str = CRATE) -> None:
-        self.crate = crate
-
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """A package with one binary, ``testee``."""
-        common = {"origin": origin(), "version": __version__, "crate": self.crate}
+        common = {"origin": origin(), "version": __version__, "crate": CRATE}
         description = describe(icd)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         known = [facts.of(icd, node) for node in icd.nodes if icd.protocol_of(node)]
-        for name in ("main", "json", "protocol", "subject", *(WIRE if known else ())):
+        for name in ("main", "protocol"):
             yield PurePosixPath(f"src/{name}.rs"), render(f"{name}.rs.j2", wired=bool(known), **common)
+        for file in render.runtime_files():
+            if known or PurePosixPath(file).stem not in WIRE:
+                yield PurePosixPath(file), render.source(file)
         yield PurePosixPath("src/nodes/mod.rs"), render(
             "nodes.rs.j2",
             nodes=icd.nodes,
@@ -146,7 +146,7 @@ class RustTesteeBackend:
             **common,
         )
         for node in description.nodes:
-            entry = NodeEntry(self.crate, node, description.id_bits)
+            entry = NodeEntry(CRATE, node, description.id_bits)
             yield PurePosixPath(f"src/nodes/{node.name}.rs"), render("node.rs.j2", node=entry, **common)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:

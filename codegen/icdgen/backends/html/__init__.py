@@ -14,6 +14,7 @@ from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
     from icdgen.diff.inputs.side import Side
+    from icdgen.render import Renderer
 
 
 class HtmlBackend:
@@ -25,7 +26,7 @@ class HtmlBackend:
     def __init__(self, previous: Side | None = None) -> None:
         self.previous = previous
 
-    def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
+    def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Every page, and what the pages load."""
         from icdgen.backends.html.site import files
 

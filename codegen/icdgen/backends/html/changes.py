@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from icdgen.backends.html.atlas import Atlas
+from icdgen.backends.html.relations import Relations
 from icdgen.diff import report
 from icdgen.diff.change import ABOUT, LAYERS, Change
 from icdgen.diff.inputs.side import Side
@@ -16,9 +16,9 @@ _CODE = re.compile(r"`([^`]*)`")
 Words = list[tuple[str, bool]]  # parts of a sentence, and whether each is code
 
 
-def values(atlas: Atlas, previous: Side) -> dict[str, object]:
+def values(relations: Relations, previous: Side) -> dict[str, object]:
     """Values of the page."""
-    made = report.make(previous, Side("this release", atlas.icd))
+    made = report.make(previous, Side("this release", relations.icd))
     counts = made.counts()
     return {
         "old": previous.label,
@@ -29,7 +29,7 @@ def values(atlas: Atlas, previous: Side) -> dict[str, object]:
             (one.question, one.verdict, [coded(line) for line in one.general], len(one.frames), one.total)
             for one in made.directions
         ],
-        "sections": [_section(atlas, group) for group in groups(made.changes)],
+        "sections": [_section(relations, group) for group in groups(made.changes)],
     }
 
 
@@ -38,22 +38,22 @@ def coded(text: str) -> Words:
     return [(part, bool(number % 2)) for number, part in enumerate(_CODE.split(text)) if part]
 
 
-def _section(atlas: Atlas, group: Group) -> dict[str, object]:
+def _section(relations: Relations, group: Group) -> dict[str, object]:
     return {
         "title": group.title,
         "about": group.about if group.about == "node" else f"{group.about} · {group.node}",
-        "url": _url(atlas, group.owner.new),
+        "url": _url(relations, group.owner.new),
         "lines": [_line(change) for change in group.changes],
     }
 
 
-def _url(atlas: Atlas, thing: object) -> str:
+def _url(relations: Relations, thing: object) -> str:
     """Where it stands; empty for what is gone."""
     if isinstance(thing, Message):
-        return atlas.links.message(thing)
+        return relations.links.message(thing)
     if isinstance(thing, Enum):
-        return atlas.links.enum(thing)
-    return atlas.links.node(thing.name) if isinstance(thing, Node) else ""
+        return relations.links.enum(thing)
+    return relations.links.node(thing.name) if isinstance(thing, Node) else ""
 
 
 def _line(change: Change) -> dict[str, object]:

@@ -12,8 +12,8 @@ from itertools import groupby
 from icdgen import layout
 from icdgen.backends.html.labels import Label, fit
 from icdgen.backends.html.texts import clip
+from icdgen.describe.numbers import bit_range
 from icdgen.icd.model import Message, Node
-from icdgen.show.fields import bit_range
 
 WIDTH, LEFT, TOP = 1000, 64, 24
 _FEW = 3  # rows of one field that are drawn; of more only the first and the last

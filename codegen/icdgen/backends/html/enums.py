@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from icdgen.backends.html.atlas import Atlas
+from icdgen.backends.html.relations import Relations
+from icdgen.describe.errata import errata_of_enum
 from icdgen.icd.model import Enum
 
 
-def values(atlas: Atlas, enum: Enum) -> dict[str, object]:
+def values(relations: Relations, enum: Enum) -> dict[str, object]:
     """Values of the page."""
-    errata = dict.fromkeys(erratum for part in (enum, *enum.members) for erratum in part.errata)
     return {
         "enum": enum,
-        "node": atlas.icd.node(enum.node),
-        "members": [(member, atlas.links.anchor(enum, str(member.value))) for member in enum.members],
-        "users": atlas.users(enum),
-        "errata": list(errata),
+        "node": relations.icd.node(enum.node),
+        "members": [(member, relations.links.anchor(enum, str(member.value))) for member in enum.members],
+        "users": relations.users(enum),
+        "errata": errata_of_enum(enum),
     }

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-from icdgen.backends.html.atlas import Atlas
+from icdgen.backends.html.relations import Relations
 from icdgen.icd.model import Erratum
 
 _FEW = 6
 
 
-def values(atlas: Atlas) -> dict[str, object]:
+def values(relations: Relations) -> dict[str, object]:
     """Values of the page: of each node that has some, its errata and its notes in their order."""
     return {
         "groups": [
-            (node, [[_entry(atlas, e) for e in node.errata if e.is_note == kind] for kind in (False, True)])
-            for node in atlas.icd.nodes
+            (node, [[_entry(relations, e) for e in node.errata if e.is_note == kind] for kind in (False, True)])
+            for node in relations.icd.nodes
             if node.errata
         ],
     }
 
 
-def _entry(atlas: Atlas, erratum: Erratum) -> dict[str, object]:
-    places = atlas.places_of(erratum)
+def _entry(relations: Relations, erratum: Erratum) -> dict[str, object]:
+    places = relations.places_of(erratum)
     return {"erratum": erratum, "places": places[:_FEW], "more": places[_FEW:]}
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 
 from icdgen.backends.html import texts
-from icdgen.backends.html.atlas import Atlas, document
 from icdgen.backends.html.links import CHANGES, ERRATA, UNITS
+from icdgen.backends.html.relations import Relations, document
 
 
-def text(atlas: Atlas, compared: bool) -> str:
+def text(relations: Relations, compared: bool) -> str:
     """Nodes, then every message with ids, length and the link to its page."""
-    icd, links = atlas.icd, atlas.links
+    icd, links = relations.icd, relations.links
     lines = ["# Interface control documents", ""]
     lines += [
         f"> {_line(', '.join(node.title for node in icd.nodes))}: telecommands, telemetry and enumerations, bit by bit.",

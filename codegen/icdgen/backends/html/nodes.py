@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from icdgen.backends.html import texts
-from icdgen.backends.html.atlas import Atlas, Place, document, manual
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Message, Node
+from icdgen.backends.html.relations import Place, Relations, document, manual
+from icdgen.describe.errata import errata_of_message
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Erratum, Loggable, Message, Node
 
 _KINDS = {TELECOMMAND: "Telecommands", TELEMETRY: "Telemetry", CONFIGURATION: "Configuration"}
 _CONFIDENCE = ("certain", "likely", "open")
 
 
-def brief(atlas: Atlas, node: Node) -> dict[str, object]:
+def brief(relations: Relations, node: Node) -> dict[str, object]:
     """What every page says about a node."""
-    return {"name": node.name, "title": texts.clip(node.title, 80), "url": atlas.links.node(node.name)}
+    return {"name": node.name, "title": texts.clip(node.title, 80), "url": relations.links.node(node.name)}
 
 
-def home(atlas: Atlas) -> dict[str, object]:
+def home(relations: Relations) -> dict[str, object]:
     """Values of the home page."""
-    icd = atlas.icd
+    icd = relations.icd
     messages = [message for node in icd.nodes for message in node.messages]
     errata = [erratum for node in icd.nodes for erratum in node.errata if not erratum.is_note]
     notes = sum(erratum.is_note for node in icd.nodes for erratum in node.errata)
@@ -32,20 +33,20 @@ def home(atlas: Atlas) -> dict[str, object]:
     example = next((m for m in messages if m.telemetry_id is not None and any(f.scale for f in m.fields)), None)
     return {
         "totals": totals,
-        "cards": [_card(atlas, node) for node in icd.nodes],
+        "cards": [_card(relations, node) for node in icd.nodes],
         "confidence": [(level, sum(e.confidence == level for e in errata)) for level in _CONFIDENCE],
         "documents": list(dict.fromkeys(manual(node) for node in icd.nodes if node.document)),
-        "example": atlas.place(example) if example else None,
+        "example": relations.place(example) if example else None,
     }
 
 
-def _card(atlas: Atlas, node: Node) -> dict[str, object]:
+def _card(relations: Relations, node: Node) -> dict[str, object]:
     return {
-        **brief(atlas, node),
+        **brief(relations, node),
         "summary": node.summary,
         "document": document(node),
         "facts": _facts(node),
-        "includes": [atlas.icd.node(name).title for name in node.includes],
+        "includes": [relations.icd.node(name).title for name in node.includes],
         "counts": [
             (sum(m.kind == kind for m in node.messages), title.lower() if kind != CONFIGURATION else "configuration")
             for kind, title in _KINDS.items()
@@ -67,10 +68,10 @@ def _facts(node: Node) -> list[tuple[str, str]]:
     return facts
 
 
-def values(atlas: Atlas, node: Node) -> dict[str, object]:
+def values(relations: Relations, node: Node) -> dict[str, object]:
     """Values of a node's page, and of the page that holds all its messages."""
-    spoken = sorted(atlas.icd.messages_of(node), key=lambda m: m.node != node.name)
-    rows = [_row(atlas, node, message) for message in spoken]
+    spoken = sorted(relations.icd.messages_of(node), key=lambda m: m.node != node.name)
+    rows = [_row(relations, node, message) for message in spoken]
     return {
         "node": node,
         "document": document(node),
@@ -79,14 +80,16 @@ def values(atlas: Atlas, node: Node) -> dict[str, object]:
         "kinds": [
             (kind, title, count) for kind, title in _KINDS.items() if (count := sum(m.kind == kind for m in spoken))
         ],
-        "groups": sorted({row["group"] for row in rows if row["group"]}),
-        "loggable": [_loggable(atlas, node, row) for row in node.loggable],
-        "enums": [(Place(enum.name, atlas.links.enum(enum)), len(enum.members), enum.summary) for enum in node.enums],
-        "included": [Place(one.title, atlas.links.node(one.name)) for one in atlas.icd.included(node)],
-        "speakers": [
-            Place(one.title, atlas.links.node(one.name)) for one in atlas.speakers[node.name] if one is not node
+        "groups": sorted({str(row["group"]) for row in rows if row["group"]}),
+        "loggable": [_loggable(relations, node, row) for row in node.loggable],
+        "enums": [
+            (Place(enum.name, relations.links.enum(enum)), len(enum.members), enum.summary) for enum in node.enums
         ],
-        "printed": atlas.links.printed(node.name),
+        "included": [Place(one.title, relations.links.node(one.name)) for one in relations.icd.included(node)],
+        "speakers": [
+            Place(one.title, relations.links.node(one.name)) for one in relations.speakers[node.name] if one is not node
+        ],
+        "printed": relations.links.printed(node.name),
         "errata_count": sum(not erratum.is_note for erratum in node.errata),
         "notes_count": sum(erratum.is_note for erratum in node.errata),
         "own": len(node.messages),
@@ -98,13 +101,13 @@ def _numbering(node: Node) -> str:
     return f"bit 0 is the {'least' if node.bit_order == 'lsb0' else 'most'} significant"
 
 
-def _row(atlas: Atlas, node: Node, message: Message) -> dict[str, object]:
+def _row(relations: Relations, node: Node, message: Message) -> dict[str, object]:
     own = message.node == node.name
     ids = texts.ids(message)
-    mask = [row.bit for owner, row in atlas.logged.get((message.node, message.name), []) if owner is node]
+    mask = [row.bit for owner, row in relations.logged.get((message.node, message.name), []) if owner is node]
     return {
         "message": message,
-        "url": atlas.links.message(message),
+        "url": relations.links.message(message),
         "ids": ids,
         "anchors": [
             f"{'telemetry' if way == 'get' or message.kind == TELEMETRY else 'telecommand'}-{id}" for way, id in ids
@@ -114,14 +117,16 @@ def _row(atlas: Atlas, node: Node, message: Message) -> dict[str, object]:
         "length": message.length,
         "fields": len(message.fields),
         "mask": mask,
-        "of": "" if own else atlas.icd.node(message.node).title,
-        "errata": len(atlas.about(message)),
+        "of": "" if own else relations.icd.node(message.node).title,
+        "errata": len(errata_of_message(message)),
     }
 
 
-def _loggable(atlas: Atlas, node: Node, row) -> tuple[int, int, Place | None, str, tuple]:
-    found = next((m for m in atlas.icd.messages_of(node) if m.telemetry_id == row.id), None)
-    return row.bit, row.id, atlas.place(found) if found else None, row.name, row.errata
+def _loggable(
+    relations: Relations, node: Node, row: Loggable
+) -> tuple[int, int, Place | None, str, tuple[Erratum, ...]]:
+    found = next((m for m in relations.icd.messages_of(node) if m.telemetry_id == row.id), None)
+    return row.bit, row.id, relations.place(found) if found else None, row.name, row.errata
 
 
 def mask_of(bit: int) -> int:

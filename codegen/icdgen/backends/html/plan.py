@@ -5,13 +5,10 @@ Integers that a JavaScript number would not hold exactly are texts; the codec ta
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 from icdgen import layout
-from icdgen.icd.exact import terms
-from icdgen.icd.model import Enum, Field, Limits, Message, Node
-
-_EXACT = 1 << 53
+from icdgen.describe.bounds import bounds
+from icdgen.describe.steps import EXACT_DOUBLE, steps
+from icdgen.icd.model import Enum, Field, Message, Node
 
 
 def message_plan(message: Message, node: Node) -> dict[str, object]:
@@ -30,7 +27,7 @@ def enum_plan(enum: Enum) -> list[list[object]]:
 
 def integer(value: int) -> int | str:
     """The number, as text where a double would not hold it."""
-    return value if -_EXACT < value < _EXACT else str(value)
+    return value if abs(value) < EXACT_DOUBLE else str(value)
 
 
 def _field(field: Field, node: Node) -> dict[str, object]:
@@ -39,8 +36,9 @@ def _field(field: Field, node: Node) -> dict[str, object]:
         plan["first"] = field.at // 8
     else:
         plan["pieces"] = [[p.byte, p.shift, p.bits, p.at] for p in layout.pieces(field, node)]
-    if field.scale is not None:
-        plan["scale"] = [integer(term) for term in terms(field.scale)]
+    scaled = steps(field)
+    if scaled is not None:
+        plan["scale"] = [integer(term) for term in scaled.terms]
     if field.unit is not None:
         plan["unit"] = field.unit.symbol
     if field.enum is not None:
@@ -49,12 +47,7 @@ def _field(field: Field, node: Node) -> dict[str, object]:
         plan["const"] = integer(field.const)
     if field.special:
         plan["special"] = [[integer(one.value), one.meaning] for one in field.special]
-    if field.limits is not None:
-        plan["limits"] = _limits(field.limits)
+    limits = bounds(field.limits)
+    if limits:  # numerator and denominator of each
+        plan["limits"] = {one.key: [integer(one.value.numerator), integer(one.value.denominator)] for one in limits}
     return plan
-
-
-def _limits(limits: Limits) -> dict[str, list[int | str]]:
-    """Numerator and denominator of each bound."""
-    bounds: dict[str, Fraction | None] = {key: getattr(limits, key) for key in ("min", "max", "above", "below")}
-    return {key: [integer(b.numerator), integer(b.denominator)] for key, b in bounds.items() if b is not None}

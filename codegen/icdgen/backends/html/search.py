@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator
 
 from icdgen.backends.html import texts
-from icdgen.backends.html.atlas import Atlas
+from icdgen.backends.html.relations import Relations
 from icdgen.icd.model import Message
 
 _MOST = 300  # characters of a name that is searched
@@ -14,9 +14,9 @@ _MOST = 300  # characters of a name that is searched
 Entry = tuple[str, str, str, str, str]  # kind, title, context, further words, url
 
 
-def entries(atlas: Atlas) -> Iterator[Entry]:
+def entries(relations: Relations) -> Iterator[Entry]:
     """Nodes, messages, enumerations, units and errata, then fields and members."""
-    icd, links = atlas.icd, atlas.links
+    icd, links = relations.icd, relations.links
     for node in icd.nodes:
         yield "node", node.title, node.summary, node.name, links.node(node.name)
     for node in icd.nodes:
@@ -24,7 +24,7 @@ def entries(atlas: Atlas) -> Iterator[Entry]:
             yield "message", message.name, _about(node.title, message), _numbers(message), links.message(message)
         for enum in node.enums:
             yield "enumeration", enum.name, node.title, "", links.enum(enum)
-    for unit, _ in atlas.units.values():
+    for unit, _ in relations.units.values():
         yield "unit", unit.symbol, unit.quantity, unit.identifier, links.unit(unit)
     for node in icd.nodes:
         for message in node.messages:
@@ -39,9 +39,9 @@ def entries(atlas: Atlas) -> Iterator[Entry]:
             yield erratum.label.lower(), f"{erratum.id} {erratum.title}", node.title, "", links.erratum(erratum)
 
 
-def script(atlas: Atlas) -> str:
+def script(relations: Relations) -> str:
     """The index as a script, since a page opened from a folder may not fetch anything else."""
-    rows = [[texts.clip(part, _MOST) for part in entry[:4]] + [entry[4]] for entry in entries(atlas)]
+    rows = [[texts.clip(part, _MOST) for part in entry[:4]] + [entry[4]] for entry in entries(relations)]
     lines = ",\n".join(json.dumps(row, separators=(",", ":")) for row in rows)
     return f'"use strict";\nglobalThis.icdgenSearchIndex = [\n{lines}\n];\n'
 

@@ -9,24 +9,25 @@ from typing import TYPE_CHECKING
 
 from icdgen import __version__, show
 from icdgen.backends.html import drawing, enums, errata, fields, llms, messages, nodes, search, units
-from icdgen.backends.html.atlas import Atlas
 from icdgen.backends.html.links import CHANGES, ERRATA, HOME, UNITS
+from icdgen.backends.html.relations import Relations
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
     from icdgen.diff.inputs.side import Side
+    from icdgen.render import Renderer
 
 # Written by hand; the pages load them.
 _LOADED = ("style.css", "print.css", "theme.js", "site.js", "codec.js", "frames.js", "try.js", "icon.svg")
 
 
-def files(icd: Icd, render, previous: Side | None = None) -> Iterator[tuple[PurePosixPath, str]]:
+def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[tuple[PurePosixPath, str]]:
     """Path and text of each file; ``previous`` is an older release that ``changes.html`` compares with."""
-    atlas = Atlas(icd)
+    relations = Relations(icd)
     compared = previous is not None
     common = {
         "version": __version__,
-        "nodes": [nodes.brief(atlas, node) for node in icd.nodes],
+        "nodes": [nodes.brief(relations, node) for node in icd.nodes],
         "compared": compared,
         "changed": errata.changed,
         "hatch": drawing.hatch,
@@ -39,25 +40,25 @@ def files(icd: Icd, render, previous: Side | None = None) -> Iterator[tuple[Pure
         root = "../" * path.count("/")
         return PurePosixPath(path), render(template, root=root, path=path, **common, **values)
 
-    yield page(HOME, "home.html.j2", **nodes.home(atlas))
-    yield page(ERRATA, "errata.html.j2", **errata.values(atlas))
-    yield page(UNITS, "units.html.j2", **units.values(atlas))
+    yield page(HOME, "home.html.j2", **nodes.home(relations))
+    yield page(ERRATA, "errata.html.j2", **errata.values(relations))
+    yield page(UNITS, "units.html.j2", **units.values(relations))
     if previous is not None:
         from icdgen.backends.html import changes
 
-        yield page(CHANGES, "changes.html.j2", **changes.values(atlas, previous))
+        yield page(CHANGES, "changes.html.j2", **changes.values(relations, previous))
     for node in icd.nodes:
-        yield page(atlas.links.node(node.name), "node.html.j2", **nodes.values(atlas, node))
-        shown = [messages.values(atlas, node, message) for message in node.messages]
+        yield page(relations.links.node(node.name), "node.html.j2", **nodes.values(relations, node))
+        shown = [messages.values(relations, node, message) for message in node.messages]
         for before, one, after in zip([None, *shown], shown, [*shown[1:], None], strict=False):
             yield page(one["url"], "message.html.j2", before=before, after=after, **one)
-        yield page(atlas.links.printed(node.name), "print.html.j2", shown=shown, **nodes.values(atlas, node))
+        yield page(relations.links.printed(node.name), "print.html.j2", shown=shown, **nodes.values(relations, node))
         for enum in node.enums:
-            yield page(atlas.links.enum(enum), "enum.html.j2", **enums.values(atlas, enum))
+            yield page(relations.links.enum(enum), "enum.html.j2", **enums.values(relations, enum))
     for name in _LOADED:
         yield PurePosixPath(name), render(name)
     most = max((len(m.fields) for node in icd.nodes for m in node.messages), default=0)
-    yield PurePosixPath("ties.css"), render("ties.css.j2", most=most)
-    yield PurePosixPath("search-index.js"), search.script(atlas)
+    yield PurePosixPath("highlight.css"), render("highlight.css.j2", most=most)
+    yield PurePosixPath("search-index.js"), search.script(relations)
     yield PurePosixPath("icd.json"), json.dumps(show.to_json(icd), indent=1) + "\n"
-    yield PurePosixPath("llms.txt"), llms.text(atlas, compared)
+    yield PurePosixPath("llms.txt"), llms.text(relations, compared)

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from icdgen.describe.bounds import allowed_ends
+from icdgen.describe.numbers import exact_text, factor_text
 from icdgen.icd.model import CONFIGURATION, Field, Message
-from icdgen.show.fields import bounds, factor_text
-from icdgen.values.numbers import exact_text
 
 MINUS = "\N{MINUS SIGN}"
 
 
 def number(value: Fraction | int) -> str:
     """An exact number, with a real minus sign."""
-    return exact_text(Fraction(value)).replace("-", MINUS)
+    return exact_text(value).replace("-", MINUS)
 
 
 def factor(value: Fraction) -> str:
@@ -37,7 +37,7 @@ def physical_range(field: Field) -> str:
     """Physical values from the smallest to the largest, as far as type and limits tell; empty where they are the raw ones."""
     if field.type in ("uint", "int") and not (field.scale or field.limits or field.unit):
         return ""
-    return span(*("" if bound is None else number(bound) for bound in bounds(field)))
+    return span(*("" if bound is None else number(bound) for bound in allowed_ends(field)))
 
 
 def type_name(field: Field) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 
 from icdgen.backends.html import texts
-from icdgen.backends.html.atlas import Atlas, Place
+from icdgen.backends.html.relations import Place, Relations
 
 _FEW = 8
 _TYPES = {
@@ -18,15 +18,15 @@ _TYPES = {
 }
 
 
-def values(atlas: Atlas) -> dict[str, object]:
+def values(relations: Relations) -> dict[str, object]:
     """Values of the page: units in use by quantity, types with their number of fields."""
     quantities: dict[str, list[dict[str, object]]] = defaultdict(list)
-    for unit, uses in atlas.units.values():
-        places = [Place(f"{m.name}: {f.name}", atlas.links.field(m, f)) for m, f in uses]
+    for unit, uses in relations.units.values():
+        places = [Place(f"{m.name}: {f.name}", relations.links.field(m, f)) for m, f in uses]
         quantities[unit.quantity].append({"unit": unit, "uses": places[:_FEW], "more": places[_FEW:]})
     counts: dict[str, int] = defaultdict(int)
     widths: dict[str, set[int]] = defaultdict(set)
-    for node in atlas.icd.nodes:
+    for node in relations.icd.nodes:
         for message in node.messages:
             for field in message.fields:
                 counts[field.type] += 1
@@ -34,14 +34,14 @@ def values(atlas: Atlas) -> dict[str, object]:
     return {
         "quantities": sorted(quantities.items()),
         "types": [(name, text, counts[name], _widths(name, widths[name])) for name, text in _TYPES.items()],
-        "numberings": _numberings(atlas),
+        "numberings": _numberings(relations),
     }
 
 
-def _numberings(atlas: Atlas) -> list[tuple[str, str, str]]:
+def _numberings(relations: Relations) -> list[tuple[str, str, str]]:
     """Titles of the nodes of each combination of byte order and bit numbering."""
     found: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for node in atlas.icd.nodes:
+    for node in relations.icd.nodes:
         found[f"{node.byte_order}-endian", node.bit_order].append(node.title)
     return [("all nodes" if len(found) == 1 else ", ".join(titles), *order) for order, titles in found.items()]
 

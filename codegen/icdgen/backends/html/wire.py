@@ -5,11 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from icdgen.backends.html.texts import count
 from icdgen.icd.model import Message
 from icdgen.protocol import can, i2c, uart
+from icdgen.protocol.errors import TooLongError
 from icdgen.protocol.facts import Facts, Unsupported
 
 _SHOWN = 24  # data bytes that are written out
@@ -41,14 +42,14 @@ class Speaker(NamedTuple):
     """A node that speaks a message: what code is made from, and the section of the ICD that it is read from."""
 
     facts: Facts
-    section: dict
+    section: dict[str, Any]
 
 
 class Wire(NamedTuple):
     """How a message travels: as the node that declares it says, with the checksums of all nodes that speak it."""
 
     facts: Facts
-    section: dict
+    section: dict[str, Any]
     checked: list[Speaker]
 
 
@@ -139,7 +140,7 @@ def _framed(facts: Facts, id: int, data: bytes, checked: Speaker | None = None) 
     return [*chunks, Chunk("frame", _hex(line[ends[-1] :]), "end of message")]
 
 
-def _uart_note(section: dict, facts: Facts) -> str:
+def _uart_note(section: dict[str, Any], facts: Facts) -> str:
     parts = [f"{section['baud_rate']:,} baud"] if "baud_rate" in section else []
     if {"data_bits", "parity", "stop_bits"} <= section.keys():
         parity = section["parity"]
@@ -210,7 +211,7 @@ def _packets(wire: Wire, message: can.Message, label: str) -> Iterator[Line]:
     assert form is not None
     try:
         packets = can.split(wire.facts, message)
-    except (can.TooLong, Unsupported):
+    except (TooLongError, Unsupported):
         return
     if len(packets) == 1 and len(message.data) <= form.data_bytes:
         yield Line(label, [_identifier(wire, packets[0].id), *_data(packets[0].data)])

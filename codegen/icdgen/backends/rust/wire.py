@@ -5,14 +5,15 @@ from __future__ import annotations
 import textwrap
 from typing import NamedTuple
 
+from icdgen.backends.rust.facts import struct
+from icdgen.backends.rust.file_transfer import files
 from icdgen.backends.rust.literals import Optional, Part, Raw, Rows, Struct, flat, literal
-from icdgen.backends.rust.text import WIDTH, doc, mask, prose
-from icdgen.backends.rust.transfer import files, operation
+from icdgen.backends.rust.text import WIDTH, doc, prose
 from icdgen.backends.rust.wire_steps import place, step
 from icdgen.describe.comments import sentence
 from icdgen.icd.model import CONFIGURATION, Icd, Message
 from icdgen.protocol import facts
-from icdgen.protocol.facts import Crc, Facts
+from icdgen.protocol.facts import Facts
 
 REASONS = {
     "none": "NoError",
@@ -131,23 +132,27 @@ def _link(known: Facts) -> Struct:
             Part("telemetry_ids", _ids(known.telemetry_ids)),
             Part("telecommands", _forms(known.telecommands)),
             Part("telemetry", _forms(known.telemetry)),
-            Part("client", _client(known)),
+            Part("client", struct(known, known.client, "client")),
             Part("errors", _errors(known)),
-            Part("framing", Optional(_framing(known))),
-            Part("acknowledge", Optional(_acknowledge(known)), "uart.acknowledge.data"),
+            Part("framing", Optional(struct(known, known.framing, "uart.framing"))),
+            Part(
+                "acknowledge", Optional(struct(known, known.acknowledge, "uart.acknowledge")), "uart.acknowledge.data"
+            ),
             Part("i2c_address", Optional(known.i2c_address)),
             Part("polled", Optional(_polled(known))),
             Part("can", Optional(_can(known))),
             Part("checksum", Optional(_checksum(known))),
-            Part("crc16", Optional(_crc(known.crc16))),
+            Part("crc16", Optional(struct(known, known.crc16, "crc16"))),
             Part("mask", Optional(_mask(known))),
-            Part("log_file", Optional(_log_file(known))),
-            Part("log_message", Optional(_log_message(known)), "unsolicited_log.framed"),
+            Part("log_file", Optional(struct(known, known.log_file, "telemetry_log"))),
+            Part(
+                "log_message", Optional(struct(known, known.log_message, "unsolicited_log")), "unsolicited_log.framed"
+            ),
             Part("time", Optional(_time(known))),
             Part("index", Optional(_index(known))),
             Part("files", Optional(files(known))),
-            Part("program_copy", Optional(operation(known, "program_copy"))),
-            Part("program_information", Optional(operation(known, "program_information"))),
+            Part("program_copy", Optional(struct(known, known.program_copy, "program_copy"))),
+            Part("program_information", Optional(struct(known, known.program_information, "program_information"))),
             Part("identification", Optional(step(known, known.identification, "telemetry"))),
             Part("boot_ms", Optional(known.boot_ms)),
         ),
@@ -171,45 +176,8 @@ def _forms(messages: dict[int, Message]) -> Rows:
     )
 
 
-def _client(known: Facts) -> Struct:
-    given = known.client
-    return Struct(
-        "Settings",
-        (
-            Part("reply_timeout_ms", given.reply_timeout, "client.reply_timeout_ms"),
-            Part("retries", given.retries, "client.retries"),
-            Part("poll_interval_ms", given.poll_interval, "client.poll_interval_ms"),
-            Part("poll_timeout_ms", given.poll_timeout, "client.poll_timeout_ms"),
-        ),
-    )
-
-
 def _errors(known: Facts) -> Rows:
     return Rows((code, Raw(f"Reason::{REASONS[key]}")) for key, code in known.errors.items() if key in REASONS)
-
-
-def _framing(known: Facts) -> Struct | None:
-    form = known.framing
-    if form is None:
-        return None
-    return Struct(
-        "Framing",
-        (
-            Part("escape", Raw(f"0x{form.escape:02x}")),
-            Part("start", Raw(f"0x{form.start:02x}")),
-            Part("end", Raw(f"0x{form.end:02x}")),
-            Part("escaped", Raw(f"0x{form.escaped:02x}")),
-            Part("escapes_id", form.escapes_id, "uart.framing.escaped_in"),
-            Part("ignores_other", form.ignores_other, "uart.framing.other"),
-        ),
-    )
-
-
-def _acknowledge(known: Facts) -> Struct | None:
-    form = known.acknowledge
-    if form is None:
-        return None
-    return flat("Acknowledge", length=form.length, id_at=form.id_at, error_at=form.error_at)
 
 
 def _polled(known: Facts) -> Struct | None:
@@ -226,18 +194,17 @@ def _can(known: Facts) -> Struct | None:
     if form is None or not {"type", "channel", "source", "destination"} <= set(form.parts):
         return None
     parts = {role: flat("CanPart", bits=part.bits, shift=part.shift) for role, part in form.parts.items()}
-    return Struct(
-        "Can",
-        (
-            Part("kind", parts["type"]),
-            Part("id", parts["channel"]),
-            Part("source", parts["source"]),
-            Part("destination", parts["destination"]),
-            Part("node_address", form.node_address, "can.node_address"),
-            Part("data_bytes", form.data_bytes, "can.max_data_bytes"),
-            Part("types", _can_types(form.types)),
-            Part("extended", Optional(_extended(form))),
-        ),
+    types = _can_types(form.extended_types)
+    return struct(
+        known,
+        form,
+        "can",
+        Part("kind", parts["type"]),
+        Part("id", parts["channel"]),
+        Part("source", parts["source"]),
+        Part("destination", parts["destination"]),
+        Part("types", _can_types(form.types)),
+        Part("extended", Optional(struct(known, form.extended, "can.extended", Part("types", types)))),
     )
 
 
@@ -246,60 +213,9 @@ def _can_types(types: dict[str, int]) -> Struct:
     return Struct("CanTypes", tuple(Part(name, Optional(types.get(name))) for name in names))
 
 
-def _extended(can: facts.Can) -> Struct | None:
-    form = can.extended
-    if form is None:
-        return None
-    return Struct(
-        "Extended",
-        (
-            Part("types", _can_types(can.extended_types)),
-            Part("data_bytes", form.data_bytes, "can.extended.data_bytes"),
-            Part("left_at", form.left_at, "can.extended.packets_left_byte"),
-            Part("left_in_last", form.left_in_last, "can.extended.packets_left_in_last"),
-            Part("bytes", form.bytes, "can.extended.max_bytes"),
-            Part("fill", form.fill, "can.extended.fill"),
-            Part("packet_timeout_ms", form.packet_timeout, "can.extended.packet_timeout_ms"),
-        ),
-    )
-
-
 def _checksum(known: Facts) -> Struct | None:
     form = known.checksum
-    if form is None:
-        return None
-    return Struct(
-        "Checksum",
-        (
-            Part("crc", _crc(form.crc)),
-            Part("covers_id", form.covers_id, "crc8.covers_id"),
-            Part("telecommands", _buses(form.telecommand_buses), "crc8.telecommand"),
-            Part("telemetry", _buses(form.telemetry_buses), "crc8.telemetry"),
-            Part("bytes", form.bytes),
-        ),
-    )
-
-
-def _buses(buses: tuple[str, ...]) -> Struct:
-    return flat("PerBus", **{bus: bus in buses for bus in ("uart", "i2c", "can")})
-
-
-def _crc(form: Crc | None) -> Struct | None:
-    if form is None:
-        return None
-    bits = -(-form.width // 4) * 4
-    return Struct(
-        "CrcForm",
-        (
-            Part("width", form.width),
-            Part("polynomial", Raw(mask(form.polynomial, bits))),
-            Part("init", Raw(mask(form.init, bits))),
-            Part("reflect_in", form.reflect_in),
-            Part("reflect_out", form.reflect_out),
-            Part("xor_out", Raw(mask(form.xor_out, bits))),
-            Part("empty", Optional(None if form.empty is None else Raw(mask(form.empty, bits)))),
-        ),
-    )
+    return form and struct(known, form, "crc8", Part("crc", struct(known, form.crc, "crc8")))
 
 
 def _mask(known: Facts) -> Struct | None:
@@ -311,45 +227,7 @@ def _mask(known: Facts) -> Struct | None:
         for bit, row in sorted(form.bits.items())
         if row.id is not None
     )
-    return Struct(
-        "LogMask",
-        (
-            Part("bytes", form.size),
-            Part("msb0", form.msb0, "log_mask.frame_order"),
-            Part("slot_bytes", form.slot_bytes, "log_mask.short_frames"),
-            Part("fill", form.fill, "log_mask.fill"),
-            Part("bits", bits, "log_mask.unassigned_bits"),
-        ),
-    )
-
-
-def span(at: int, size: int) -> Struct:
-    """Some bytes."""
-    return flat("Span", at=at, bytes=size)
-
-
-def _log_file(known: Facts) -> Struct | None:
-    form = known.log_file
-    if form is None:
-        return None
-    return Struct(
-        "LogFile",
-        (
-            Part("mask_at", form.mask_at),
-            Part("header_bytes", form.header_bytes),
-            Part("seconds", span(*form.seconds)),
-            Part("milliseconds", span(*form.milliseconds)),
-            Part("frames_at", form.frames_at),
-            Part("file_type", Optional(form.file_type)),
-        ),
-    )
-
-
-def _log_message(known: Facts) -> Struct | None:
-    form = known.log_message
-    if form is None:
-        return None
-    return flat("LogMessage", id=form.id, mask_at=form.mask_at, frames_at=form.frames_at)
+    return struct(known, form, "log_mask", Part("bits", bits, "log_mask.unassigned_bits"))
 
 
 def _time(known: Facts) -> Struct | None:
@@ -368,7 +246,7 @@ def _index(known: Facts) -> Struct | None:
     form = known.index
     if form is None or not set(names.values()) <= set(form.fields):
         return None
-    spans = (Part(name, span(form.fields[role].at, form.fields[role].bytes)) for name, role in names.items())
-    return Struct(
-        "IndexForm", (Part("entry_bytes", form.entry_bytes), *spans, Part("file_type", Optional(form.file_type)))
+    spans = (
+        Part(name, flat("Span", at=form.fields[role].at, bytes=form.fields[role].bytes)) for name, role in names.items()
     )
+    return struct(known, form, "index_file", *spans)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from icdgen import codec, layout
 from icdgen.backends.rust.literals import Optional, Part, Raw, Rows, Struct, flat
+from icdgen.describe.fresh import fresh_values
 from icdgen.icd.model import Field, Message
 from icdgen.naming import camel
 from icdgen.protocol.facts import Facts, Step
@@ -64,7 +65,4 @@ def step(known: Facts, given: Step | None, direction: str) -> Struct | None:
 
 def fresh(known: Facts, message: Message) -> bytes:
     """The frame of a fresh message."""
-    raw: dict[str, int | bytes] = {
-        field.name: bytes(field.bits // 8) if field.type == "bytes" else field.const or 0 for field in message.fields
-    }
-    return codec.encode(known.node, message, raw)
+    return codec.encode(known.node, message, fresh_values(message))

@@ -45,7 +45,7 @@ def _is_called_otherwise(pair: Pair) -> bool:
 
 
 def _renamed(pair: Pair, ctx: Context) -> Iterator[Found]:
-    if not _is_called_otherwise(pair) or getattr(pair, "rehomed", False):
+    if not _is_called_otherwise(pair) or getattr(pair, "is_of_another_node", False):
         return
     renamed = ctx.generated.renamed(pair)
     if renamed:
@@ -95,7 +95,12 @@ def retyped(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 
 @rule("DIF308", "field")
 def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    if _is_called_otherwise(pair) or pair.owner.rehomed or pair.owner.revoiced or not may_rename(pair):
+    if (
+        _is_called_otherwise(pair)
+        or pair.owner.is_of_another_node
+        or pair.owner.has_another_vocabulary
+        or not may_rename(pair)
+    ):
         return
     renamed = ctx.generated.renamed(pair)
     if renamed:
@@ -114,7 +119,7 @@ def words_split_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
     renamed: Renamed = []
     for owner in (*pair.messages, *pair.enums):
         for one in (owner, *getattr(owner, "fields", ()), *getattr(owner, "members", ())):
-            if one.both and not _is_called_otherwise(one) and not owner.rehomed:
+            if one.both and not _is_called_otherwise(one) and not owner.is_of_another_node:
                 renamed += ctx.generated.renamed(one)
     if renamed:
         text = f"words are split in another way: {count(len(renamed), 'generated name')} of `{pair.new.name}` change"
@@ -130,7 +135,7 @@ def _vocabulary(pair: NodePair):
 
 @rule("DIF310", "message", "enum")
 def declared_elsewhere(pair: MessagePair | EnumPair, ctx: Context) -> Iterator[Found]:
-    if pair.rehomed:
+    if pair.is_of_another_node:
         old, new = pair.old_node.name, pair.new_node.name
         text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} is declared by `{new}`, was by `{old}`"
         yield Found(text, ("name",), old, new, lines(ctx.generated.renamed(pair)))

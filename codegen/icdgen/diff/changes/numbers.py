@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from icdgen.describe.bounds import KEYS, bounds
 from icdgen.diff.change import Found
 from icdgen.diff.context import Context
 from icdgen.diff.pairs import FieldPair
@@ -14,7 +15,6 @@ from icdgen.icd.formula import Scale
 from icdgen.icd.model import Field, Limits
 from icdgen.icd.rules.wording import quote
 
-BOUNDS = ("min", "max", "above", "below")
 _RAW = Scale(1)
 
 
@@ -87,10 +87,7 @@ def special_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 
 
 def _limits(field: Field) -> str:
-    bounds = field.limits or Limits()
-    signs = {"min": ">=", "above": ">", "max": "<=", "below": "<"}
-    found = ((key, getattr(bounds, key)) for key in ("min", "above", "max", "below"))
-    return " and ".join(f"{signs[key]} {number(value)}" for key, value in found if value is not None)
+    return " and ".join(f"{bound.kind.sign} {number(bound.value)}" for bound in bounds(field.limits))
 
 
 def is_wider(old: Limits | None, new: Limits | None) -> bool:
@@ -111,4 +108,4 @@ def limits_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     was, now = _limits(pair.old), _limits(pair.new)
     text = f"{quote(pair.new.name)} may be {now or 'anything'}, could be {was or 'anything'}"
     detail = "What was allowed still is." if is_wider(old, new) else "Values that were allowed no longer are."
-    yield Found(text, BOUNDS, was, now, (detail,))
+    yield Found(text, KEYS, was, now, (detail,))

@@ -43,7 +43,7 @@ def respelled(pair: Pair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
     if (old.name, old.identifier) == (new.name, new.identifier):
         return
-    if getattr(pair, "rehomed", False) or not ctx.generated.renamed(pair):
+    if getattr(pair, "is_of_another_node", False) or not ctx.generated.renamed(pair):
         was, now = (f"{side.name} ({side.identifier})" if side.identifier else side.name for side in (old, new))
         text = f"{quote(new.name)} is spelled otherwise, its generated names are the same"
         yield Found(text, ("name", "identifier"), was, now)

@@ -73,7 +73,7 @@ def _compare(frame: Message, here: Place) -> str:
     return f"compare with {quote(frame.name)} ({line_of(frame.source.at('name'), here)})"
 
 
-def _said(source: Map, key: str) -> str:
+def _quoted_value(source: Map, key: str) -> str:
     return quote(source[key]) if key in source else "absent"
 
 
@@ -85,7 +85,7 @@ def _differences(field: Field, twin: Field, frame: Message) -> Iterator[Fault]:
     if keys:
         key = keys[0]
         place = mine.at(key) if key in mine else mine.place
-        said = "; ".join(f"{k} {_said(mine, k)} here, {_said(other, k)} there" for k in keys)
+        said = "; ".join(f"{k} {_quoted_value(mine, k)} here, {_quoted_value(other, k)} there" for k in keys)
         there = f"{quote(twin.name)} in {quote(frame.name)} ({line_of(other.place, place)})"
         yield Fault(mine, place, f"{quote(field.name)} differs from {there}: {said}", "one of the two is wrong")
 

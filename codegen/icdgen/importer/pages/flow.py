@@ -6,6 +6,7 @@ import itertools
 import re
 from collections import Counter
 from dataclasses import dataclass, field
+from typing import Any
 
 from icdgen.importer import headings, labels
 from icdgen.importer.document import Box
@@ -13,7 +14,7 @@ from icdgen.importer.pages import columns, furniture
 from icdgen.importer.pages.bands import Band, is_key
 from icdgen.importer.pages.columns import Columns
 from icdgen.importer.pages.extract import Page
-from icdgen.importer.pages.lines import Line, lines, runs
+from icdgen.importer.pages.lines import Line, lines, runs, text_of
 from icdgen.importer.pages.rules import Region, joined, regions
 from icdgen.importer.profile import Profile
 from icdgen.importer.words import folded
@@ -50,6 +51,7 @@ class Mark:
     style: str
     number: str = ""
     strong: bool = False  # reads like a heading without a number
+    cells: list[tuple[float, str]] = field(default_factory=list)  # where its runs of words begin, and they
 
 
 Item = Piece | Mark
@@ -81,8 +83,8 @@ def items(pages: list[Page], profile: Profile) -> list[Item]:
 
 
 def _body(loose: dict[int, list[Line]]) -> Type:
-    sizes: Counter = Counter()
-    styles: Counter = Counter()
+    sizes: Counter[Any] = Counter()
+    styles: Counter[Any] = Counter()
     for found in loose.values():
         for line in found:
             sizes[round(line.size, 1)] += len(line.text)
@@ -162,7 +164,8 @@ class _Flow:
         if heading and self.stands_out(line) and len(line.text) < 120:
             kind, number, text = "heading", heading["number"], heading["text"]
         strong = kind == "text" and self.stands_out(line) and len(text) < 80 and not text.endswith((".", ":", ",", ";"))
-        return 1, Mark(kind, text, _box(page, [line]), line.size, line.style, number, strong)
+        cells = [(run[0].x0, text_of(run)) for run in runs(line, 0.9)]
+        return 1, Mark(kind, text, _box(page, [line]), line.size, line.style, number, strong, cells)
 
     def stands_out(self, line: Line) -> bool:
         return line.size > self.body.size + 0.6 or line.style != self.body.style

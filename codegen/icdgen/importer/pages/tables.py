@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from icdgen.importer import headings, labels
 from icdgen.importer.document import Block, Header, Heading, Row, Table, Text
-from icdgen.importer.pages import bands, columns
+from icdgen.importer.pages import bands, columns, guessed
 from icdgen.importer.pages.bands import Band
 from icdgen.importer.pages.flow import Item, Mark, Piece
 from icdgen.importer.pages.lines import Line, lines
@@ -148,7 +148,7 @@ class Builder:
         last, box = draft.table.boxes[-1], piece.box
         return abs((box.x1 - box.x0) - (last.x1 - last.x0)) < 8
 
-    def header_of(self, piece: Piece):
+    def header_of(self, piece: Piece) -> Header | None:
         for band in piece.bands[:3]:
             found = headings.match(band.texts(self.known), self.profile, loose=True)
             if found:
@@ -197,7 +197,7 @@ class Builder:
                 return Band(band.page, found[count].top if words else band.bottom, band.bottom, band.edges, words)
         return None
 
-    def lower_half(self, draft: Draft, texts: list[str]):
+    def lower_half(self, draft: Draft, texts: list[str]) -> Header | None:
         """The headings as a whole where a page break stands between their two lines."""
         header = draft.table.header
         assert header is not None
@@ -298,6 +298,7 @@ class Builder:
         for item in self.out:
             if isinstance(item, Draft) and item.loose:
                 self.cut(item)
+        self.out = _with_guessed(self.out)
         captions = [i for i, item in enumerate(self.out) if isinstance(item, Mark) and item.kind == "caption"]
         after = {i: self.table_from(i, 1) for i in captions}
         before = {i: self.table_from(i, -1) for i in captions}
@@ -312,7 +313,9 @@ class Builder:
         for index, item in enumerate(self.out):
             if isinstance(item, Draft):
                 if index in owner:
-                    self.name(item.table, self.out[owner[index]])
+                    caption = self.out[owner[index]]
+                    assert isinstance(caption, Mark)
+                    self.name(item.table, caption)
                 blocks.append(item.table)
             elif index not in used:
                 page, is_heading = item.box.page, item.kind == "heading" or item.strong
@@ -335,7 +338,7 @@ class Builder:
             position += step
         return None
 
-    def stands_above(self, captions: list[int], after: dict, before: dict) -> bool:
+    def stands_above(self, captions: list[int], after: dict[int, int | None], before: dict[int, int | None]) -> bool:
         """Whether captions stand above their tables in this document: by distance on the page, then by number."""
         nearer = 0
         for i in captions:
@@ -350,6 +353,7 @@ class Builder:
         if table is None:
             return 1000.0
         mark, draft = self.out[caption], self.out[table]
+        assert isinstance(mark, Mark) and isinstance(draft, Draft)
         box = draft.table.boxes[0 if step > 0 else -1]
         if box.page != mark.box.page:
             return 500.0
@@ -362,6 +366,30 @@ class Builder:
         table.number = int(re.split("[-.]", number)[-1]) if not number.isdigit() else int(number)
         table.caption = _CONTINUED.sub("", match["title"]).strip()
         table.page = min(mark.box.page, table.page or mark.box.page)
+
+
+def _with_guessed(out: list[Draft | Mark]) -> list[Draft | Mark]:
+    """Runs of lines that look like tables, though nobody knows their headings, made tables: they must not pass unseen."""
+    made: list[Draft | Mark] = []
+    marks: list[Mark] = []
+
+    def flush() -> None:
+        at = 0
+        for start, end, table in guessed.tables(marks):
+            made.extend(marks[at:start])
+            made.append(Draft(table))
+            at = end
+        made.extend(marks[at:])
+        marks.clear()
+
+    for item in out:
+        if isinstance(item, Mark):
+            marks.append(item)
+        else:
+            flush()
+            made.append(item)
+    flush()
+    return made
 
 
 def _bands(piece: Piece, edges: list[float]) -> list[Band]:

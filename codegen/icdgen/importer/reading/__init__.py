@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.errors import UserError
 from icdgen.importer.document import Document
 from icdgen.importer.profile import Profile
 
@@ -13,8 +14,12 @@ MAX_BYTES = 300_000_000
 Progress = Callable[[int, int, int], None]  # pages done, pages altogether, captions seen
 
 
-def read(path: Path, profile: Profile, progress: Progress | None = None, jobs: int | None = None) -> Document:
-    """The manual in ``path``. Raises `Findings` for a file from which nothing can be read."""
+def read(
+    path: Path, profile: Profile, progress: Progress | None = None, jobs: int | None = None,
+    pages: tuple[int, int] | None = None,
+) -> Document:  # fmt: skip
+    """The manual in ``path``. Raises `Findings` for a file from which nothing can be read, `UserError` for pages that it
+    does not have."""
     name = str(path)
     try:
         with open(path, "rb") as file:
@@ -29,9 +34,11 @@ def read(path: Path, profile: Profile, progress: Progress | None = None, jobs: i
     if b"%PDF-" in start[:1024]:
         from icdgen.importer.reading import pdf
 
-        return pdf.read(path, profile, progress, jobs)
+        return pdf.read(path, profile, progress, jobs, pages)
     if b"\0" in start or start[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
         raise _refused(name, "this is neither a PDF nor a text", "export the manual as PDF first")
+    if pages is not None:
+        raise UserError("a text has no pages", "leave --pages out")
     from icdgen.importer.reading import text
 
     return text.read(path, profile)

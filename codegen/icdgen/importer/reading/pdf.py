@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import os
 import re
 import signal
-from collections.abc import Iterator
+import zlib
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 from icdgen.diagnostics import Finding, Findings, Place
+from icdgen.errors import UserError
 from icdgen.importer.document import Document, Spot, Trouble
 from icdgen.importer.pages import flow, tables
 from icdgen.importer.pages.extract import Page, extract
@@ -19,17 +23,27 @@ from icdgen.importer.profile import Profile
 
 FEW = 12  # pages; below this, starting processes costs more than it saves
 MOST_PAGES = 5000
+MOST_CONTENTS = 6_000_000  # bytes of a page: a table has some ten thousand; drawings with more would take minutes
 _WORD = re.compile(r"[^\s]+")
 
 
-def read(path: Path, profile: Profile, progress=None, jobs: int | None = None) -> Document:
-    """The document of a PDF. Raises `Findings` where nothing can be read."""
+def read(
+    path: Path, profile: Profile, progress: Callable[[int, int, int], None] | None = None, jobs: int | None = None,
+    only: tuple[int, int] | None = None,
+) -> Document:  # fmt: skip
+    """The document of a PDF, or of the pages from one to another. Raises `Findings` where nothing can be read."""
     name = str(path)
     count, title = _open(path, name)
-    document = Document(name, pages=count, title=title)
+    wanted = range(count)
+    if only is not None:
+        wanted = range(only[0] - 1, min(only[1], count))
+        if not wanted:
+            raise UserError(f"the manual has {count} pages: none from {only[0]} to {only[1]}", "choose other --pages")
+    document = Document(name, pages=len(wanted), title=title)
+    count = len(wanted)
     pages = []
     seen = 0
-    for page in _pages(path, count, jobs):
+    for page in _pages(path, wanted, jobs):
         pages.append(page)
         if progress:
             seen += _captions(page, profile)
@@ -47,8 +61,6 @@ def _open(path: Path, name: str) -> tuple[int, str]:
         from pdfminer.pdfdocument import PDFEncryptionError, PDFPasswordIncorrect
         from pdfplumber.utils.exceptions import PdfminerException
     except ImportError:
-        from icdgen.errors import UserError
-
         raise UserError("reading a PDF needs pdfplumber", "pip install 'icdgen[import]'") from None
     logging.getLogger("pdfminer").setLevel(logging.CRITICAL)
     try:
@@ -77,21 +89,22 @@ def _refused(name: str, message: str, help: str) -> Findings:
     return Findings([Finding("IMP003", message, Place(name), help)])
 
 
-def _pages(path: Path, count: int, jobs: int | None) -> Iterator[Page]:
+def _pages(path: Path, wanted: range, jobs: int | None) -> Iterator[Page]:
+    count = len(wanted)
     jobs = min(jobs or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1, 8)
     if jobs <= 1 or count < FEW:
         _start_worker(path, ignore=False)
         try:
-            for number in range(count):
+            for number in wanted:
                 yield _work(number)
         finally:
             _end_worker()
         return
     with get_context().Pool(jobs, _start_worker, (path, True)) as pool:
-        yield from pool.imap(_work, range(count), chunksize=max(1, min(8, count // (4 * jobs))))
+        yield from pool.imap(_work, wanted, chunksize=max(1, min(8, count // (4 * jobs))))
 
 
-_open_file = None
+_open_file: Any = None
 
 
 def _start_worker(path: Path, ignore: bool) -> None:
@@ -113,13 +126,30 @@ def _end_worker() -> None:
 
 
 def _work(number: int) -> Page:
+    assert _open_file is not None
     page = _open_file.pages[number]
     try:
+        _weigh(page)
         return extract(page)
     except Exception as error:  # one broken page must not cost the others
         return Page(number + 1, 595.0, 842.0, failed=f"{type(error).__name__}: {error}"[:200])
     finally:
         page.close()
+
+
+def _weigh(page: Any) -> None:
+    """Raises `ValueError` for a page whose contents unpack to more than any page of text and tables needs."""
+    from pdfminer.pdftypes import stream_value
+
+    left = MOST_CONTENTS
+    for one in page.page_obj.contents:
+        raw = stream_value(one).rawdata or b""
+        unpacked = len(raw)
+        with contextlib.suppress(zlib.error):
+            unpacked = max(unpacked, len(zlib.decompressobj().decompress(raw, left + 1)))
+        left -= unpacked
+        if left < 0:
+            raise ValueError(f"its contents are more than {MOST_CONTENTS:,} bytes")
 
 
 def _look_over(pages: list[Page], document: Document, name: str) -> None:

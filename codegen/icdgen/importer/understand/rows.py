@@ -69,7 +69,7 @@ def _unread_columns(table: Table, header: Header, troubles: list[Trouble]) -> No
             troubles.append(
                 Trouble("IMP027", f"{table.title}: the column `{title}` has no role, its cells were left out: "
                         f"`{cells[0][:40]}`" + (f" and {len(cells) - 1} more" if cells[1:] else ""), table.spot,
-                        "give the heading a role in the profile, or name it under `ignored:`")
+                        f"`headings: {{{header.kind}: {{ignored: [{title}]}}}}` passes it over, or give it a role")
             )  # fmt: skip
 
 

@@ -23,7 +23,7 @@ impl LogMask {
     /// The slots of an entry, in order.
     pub fn selected<'a>(&'a self, mask: &'a [u8]) -> impl Iterator<Item = Slot> + 'a {
         let bits = (0..8).map(move |bit| if self.msb0 { 7 - bit } else { bit });
-        let all = head(mask, self.bytes).iter();
+        let all = head(mask, self.size).iter();
         let all = all.flat_map(move |byte| bits.clone().map(move |bit| (byte >> bit) & 1 == 1));
         (0..)
             .zip(all)
@@ -50,7 +50,7 @@ impl LogMask {
     }
 
     fn checked(&self, mask: &[u8]) -> Result<(), Error> {
-        let (expected, actual) = (self.bytes, mask.len());
+        let (expected, actual) = (self.size, mask.len());
         if expected == actual {
             Ok(())
         } else {
@@ -160,7 +160,7 @@ impl<const N: usize> Reader<N> {
     pub fn new(link: &'static Link) -> Result<Self, Error> {
         let form = link.log_file.as_ref().ok_or(Error::Unsupported)?;
         let layout = link.mask.as_ref().ok_or(Error::Unsupported)?;
-        let slots = layout.bytes.wrapping_mul(8).wrapping_mul(layout.slot_bytes);
+        let slots = layout.size.wrapping_mul(8).wrapping_mul(layout.slot_bytes);
         let expected = (form.frames_at + slots).max(form.header_bytes);
         if N < expected {
             let actual = N;
@@ -180,8 +180,7 @@ impl<const N: usize> Reader<N> {
     /// The mask; None if the header is incomplete.
     #[must_use]
     pub fn mask(&self) -> Option<&[u8]> {
-        self.entry_bytes
-            .map(|_| head(&self.mask, self.layout.bytes))
+        self.entry_bytes.map(|_| head(&self.mask, self.layout.size))
     }
 
     /// At the end of the file: bytes that belong to no whole entry.
@@ -216,7 +215,7 @@ impl<const N: usize> Reader<N> {
     /// Takes the header or an entry.
     fn part(&mut self, bytes: &[u8], on_entry: &mut dyn FnMut(Entry<'_>)) {
         if self.entry_bytes.is_none() {
-            let mask = part(bytes, self.form.mask_at, self.layout.bytes);
+            let mask = part(bytes, self.form.mask_at, self.layout.size);
             self.entry_bytes = Some(self.form.frames_at + self.layout.slots_bytes(mask));
             copy(&mut self.mask, mask);
             return;
@@ -226,7 +225,7 @@ impl<const N: usize> Reader<N> {
             seconds: read(self.form.seconds),
             milliseconds: read(self.form.milliseconds),
             layout: self.layout,
-            mask: head(&self.mask, self.layout.bytes),
+            mask: head(&self.mask, self.layout.size),
             slots: bytes.get(self.form.frames_at..).unwrap_or(&[]),
         });
     }
@@ -338,7 +337,7 @@ impl<'a> Message<'a> {
             let expected = form.frames_at;
             return Err(Error::Length { expected, actual });
         }
-        let mask = part(message, form.mask_at, layout.bytes);
+        let mask = part(message, form.mask_at, layout.size);
         let expected = form.frames_at + layout.slots_bytes(mask);
         if actual != expected {
             return Err(Error::Length { expected, actual });

@@ -300,7 +300,7 @@ class Operation(NamedTuple):
     timeout: int
     """How long it may take, in milliseconds."""
     programs: tuple[int, ...] = ()
-    """The programs that it may be asked for, if not all."""
+    """The programs that it may be asked for; none: all."""
 
 
 class Link(NamedTuple):

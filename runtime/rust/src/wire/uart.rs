@@ -271,7 +271,7 @@ pub fn kind(link: &Link, message: &[u8]) -> Kind {
         if id == form.id {
             let mask = message.get(form.mask_at..).unwrap_or(&[]);
             let slots = layout
-                .selected(super::bits::head(mask, layout.bytes))
+                .selected(super::bits::head(mask, layout.size))
                 .count();
             let whole = form.frames_at + slots * layout.slot_bytes;
             return if message.len() == whole {

@@ -9,6 +9,7 @@ from icdgen import codec
 from icdgen.backends.c.link.rows import aligned, lines, or_none
 from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP
+from icdgen.describe.fresh import fresh_values
 from icdgen.protocol.facts import CAN, I2C, UART, Facts, Step
 
 BUSES = (UART, I2C, CAN)
@@ -59,8 +60,7 @@ class Tables:
         places = self.add(f"{stem}_places[]", "icd_place_t", rows) if rows else "NULL"
         fresh = "NULL"
         if any(field.const for field in message.fields):
-            raw = {f.name: bytes(f.bits // 8) if f.type == "bytes" else f.const or 0 for f in message.fields}
-            data = codec.encode(self.known.node, message, raw)
+            data = codec.encode(self.known.node, message, fresh_values(message))
             fresh = self.add(f"{stem}_fresh[]", "uint8_t", lines([f"{byte:#04x}u," for byte in data]))
         ids = f"{or_none(message.telecommand_id)}, {or_none(message.telemetry_id)}"
         text = f"{ids}, {message.length}u, {len(rows)}u, {places}, {fresh}"

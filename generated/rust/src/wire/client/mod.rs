@@ -114,8 +114,8 @@ impl<const N: usize> Client<N> {
     #[must_use]
     pub fn with_checksums(mut self) -> Self {
         if let Some(form) = &self.machine.link.checksum {
-            self.machine.checks_telecommands = form.telecommands.of(self.machine.bus);
-            self.machine.checks_telemetry = form.telemetry.of(self.machine.bus);
+            self.machine.checks_telecommands = form.telecommand_buses.of(self.machine.bus);
+            self.machine.checks_telemetry = form.telemetry_buses.of(self.machine.bus);
         }
         self
     }

@@ -187,9 +187,9 @@ pub struct Settings {
     pub reply_timeout_ms: u32,
     /// How often a request is sent again.
     pub retries: u8,
-    /// How long to wait between two polls.
+    /// Time between two polls for an acknowledge.
     pub poll_interval_ms: u32,
-    /// How long to poll.
+    /// How long a telecommand may take to be processed.
     pub poll_timeout_ms: u32,
 }
 
@@ -214,11 +214,11 @@ pub enum Reason {
 pub struct Framing {
     /// The escape byte.
     pub escape: u8,
-    /// Begins a message.
+    /// Follows the escape byte at the beginning of a message.
     pub start: u8,
-    /// Ends a message.
+    /// Follows the escape byte at the end of a message.
     pub end: u8,
-    /// Stands for the escape byte as data.
+    /// Follows the escape byte where the escape byte itself is meant as data.
     pub escaped: u8,
     /// Whether the id is escaped like the data.
     pub escapes_id: bool,
@@ -255,19 +255,19 @@ pub struct Polled {
 /// Parameters of a CRC of up to 32 bits in the notation of the usual catalogues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CrcForm {
-    /// Bits.
+    /// Bits of the checksum.
     pub width: u32,
-    /// The polynomial, without its highest bit.
+    /// Generator polynomial, most significant bit first, without the leading term.
     pub polynomial: u32,
-    /// What it begins with.
+    /// Value of the register at the beginning.
     pub init: u32,
-    /// Whether the least significant bit of a byte comes first.
+    /// Whether each byte enters least significant bit first.
     pub reflect_in: bool,
-    /// Whether the result is turned round.
+    /// Whether the bits of the register are reversed at the end.
     pub reflect_out: bool,
-    /// What the result is combined with.
+    /// What the register is combined with at the end.
     pub xor_out: u32,
-    /// The value for no bytes at all, if it is not what the others give.
+    /// Checksum of no bytes at all, where it is not what the algorithm gives.
     pub empty: Option<u32>,
 }
 
@@ -284,14 +284,14 @@ impl CrcForm {
 /// The optional checksum of telecommands and frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Checksum {
-    /// Its parameters.
-    pub crc: CrcForm,
-    /// Whether it covers the id, too.
+    /// Whether the id byte is part of what the checksum covers.
     pub covers_id: bool,
     /// Where telecommands have it.
-    pub telecommands: PerBus<bool>,
+    pub telecommand_buses: PerBus<bool>,
     /// Where telemetry has it.
-    pub telemetry: PerBus<bool>,
+    pub telemetry_buses: PerBus<bool>,
     /// Bytes that it adds to a message.
     pub bytes: usize,
+    /// Its parameters.
+    pub crc: CrcForm,
 }

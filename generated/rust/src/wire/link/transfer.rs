@@ -9,11 +9,11 @@ use super::{PerBus, Span, Step};
 pub struct Files {
     /// Bytes of the file in a packet.
     pub packet_bytes: usize,
-    /// Bytes of a packet's number.
+    /// Bytes of the packet counter before them.
     pub counter_bytes: usize,
-    /// Number of the first packet.
+    /// Number of the first packet of a block.
     pub first_packet: u32,
-    /// What fills the last packet.
+    /// Value of the bytes of the last packet beyond the end of the file.
     pub fill: u8,
     /// Most packets of a block.
     pub block_packets: usize,
@@ -38,15 +38,15 @@ pub struct Files {
 /// A bit for each packet of a block.
 #[derive(Clone, Copy, Debug)]
 pub struct HoleMapForm {
-    /// Bytes of the map.
+    /// Length of the map.
     pub bytes: usize,
-    /// Bytes of the map in a message.
+    /// Bytes of the map in each message.
     pub message_bytes: usize,
     /// Whether bit 0 is the most significant one of a byte.
     pub msb0: bool,
-    /// What the bit of a packet is that was received.
+    /// Value of the bit of a received packet.
     pub received: bool,
-    /// What the bits beyond the end of a block are.
+    /// Value of the bits of packets beyond the end of the block.
     pub beyond_end: bool,
     /// The messages that carry it.
     pub messages: &'static [MapMessage],
@@ -68,15 +68,15 @@ pub struct MapMessage {
 /// The list of files.
 #[derive(Clone, Copy, Debug)]
 pub struct ListForm {
-    /// To the first file.
+    /// Returns to the first file.
     pub reset: Step,
-    /// To the next file.
+    /// Goes on to the next file.
     pub advance: Step,
-    /// What the file is.
+    /// Describes a file.
     pub information: Step,
-    /// How long to wait between two polls.
+    /// Time between two polls of the busy flag.
     pub poll_interval_ms: u32,
-    /// How long to poll.
+    /// How long the busy flag may stay set.
     pub timeout_ms: u32,
 }
 
@@ -85,23 +85,23 @@ pub struct ListForm {
 pub struct DownloadForm {
     /// Loads a block.
     pub load: Step,
-    /// Tells that it is loaded.
+    /// Tells whether the block is loaded.
     pub ready: Step,
-    /// Sends its packets.
+    /// Starts the transfer of the block.
     pub burst: Step,
-    /// What `burst` is given.
+    /// What the burst telecommand gives as length.
     pub message_length: u32,
-    /// Whether the checksum covers what fills the last packet.
+    /// Whether the checksum of a block covers the fill of its last packet.
     pub checksum_covers_fill: bool,
-    /// The counter of the index file.
+    /// Counter that goes with the type of the index file.
     pub index_counter: u8,
-    /// How long to wait between two polls.
+    /// Time between two polls of the ready flag.
     pub poll_interval_ms: u32,
-    /// How long a block may take to be loaded.
+    /// How long a block may take to load.
     pub ready_timeout_ms: u32,
-    /// After so long without a packet a burst is over.
+    /// A burst is over if no packet came for this long.
     pub silence_ms: u32,
-    /// Most rounds for a block.
+    /// Most bursts for one block.
     pub rounds: u32,
 }
 
@@ -110,31 +110,31 @@ pub struct DownloadForm {
 pub struct UploadForm {
     /// Erases the destination.
     pub initiate: Step,
-    /// Tells that it is erased.
+    /// Tells whether the destination is erased.
     pub initiated: Step,
     /// Begins a block.
     pub begin: Step,
-    /// A packet.
+    /// Carries a packet.
     pub packet: Step,
-    /// Tells the checksum of the block.
+    /// Tells the checksum of the block received.
     pub checksum: Step,
-    /// Commits the block.
+    /// Commits a block.
     pub finalize: Step,
-    /// Tells that it is committed.
+    /// Tells whether the block is committed.
     pub finalized: Step,
-    /// What `initiate` is given.
+    /// What `initiate` gives as block size.
     pub block_size: u32,
-    /// Whether the checksum covers what fills the last packet.
+    /// Whether the checksum of a block covers the fill of its last packet.
     pub checksum_covers_fill: bool,
-    /// How long to wait between two polls.
+    /// Time between two polls of a busy flag.
     pub poll_interval_ms: u32,
-    /// How long erasing may take.
+    /// How long the destination may take to be erased.
     pub erase_timeout_ms: u32,
-    /// How long committing may take.
+    /// How long committing a block may take.
     pub finalize_timeout_ms: u32,
-    /// Most rounds for a block.
+    /// Most rounds of packets for one block.
     pub rounds: u32,
-    /// Bytes that a destination holds, if the ICD says so.
+    /// Bytes that a destination holds: no file may be larger.
     pub destination_bytes: Option<usize>,
     /// The destinations that are supported; none: all.
     pub destinations: &'static [u8],
@@ -143,11 +143,11 @@ pub struct UploadForm {
 /// What a telecommand starts for a stored program, and a frame tells the end of.
 #[derive(Clone, Copy, Debug)]
 pub struct OperationForm {
-    /// Begins it.
+    /// Starts it.
     pub request: Step,
-    /// Tells that it is over.
+    /// Tells when it is done.
     pub progress: Step,
-    /// How long to wait between two polls.
+    /// Time between two polls of that frame.
     pub poll_interval_ms: u32,
     /// How long it may take.
     pub timeout_ms: u32,
@@ -160,9 +160,9 @@ pub struct OperationForm {
 pub struct ErasureForm {
     /// Begins it.
     pub request: Step,
-    /// Tells that it is over.
+    /// Tells whether it is done.
     pub progress: Step,
-    /// How long to wait between two polls.
+    /// Time between two polls of the busy flag.
     pub poll_interval_ms: u32,
     /// How long it may take.
     pub timeout_ms: u32,

@@ -132,7 +132,11 @@ pub static LINK: Link = Link {
     }),
     // Assumed. Two bytes are announced, the last being the error. That the first is the id of the
     // telecommand, and that no other id heads the message, stood in a figure.
-    acknowledge: Some(Acknowledge { length: 2, id_at: 0, error_at: 1 }),
+    acknowledge: Some(Acknowledge {
+        length: 2,
+        id_at: 0,
+        error_at: 1,
+    }),
     i2c_address: Some(87),
     polled: Some(Polled {
         frame: 240,
@@ -142,12 +146,12 @@ pub static LINK: Link = Link {
         parameter: &[Piece { byte: 3, shift: 0, bits: 8, at: 0 }],
     }),
     can: Some(Can {
+        node_address: 0x01,
+        data_bytes: 8,
         kind: CanPart { bits: 5, shift: 24 },
         id: CanPart { bits: 8, shift: 16 },
         source: CanPart { bits: 8, shift: 8 },
         destination: CanPart { bits: 8, shift: 0 },
-        node_address: 1,
-        data_bytes: 8,
         types: CanTypes {
             telecommand: Some(1),
             acknowledge: Some(2),
@@ -157,6 +161,16 @@ pub static LINK: Link = Link {
             request_refusal: Some(6),
         },
         extended: Some(Extended {
+            data_bytes: 7,
+            left_at: 7,
+            left_in_last: 0,
+            packets: 256,
+            bytes: 1_792,
+            // Assumed. Neither the value of the fill nor how the receiver learns the true length is
+            // said. The receiver takes the length of the message from its id.
+            fill: 0x00,
+            // Assumed. No time-out between packets is given.
+            packet_timeout_ms: 1_000,
             types: CanTypes {
                 telecommand: Some(7),
                 acknowledge: None,
@@ -165,15 +179,6 @@ pub static LINK: Link = Link {
                 reply: Some(8),
                 request_refusal: None,
             },
-            data_bytes: 7,
-            left_at: 7,
-            left_in_last: 0,
-            bytes: 1_792,
-            // Assumed. Neither the value of the fill nor how the receiver learns the true length is
-            // said. The receiver takes the length of the message from its id.
-            fill: 0,
-            // Assumed. No time-out between packets is given.
-            packet_timeout_ms: 1_000,
         }),
     }),
     checksum: None,
@@ -199,13 +204,13 @@ pub static LINK: Link = Link {
     }),
     index: Some(IndexForm {
         entry_bytes: 37,
+        file_type: Some(15),
         kind: Span { at: 0, bytes: 1 },
         counter: Span { at: 1, bytes: 1 },
         checksum: Span { at: 2, bytes: 2 },
         size: Span { at: 4, bytes: 4 },
         time: Span { at: 8, bytes: 4 },
         meta: Span { at: 12, bytes: 25 },
-        file_type: Some(15),
     }),
     files: Some(Files {
         packet_bytes: 20,
@@ -213,7 +218,7 @@ pub static LINK: Link = Link {
         // Assumed. Where the count begins is not said. Bit 0 of the hole map is the first packet.
         first_packet: 0,
         // Assumed. The value is not defined. Erased flash memory reads 0xFF.
-        fill: 255,
+        fill: 0xff,
         block_packets: 1_024,
         block_bytes: 20_480,
         packet_ids: PerBus {

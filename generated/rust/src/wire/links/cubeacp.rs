@@ -31,6 +31,12 @@ pub const LONGEST: usize = 506;
 /// before each start, so it reads 3 Failed boot attempts before the third, and at that value no
 /// start is said to follow.
 ///
+/// Assumed (`log_mask`, `frame_order`): The order of the frames in an entry is not said. They
+/// follow the bits of the mask, bit 0 of the first byte first.
+///
+/// Assumed (`log_mask`, `short_frames`): All loggable frames are said to have 6 bytes, two have 4.
+/// They are taken to be filled up, since only then the given sizes hold.
+///
 /// Assumed (`unsolicited_log.configured_by`, `period_unit_ms`): No unit is given. The control loop
 /// runs once a second.
 ///
@@ -278,7 +284,11 @@ pub static LINK: Link = Link {
     }),
     // Assumed. Two bytes are announced, the last being the error. That the first is the id of the
     // telecommand, and that no other id heads the message, stood in a figure.
-    acknowledge: Some(Acknowledge { length: 2, id_at: 0, error_at: 1 }),
+    acknowledge: Some(Acknowledge {
+        length: 2,
+        id_at: 0,
+        error_at: 1,
+    }),
     i2c_address: Some(87),
     polled: Some(Polled {
         frame: 240,
@@ -288,12 +298,12 @@ pub static LINK: Link = Link {
         parameter: &[Piece { byte: 3, shift: 0, bits: 8, at: 0 }],
     }),
     can: Some(Can {
+        node_address: 0x01,
+        data_bytes: 8,
         kind: CanPart { bits: 5, shift: 24 },
         id: CanPart { bits: 8, shift: 16 },
         source: CanPart { bits: 8, shift: 8 },
         destination: CanPart { bits: 8, shift: 0 },
-        node_address: 1,
-        data_bytes: 8,
         types: CanTypes {
             telecommand: Some(1),
             acknowledge: Some(2),
@@ -303,6 +313,16 @@ pub static LINK: Link = Link {
             request_refusal: Some(6),
         },
         extended: Some(Extended {
+            data_bytes: 7,
+            left_at: 7,
+            left_in_last: 0,
+            packets: 256,
+            bytes: 1_792,
+            // Assumed. Neither the value of the fill nor how the receiver learns the true length is
+            // said. The receiver takes the length of the message from its id.
+            fill: 0x00,
+            // Assumed. No time-out between packets is given.
+            packet_timeout_ms: 1_000,
             types: CanTypes {
                 telecommand: Some(7),
                 acknowledge: None,
@@ -311,18 +331,18 @@ pub static LINK: Link = Link {
                 reply: Some(8),
                 request_refusal: None,
             },
-            data_bytes: 7,
-            left_at: 7,
-            left_in_last: 0,
-            bytes: 1_792,
-            // Assumed. Neither the value of the fill nor how the receiver learns the true length is
-            // said. The receiver takes the length of the message from its id.
-            fill: 0,
-            // Assumed. No time-out between packets is given.
-            packet_timeout_ms: 1_000,
         }),
     }),
     checksum: Some(Checksum {
+        // Assumed. Whether the id counts among the bytes of a command is not said. The extra byte
+        // of a frame can cover the frame only.
+        covers_id: false,
+        // Assumed. The checksum is offered for commands in general, CAN included. None is sent
+        // there by choice, for in an extended message the receiver could not tell the checksum from
+        // the fill.
+        telecommand_buses: PerBus { uart: true, i2c: true, can: false },
+        telemetry_buses: PerBus { uart: false, i2c: true, can: false },
+        bytes: 1,
         crc: CrcForm {
             width: 8,
             polynomial: 0x12,
@@ -332,15 +352,6 @@ pub static LINK: Link = Link {
             xor_out: 0x00,
             empty: Some(0xff),
         },
-        // Assumed. Whether the id counts among the bytes of a command is not said. The extra byte
-        // of a frame can cover the frame only.
-        covers_id: false,
-        // Assumed. The checksum is offered for commands in general, CAN included. None is sent
-        // there by choice, for in an extended message the receiver could not tell the checksum from
-        // the fill.
-        telecommands: PerBus { uart: true, i2c: true, can: false },
-        telemetry: PerBus { uart: false, i2c: true, can: false },
-        bytes: 1,
     }),
     crc16: Some(CrcForm {
         width: 16,
@@ -352,15 +363,11 @@ pub static LINK: Link = Link {
         empty: None,
     }),
     mask: Some(LogMask {
-        bytes: 10,
-        // Assumed. The order of the frames in an entry is not said. They follow the bits of the
-        // mask, bit 0 of the first byte first.
+        size: 10,
         msb0: false,
-        // Assumed. All loggable frames are said to have 6 bytes, two have 4. They are taken to be
-        // filled up, since only then the given sizes hold.
         slot_bytes: 6,
         // Assumed. The value is not given. It is written and never looked at.
-        fill: 0,
+        fill: 0x00,
         // Assumed. What a log with an unassigned bit holds is not said. The given sizes count every
         // bit that is set.
         bits: &[
@@ -439,7 +446,11 @@ pub static LINK: Link = Link {
     }),
     // Assumed. Section 5.2 has start, end and escapes for all that goes over the UART, and makes no
     // exception for these messages.
-    log_message: Some(LogMessage { id: 255, mask_at: 1, frames_at: 11 }),
+    log_message: Some(LogMessage {
+        id: 255,
+        mask_at: 1,
+        frames_at: 11,
+    }),
     time: Some(TimeForm {
         year: TimePart { at: 25, bits: 7, factor: 1, offset: 1_980 },
         month: TimePart { at: 21, bits: 4, factor: 1, offset: 0 },
@@ -450,13 +461,13 @@ pub static LINK: Link = Link {
     }),
     index: Some(IndexForm {
         entry_bytes: 37,
+        file_type: Some(15),
         kind: Span { at: 0, bytes: 1 },
         counter: Span { at: 1, bytes: 1 },
         checksum: Span { at: 2, bytes: 2 },
         size: Span { at: 4, bytes: 4 },
         time: Span { at: 8, bytes: 4 },
         meta: Span { at: 12, bytes: 25 },
-        file_type: Some(15),
     }),
     files: Some(Files {
         packet_bytes: 20,
@@ -464,7 +475,7 @@ pub static LINK: Link = Link {
         // Assumed. Where the count begins is not said. Bit 0 of the hole map is the first packet.
         first_packet: 0,
         // Assumed. The value is not defined. Erased flash memory reads 0xFF.
-        fill: 255,
+        fill: 0xff,
         block_packets: 1_024,
         block_bytes: 20_480,
         packet_ids: PerBus {

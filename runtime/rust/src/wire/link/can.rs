@@ -3,6 +3,10 @@
 /// CAN: parts of the identifier, and types by kind of message.
 #[derive(Clone, Copy, Debug)]
 pub struct Can {
+    /// Address of the node.
+    pub node_address: u8,
+    /// Most data bytes of one packet, of which CAN 2.0 has up to 8.
+    pub data_bytes: usize,
     /// Where the message type stands.
     pub kind: CanPart,
     /// Where the id of the message stands.
@@ -11,10 +15,6 @@ pub struct Can {
     pub source: CanPart,
     /// Where the receiver's address stands.
     pub destination: CanPart,
-    /// The address of the node.
-    pub node_address: u32,
-    /// Most bytes of a packet.
-    pub data_bytes: usize,
     /// Message types of single packets.
     pub types: CanTypes,
     /// Messages of several packets.
@@ -50,18 +50,20 @@ pub struct CanTypes {
 /// CAN messages of several packets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extended {
-    /// The message types.
-    pub types: CanTypes,
-    /// Bytes of the message in a packet.
+    /// Data bytes of a packet.
     pub data_bytes: usize,
-    /// Where the count of packets still to come stands.
+    /// Index of the byte that counts the packets still to come.
     pub left_at: usize,
-    /// The count in the last packet.
+    /// What that byte counts in the last packet.
     pub left_in_last: u8,
+    /// Most packets of a message.
+    pub packets: u32,
     /// Most bytes of a message.
     pub bytes: usize,
-    /// What fills the last packet.
+    /// Value of the bytes of the last packet that hold no data.
     pub fill: u8,
-    /// How long the next packet may take.
+    /// Longest time between two packets of a message.
     pub packet_timeout_ms: u32,
+    /// The message types.
+    pub types: CanTypes,
 }

@@ -3,13 +3,13 @@
 /// The mask of a log. Frames stand in slots of one size, in the order of rising bits.
 #[derive(Clone, Copy, Debug)]
 pub struct LogMask {
-    /// Bytes of the mask.
-    pub bytes: usize,
+    /// Length of the mask.
+    pub size: usize,
     /// Whether bit 0 is the most significant one of a byte.
     pub msb0: bool,
-    /// Bytes of a slot.
+    /// Length of each frame in a log.
     pub slot_bytes: usize,
-    /// What fills a slot.
+    /// Value of the bytes after a short frame.
     pub fill: u8,
     /// The bits that have a frame, rising.
     pub bits: &'static [LogBit],
@@ -39,20 +39,20 @@ pub struct LogFile {
     pub seconds: Span,
     /// Where the milliseconds stand in an entry.
     pub milliseconds: Span,
-    /// Where the slots begin in an entry.
+    /// Where in an entry the selected frames begin.
     pub frames_at: usize,
-    /// The type of such files.
+    /// Type of such a file.
     pub file_type: Option<u8>,
 }
 
 /// The unsolicited form of a log. Places count from the id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LogMessage {
-    /// The id.
+    /// Id of such messages.
     pub id: u8,
     /// Where the mask stands.
     pub mask_at: usize,
-    /// Where the slots begin.
+    /// Where the selected frames begin, counted from the id.
     pub frames_at: usize,
 }
 
@@ -98,8 +98,10 @@ pub struct TimePart {
 /// Entries of the index file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct IndexForm {
-    /// Bytes of an entry.
+    /// Length of an entry.
     pub entry_bytes: usize,
+    /// Type of such a file.
+    pub file_type: Option<u8>,
     /// Type of the file.
     pub kind: Span,
     /// Counter of the file.
@@ -112,6 +114,4 @@ pub struct IndexForm {
     pub time: Span,
     /// Meta-data.
     pub meta: Span,
-    /// The type of the index file itself.
-    pub file_type: Option<u8>,
 }

@@ -82,7 +82,7 @@ impl<const N: usize> Machine<N> {
         on_event: &mut dyn FnMut(Event<'_>),
     ) {
         let can::Message { id, data, .. } = *message;
-        let node = self.link.can.as_ref().map(|can| can.node_address);
+        let node = self.link.can.as_ref().map(|can| can.node_address.into());
         let ours = id == u32::from(self.id) && Some(message.source) == node;
         let waiting = (self.state == State::Wait && ours).then_some(self.direction);
         match (waiting, message.kind) {

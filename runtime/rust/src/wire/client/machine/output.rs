@@ -50,7 +50,7 @@ impl<const N: usize> Machine<N> {
             },
             id: self.id.into(),
             source: self.address,
-            destination: self.link.can.as_ref()?.node_address,
+            destination: self.link.can.as_ref()?.node_address.into(),
             data: part(&self.message, 1, self.length.saturating_sub(1)),
         };
         Splitter::new(self.link, &message).ok()

@@ -1,0 +1,59 @@
+"""Tables without vertical rules whose headings nobody knows: lines of several cells that stand below each other."""
+
+from __future__ import annotations
+
+from icdgen.importer.document import Box, Row, Table
+from icdgen.importer.pages.flow import Mark
+
+FEWEST_CELLS = 3
+FEWEST_LINES = 3
+ALIGNED = 4.0  # points
+
+
+def tables(marks: list[Mark]) -> list[tuple[int, int, Table]]:
+    """First and last index, and the table, of each run of text lines that looks like one."""
+    found = []
+    start = 0
+    while start < len(marks):
+        end = _end(marks, start)
+        rows = [mark for mark in marks[start:end] if len(mark.cells) >= FEWEST_CELLS]
+        if len(rows) >= FEWEST_LINES and not marks[start].text[:1].isdigit():
+            found.append((start, end, _table(marks[start:end])))
+            start = end
+        else:
+            start += 1
+    return found
+
+
+def _end(marks: list[Mark], start: int) -> int:
+    """The index behind the last line that goes on with the table that begins at ``start``."""
+    first = marks[start]
+    if first.kind != "text" or len(first.cells) < FEWEST_CELLS:
+        return start
+    columns = [x for x, _ in first.cells]
+    index = start + 1
+    while index < len(marks):
+        mark, above = marks[index], marks[index - 1]
+        if mark.kind != "text" or mark.box.page != first.box.page or mark.box.top - above.box.bottom > 2.5 * mark.size:
+            break
+        hits = sum(any(abs(x - column) < ALIGNED for column in columns) for x, _ in mark.cells)
+        alone = len(mark.cells) == 1 and abs(mark.cells[0][0] - columns[0]) < ALIGNED  # rather a line below the table
+        if alone or hits < min(2, len(mark.cells)):
+            break
+        index += 1
+    return index
+
+
+def _table(marks: list[Mark]) -> Table:
+    box: Box = marks[0].box
+    for mark in marks[1:]:
+        box = box.join(mark.box)
+    columns = [x for x, _ in marks[0].cells]
+    made = Table(page=box.page, boxes=[box])
+    for mark in marks:
+        cells = [""] * len(columns)
+        for x, text in mark.cells:
+            nearest = min(range(len(columns)), key=lambda i: abs(columns[i] - x))
+            cells[nearest] = f"{cells[nearest]} {text}".strip()
+        made.head.append(Row(cells, box.page))
+    return made

@@ -1,0 +1,53 @@
+"""Damage of the file that a profile names: mended before the tables are understood, and reported each time."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from icdgen.importer.document import Document, Row, Table, Trouble
+from icdgen.importer.profile import Profile
+from icdgen.importer.words import number
+
+
+def mend(document: Document, profile: Profile) -> None:
+    """Replaces damaged words and puts lost group headings back."""
+    entries = profile.data["damage"]
+    words = [
+        (re.compile(rf"(?<!\w){re.escape(e['printed'])}(?!\w)"), e["meant"], e["printed"])
+        for e in entries
+        if "printed" in e
+    ]
+    for table in document.tables:
+        for pattern, meant, printed in words:
+            _words(table, pattern, meant, printed, document)
+        for entry in entries:
+            if entry.get("table") == table.number and "group" in entry:
+                _group(table, entry, document)
+
+
+def _words(table: Table, pattern: re.Pattern[str], meant: str, printed: str, document: Document) -> None:
+    count = 0
+    for row in (*table.head, *table.rows):
+        for index, cell in enumerate(row.cells):
+            row.cells[index], times = pattern.subn(lambda _: meant, cell)
+            count += times
+    if count:
+        how_often = f" {count} times" if count > 1 else ""
+        document.troubles.append(
+            Trouble("IMP028", f"{table.title}: `{printed}` is taken for `{meant}`{how_often}, as the profile says", table.spot,
+                    "compare with the page", "note")
+        )  # fmt: skip
+
+
+def _group(table: Table, entry: dict[str, Any], document: Document) -> None:
+    for index, row in enumerate(table.rows):
+        if row.cells and number(row.cells[0]) == entry["before"]:
+            heading = Row([entry["group"], *[""] * (len(row.cells) - 1)], row.page, row.line)
+            table.rows.insert(index, heading)
+            document.troubles.append(
+                Trouble("IMP028", f"{table.title}: the group heading `{entry['group']}` is put back before "
+                        f"{entry['before']}, as the profile says", table.spot_of(row),
+                        "compare with the page", "note")
+            )  # fmt: skip
+            return

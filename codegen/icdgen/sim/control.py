@@ -1,0 +1,200 @@
+"""What a user tells the simulated device: values, faults, logs, restarts; by options, from a script, or as it runs."""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from icdgen.errors import UserError
+from icdgen.icd.model import Field, Icd, Message, Node
+from icdgen.sim import faults
+from icdgen.sim.line import Line
+from icdgen.sim.values import raw_of
+from icdgen.values import find_field, find_message, find_node
+from icdgen.values.entry import from_physical
+from icdgen.values.errors import NotFound
+
+Wave = Mapping[str, Any]  # as a script has it
+WAVES = ("sine", "ramp", "steps", "noise")
+HELP = "a script is a list of steps such as `- {at: 2.5, set: {Message: {field: value}}}`; see docs/sim.md"
+
+
+@dataclass
+class Step:
+    """Something that happens once, ``at`` milliseconds after the start."""
+
+    at: int
+    set: dict[str, dict[str, object]] = field(default_factory=dict)
+    faults: list[faults.Fault] | None = None
+    log: bool = False
+    restart: bool = False
+
+
+class Control:
+    """Carries out a user's orders on a line."""
+
+    def __init__(self, icd: Icd, node: Node, line: Line, steps: list[Step]) -> None:
+        self.icd, self.node, self.line = icd, node, line
+        self.steps = sorted(steps, key=lambda step: step.at)
+        self.moving: list[tuple[Message, Field, Wave]] = []
+
+    @property
+    def deadline(self) -> int | None:
+        """When `tick` wants to be called at the latest, but for values that move: they are as of each request."""
+        return self.steps[0].at if self.steps else None
+
+    def tick(self, now: int) -> None:
+        """Does what is due."""
+        while self.steps and now >= self.steps[0].at:
+            self.do(now, self.steps.pop(0))
+        values = self.line.computer.program.values
+        for message, one, wave in self.moving:
+            if message.name in values.frames:
+                values.update(message, {one.name: raw_of(one, at(wave, now / 1000, self.line.faults.random.random))})
+
+    def do(self, now: int, step: Step) -> None:
+        for name, fields in step.set.items():
+            for key, value in fields.items():
+                self.set(name, key, value)
+        if step.faults is not None:
+            self.line.faults.faults = step.faults
+        if step.log:
+            self.line.log(now)
+        if step.restart:
+            self.line.computer.restart(now)
+
+    def set(self, name: str, key: str, value: object) -> None:
+        """Sets a field of a frame, now and from every start on. Raises `icdgen.errors.UserError`."""
+        message, one = locate(self.icd, self.node, name, key)
+        self.moving = [m for m in self.moving if (m[0].name, m[1].name) != (message.name, one.name)]
+        if isinstance(value, Mapping):
+            self.moving.append((message, one, value))
+            return
+        raw = fitting(message, one, value)
+        self.line.computer.settings.values.setdefault(message.name, {})[one.name] = raw
+        values = self.line.computer.program.values
+        if message.name in values.frames:
+            values.update(message, {one.name: raw})
+
+    def say(self, now: int, text: str) -> str:
+        """An order as a line of text; the answer. Raises `icdgen.errors.UserError`."""
+        try:
+            words = shlex.split(text)
+        except ValueError as error:
+            raise UserError(f"`{text}`: {error}", "close the quotes") from None
+        if not words:
+            return ""
+        order, rest = words[0], words[1:]
+        if order == "set" and len(rest) >= 2:
+            for one in rest[1:]:
+                key, equals, value = one.partition("=")
+                if not equals:
+                    raise UserError(f"`{one}` is not of the form field=value")
+                self.set(rest[0], key, value)
+        elif order == "fault":
+            self.line.faults.faults = [faults.parse(one) for one in rest]
+        elif order == "log" and not rest:
+            self.line.log(now)
+        elif order == "restart" and not rest:
+            self.line.computer.restart(now)
+        else:
+            raise UserError(
+                f"`{text}` is no order",
+                "set MESSAGE FIELD=VALUE ..., fault KIND=SHARE[@WHAT] ..., log, restart",
+            )
+        return "ok"
+
+
+def locate(icd: Icd, node: Node, name: str, key: str) -> tuple[Message, Field]:
+    """The field of a frame of the node, or of a program that it starts. Raises `icdgen.errors.UserError`."""
+    message, wrong = None, None
+    for one in (node, *(n for n in icd.nodes if n is not node)):
+        try:
+            message = find_message(icd, one.name, name, "telemetry")
+            break
+        except NotFound as error:
+            wrong = wrong or error
+    if message is None:
+        assert wrong
+        raise wrong
+    return message, find_field(message, key, find_node(icd, message.node).vocabulary)
+
+
+def fitting(message: Message, one: Field, value: object) -> int | bytes:
+    """The raw value of what a user gave. Raises `icdgen.errors.UserError`."""
+    raw = from_physical(one, "true" if value is True else "false" if value is False else str(value))
+    if isinstance(raw, int) and one.type != "float" and not one.raw_min <= raw <= one.raw_max:
+        raise UserError(f"{message.name}, {one.name}: {value} does not fit", f"{one.bits} bits hold the raw value")
+    return raw
+
+
+def at(wave: Wave, seconds: float, random: Callable[[], float]) -> float:
+    """The physical value of a wave at a time."""
+    low, high = float(wave.get("min", -1)), float(wave.get("max", 1))
+    period = float(wave.get("period", 60))
+    part = seconds / period % 1
+    kind = wave.get("wave", "sine")
+    if kind == "sine":
+        return (low + high) / 2 + (high - low) / 2 * math.sin(2 * math.pi * part)
+    if kind == "steps":
+        return low if part < 0.5 else high
+    if kind == "noise":
+        return low + (high - low) * random()
+    return low + (high - low) * part
+
+
+def read(path: Path, icd: Icd, node: Node) -> list[Step]:
+    """The steps of a script. Raises `icdgen.errors.UserError`."""
+    try:
+        data = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UserError(f"cannot read {path}: {error.strerror}", "check the path") from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        place = getattr(error, "problem_mark", None)
+        where = f":{place.line + 1}:{place.column + 1}" if place else ""
+        raise UserError(f"{path}{where}: this is no YAML", HELP) from None
+    if not isinstance(data, list):
+        raise UserError(f"{path}: this is no list", HELP)
+    return [_step(path, number, row, icd, node) for number, row in enumerate(data, 1)]
+
+
+def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
+    where = f"{path}: step {number}"
+    if not isinstance(row, dict) or set(row) - {"at", "set", "faults", "log", "restart"}:
+        raise UserError(f"{where}: there is no such step", HELP)
+    seconds, values = row.get("at", 0), row.get("set", {})
+    if type(seconds) not in (int, float) or not 0 <= seconds < 1e9:
+        raise UserError(f"{where}: `at` is no time in seconds", HELP)
+    if not isinstance(values, dict) or not all(isinstance(fields, dict) for fields in values.values()):
+        raise UserError(f"{where}: `set` is no mapping of messages to fields", HELP)
+    for name, fields in values.items():
+        for key, value in fields.items():
+            message, one = locate(icd, node, str(name), str(key))
+            if isinstance(value, Mapping):
+                _check_wave(f"{where}, {name}, {key}", one, value)
+            else:
+                fitting(message, one, value)
+    spoiled = row.get("faults")
+    if spoiled is not None and not (isinstance(spoiled, list) and all(isinstance(one, str) for one in spoiled)):
+        raise UserError(f"{where}: `faults` is no list of texts", HELP)
+    return Step(
+        round(seconds * 1000),
+        {str(name): {str(key): value for key, value in fields.items()} for name, fields in values.items()},
+        None if spoiled is None else [faults.parse(one) for one in spoiled],
+        bool(row.get("log", False)),
+        bool(row.get("restart", False)),
+    )
+
+
+def _check_wave(where: str, one: Field, wave: Wave) -> None:
+    numbers = [wave.get(key, 1) for key in ("min", "max", "period")]
+    if set(wave) - {"wave", "min", "max", "period"} or wave.get("wave", "sine") not in WAVES or one.type == "bytes":
+        raise UserError(f"{where}: there is no such wave", f"{{wave: {'|'.join(WAVES)}, min: -1, max: 1, period: 60}}")
+    if not all(type(n) in (int, float) and math.isfinite(n) for n in numbers) or numbers[2] <= 0:
+        raise UserError(f"{where}: `min`, `max` and `period` are numbers, the last above 0")

@@ -1,0 +1,372 @@
+
+#include "icdgen_selftest.h"
+
+#define FILLER 0xA5u
+
+typedef struct {
+    const icdgen_selftest_node_t *node;
+    const icdgen_selftest_message_t *message;
+    icdgen_selftest_totals_t *totals;
+    icdgen_selftest_report_t report;
+    void *context;
+    uint32_t vector;
+} run_t;
+
+static void check(run_t *run, bool holds, const char *what, const char *field)
+{
+    icdgen_selftest_failure_t failure;
+    run->totals->checks++;
+    if (holds) {
+        return;
+    }
+    run->totals->failures++;
+    if (run->report != NULL) {
+        failure.node = run->node->name;
+        failure.message = run->message != NULL ? run->message->name : run->node->name;
+        failure.what = what;
+        failure.field = field;
+        failure.vector = run->vector;
+        run->report(run->context, &failure);
+    }
+}
+
+/* ---- members ---------------------------------------------------------------------------------------------------- */
+
+static uint64_t extended(uint64_t bits, unsigned bytes)
+{
+    const uint64_t sign = UINT64_C(1) << (bytes * 8u - 1u);
+    return bytes == 8u || (bits & sign) == 0u ? bits : bits | (UINT64_MAX << (bytes * 8u));
+}
+
+/* The raw value of a member; a negative one as its two's complement of 64 bits. */
+static uint64_t member(const icdgen_selftest_field_t *field, const void *message)
+{
+    const uint8_t *at = (const uint8_t *)message + field->offset;
+    uint64_t bits;
+    uint16_t two;
+    uint32_t four;
+    bool flag;
+    if (field->type == ICDGEN_SELFTEST_BOOL) {
+        memcpy(&flag, at, sizeof flag);
+        return flag ? 1u : 0u;
+    }
+    if (field->size == 1u) {
+        bits = *at;
+    } else if (field->size == 2u) {
+        memcpy(&two, at, sizeof two);
+        bits = two;
+    } else if (field->size == 4u) {
+        memcpy(&four, at, sizeof four);
+        bits = four;
+    } else {
+        memcpy(&bits, at, sizeof bits);
+    }
+    return field->type == ICDGEN_SELFTEST_SIGNED ? extended(bits, field->size) : bits;
+}
+
+static void set_member(const icdgen_selftest_field_t *field, void *message, uint64_t bits)
+{
+    uint8_t *at = (uint8_t *)message + field->offset;
+    const uint8_t one = (uint8_t)(bits & 0xFFu);
+    const uint16_t two = (uint16_t)(bits & 0xFFFFu);
+    const uint32_t four = (uint32_t)(bits & 0xFFFFFFFFu);
+    const bool flag = bits != 0u;
+    if (field->type == ICDGEN_SELFTEST_BOOL) {
+        memcpy(at, &flag, sizeof flag);
+    } else if (field->size == 1u) {
+        memcpy(at, &one, sizeof one);
+    } else if (field->size == 2u) {
+        memcpy(at, &two, sizeof two);
+    } else if (field->size == 4u) {
+        memcpy(at, &four, sizeof four);
+    } else {
+        memcpy(at, &bits, sizeof bits);
+    }
+}
+
+static uint64_t packed(const icdgen_selftest_field_t *field, const uint8_t *at)
+{
+    uint64_t bits = 0;
+    unsigned i;
+    for (i = field->packed; i != 0u; i--) {
+        bits = (bits << 8) | at[i - 1u];
+    }
+    return field->type == ICDGEN_SELFTEST_SIGNED ? extended(bits, field->packed) : bits;
+}
+
+static bool holds_bytes(const uint8_t *at, uint32_t count, uint8_t value)
+{
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        if (at[i] != value) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void fill(const run_t *run)
+{
+    memset(run->node->value, (int)FILLER, run->node->value_size);
+    memset(run->node->buffer, (int)FILLER, run->node->buffer_size);
+}
+
+/* ---- messages --------------------------------------------------------------------------------------------------- */
+
+static void raw_values(run_t *run, const uint8_t *at)
+{
+    uint16_t i;
+    for (i = 0; i < run->message->field_count; i++) {
+        const icdgen_selftest_field_t *field = &run->message->fields[i];
+        const uint8_t *in_value = (const uint8_t *)run->node->value + field->offset;
+        if (field->type == ICDGEN_SELFTEST_BYTES) {
+            check(run, memcmp(in_value, at, field->packed) == 0, "raw value", field->name);
+        } else {
+            check(run, member(field, run->node->value) == packed(field, at), "raw value", field->name);
+        }
+        at += field->packed;
+    }
+}
+
+/* Makes the message from the packed raw values alone. */
+static void assemble(const run_t *run, const uint8_t *at)
+{
+    uint16_t i;
+    memset(run->node->value, (int)FILLER, run->node->value_size);
+    for (i = 0; i < run->message->field_count; i++) {
+        const icdgen_selftest_field_t *field = &run->message->fields[i];
+        if (field->type == ICDGEN_SELFTEST_BYTES) {
+            memcpy((uint8_t *)run->node->value + field->offset, at, field->packed);
+        } else {
+            set_member(field, run->node->value, packed(field, at));
+        }
+        at += field->packed;
+    }
+}
+
+static void encoded(run_t *run, const uint8_t *frame)
+{
+    const uint8_t *buffer = run->node->buffer;
+    const uint16_t length = run->message->length;
+    uint16_t i;
+    bool same = true;
+    memset(run->node->buffer, (int)FILLER, run->node->buffer_size);
+    check(run, run->message->encode(run->node->value, run->node->buffer, length) == ICD_OK, "encode refuses", NULL);
+    for (i = 0; i < length; i++) {
+        same = same && buffer[i] == (frame[i] & run->message->kept[i]);
+    }
+    check(run, same, "encoded bytes", NULL);
+    check(run, holds_bytes(&buffer[length], ICDGEN_SELFTEST_MARGIN, FILLER), "encode writes past the end", NULL);
+}
+
+#ifndef ICDGEN_NO_DOUBLE
+static double double_of(uint64_t bits)
+{
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static uint64_t bits_of(double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static const uint64_t *physical_values(run_t *run, const uint64_t *expected)
+{
+    uint16_t i;
+    for (i = 0; i < run->message->field_count; i++) {
+        const icdgen_selftest_field_t *field = &run->message->fields[i];
+        if (field->get != NULL) {
+            check(run, bits_of(field->get(run->node->value)) == *expected++, "physical value", field->name);
+        }
+    }
+    return expected;
+}
+
+static void settings(run_t *run, const icdgen_selftest_field_t *field)
+{
+    uint16_t i;
+    for (i = 0; i < field->setting_count; i++) {
+        const icdgen_selftest_setting_t *one = &field->settings[i];
+        icd_status_t status;
+        run->vector = i;
+        run->message->init(run->node->value);
+        set_member(field, run->node->value, field->fresh);
+        status = field->set(run->node->value, double_of(one->value));
+        check(run, status == (one->refused ? ICD_ERROR_RANGE : ICD_OK), "setting a physical value", field->name);
+        check(
+            run, member(field, run->node->value) == (one->refused ? field->fresh : one->raw), "raw value set",
+            field->name);
+    }
+}
+#endif
+
+static void wholes(run_t *run, const icdgen_selftest_field_t *field)
+{
+    uint16_t i;
+    for (i = 0; i < field->whole_count; i++) {
+        const icdgen_selftest_whole_t *one = &field->wholes[i];
+        run->vector = i;
+        run->message->init(run->node->value);
+        set_member(field, run->node->value, one->raw);
+        check(run, field->get_whole(run->node->value) == one->whole, "physical value as an integer", field->name);
+        set_member(field, run->node->value, ~one->raw);
+        check(run, field->set_whole(run->node->value, one->whole) == ICD_OK, "setting an integer", field->name);
+        check(run, member(field, run->node->value) == one->raw, "raw value set by an integer", field->name);
+    }
+}
+
+static void field_values(run_t *run, const icdgen_selftest_field_t *field)
+{
+    uint16_t i;
+    for (i = 0; i < field->unfit_count; i++) {
+        run->vector = i;
+        run->message->init(run->node->value);
+        set_member(field, run->node->value, field->unfit[i]);
+        memset(run->node->buffer, (int)FILLER, run->node->buffer_size);
+        check(
+            run, run->message->encode(run->node->value, run->node->buffer, run->message->length) == ICD_ERROR_RANGE,
+            "unfit raw value", field->name);
+        check(
+            run, holds_bytes(run->node->buffer, run->message->length, FILLER), "written in spite of a refusal",
+            field->name);
+    }
+    wholes(run, field);
+#ifndef ICDGEN_NO_DOUBLE
+    settings(run, field);
+#endif
+}
+
+static void lengths(run_t *run)
+{
+    uint16_t i;
+    for (i = 0; i < run->message->refused_length_count; i++) {
+        run->vector = i;
+        fill(run);
+        check(
+            run,
+            run->message->decode(run->node->value, run->node->buffer, run->message->refused_lengths[i]) ==
+                ICD_ERROR_LENGTH,
+            "refused length", NULL);
+        check(
+            run, holds_bytes((const uint8_t *)run->node->value, run->node->value_size, FILLER),
+            "changed in spite of a refusal", NULL);
+    }
+    if (run->message->length != 0u) {
+        run->message->init(run->node->value);
+        check(
+            run,
+            run->message->encode(run->node->value, run->node->buffer, run->message->length - 1u) == ICD_ERROR_LENGTH,
+            "small buffer", NULL);
+        check(
+            run, holds_bytes(run->node->buffer, run->node->buffer_size, FILLER), "written in spite of a small buffer",
+            NULL);
+    }
+}
+
+static void fresh(run_t *run)
+{
+    uint16_t i;
+    memset(run->node->value, (int)FILLER, run->node->value_size);
+    run->message->init(run->node->value);
+    for (i = 0; i < run->message->field_count; i++) {
+        const icdgen_selftest_field_t *field = &run->message->fields[i];
+        if (field->type == ICDGEN_SELFTEST_BYTES) {
+            check(
+                run, holds_bytes((const uint8_t *)run->node->value + field->offset, field->packed, 0), "fresh value",
+                field->name);
+        } else {
+            check(run, member(field, run->node->value) == field->fresh, "fresh value", field->name);
+        }
+    }
+    for (i = 0; i < run->message->constant_count; i++) {
+        check(
+            run, run->message->constants[i].actual == run->message->constants[i].expected,
+            run->message->constants[i].name, NULL);
+    }
+}
+
+static void message(run_t *run)
+{
+    const uint8_t *at = run->message->vectors;
+    uint16_t i;
+#ifndef ICDGEN_NO_DOUBLE
+    const uint64_t *doubles = run->message->doubles;
+#endif
+    for (i = 0; i < run->message->vector_count; i++) {
+        run->vector = i;
+        fill(run);
+        check(run, run->message->decode(run->node->value, at, run->message->length) == ICD_OK, "decode refuses", NULL);
+        raw_values(run, at + run->message->length);
+        encoded(run, at);
+        assemble(run, at + run->message->length);
+        encoded(run, at);
+#ifndef ICDGEN_NO_DOUBLE
+        doubles = physical_values(run, doubles);
+#endif
+        at += run->message->vector_size;
+    }
+    run->vector = 0;
+    fresh(run);
+    lengths(run);
+    for (i = 0; i < run->message->field_count; i++) {
+        field_values(run, &run->message->fields[i]);
+    }
+    run->totals->messages++;
+    run->totals->vectors += run->message->vector_count;
+}
+
+/* ---- nodes ------------------------------------------------------------------------------------------------------ */
+
+static void dispatcher(run_t *run, const icdgen_selftest_dispatcher_t *one)
+{
+    uint16_t id;
+    memset(run->node->buffer, 0, run->node->buffer_size);
+    for (id = 0; id <= UINT8_MAX; id++) {
+        const bool known = one->lengths[id] >= 0;
+        size_t length = 0;
+        run->vector = id;
+        check(run, one->length(id, &length) == (known ? ICD_OK : ICD_ERROR_UNKNOWN_ID), "dispatcher", "id");
+        check(run, !known || length == (size_t)one->lengths[id], "dispatcher", "length");
+        check(
+            run, one->decode(id, run->node->buffer, length) == (known ? ICD_OK : ICD_ERROR_UNKNOWN_ID), "dispatcher",
+            "decode");
+        check(
+            run, !known || one->decode(id, run->node->buffer, length + 1u) == ICD_ERROR_LENGTH, "dispatcher",
+            "wrong length");
+    }
+}
+
+void icdgen_selftest(
+    const icdgen_selftest_node_t *node,
+    icdgen_selftest_totals_t *totals,
+    icdgen_selftest_report_t report,
+    void *context)
+{
+    run_t run;
+    uint16_t i;
+    run.node = node;
+    run.message = NULL;
+    run.totals = totals;
+    run.report = report;
+    run.context = context;
+    run.vector = 0;
+    for (i = 0; i < node->dispatcher_count; i++) {
+        dispatcher(&run, &node->dispatchers[i]);
+    }
+    for (i = 0; i < node->name_count; i++) {
+        const icdgen_selftest_name_t *one = &node->names[i];
+        const char *name = one->name_of(one->value);
+        run.vector = i;
+        check(
+            &run, one->name == NULL ? name == NULL : name != NULL && strcmp(name, one->name) == 0, "name of a value",
+            one->name);
+    }
+    for (i = 0; i < node->message_count; i++) {
+        run.message = node->messages[i];
+        message(&run);
+    }
+}

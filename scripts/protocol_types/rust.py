@@ -1,0 +1,41 @@
+"""The facts as fields of the structs of the Rust runtime."""
+
+from __future__ import annotations
+
+import re
+
+from icdgen.backends.rust.facts import member_name, type_name
+from icdgen.backends.rust.text import doc
+from icdgen.protocol.declared import BYTE, Fact, Kind, facts_of
+from icdgen.protocol.sections import PLACES
+
+_TYPES = {
+    Kind.SIZE: "usize", Kind.TIME: "u32", Kind.FLAG: "bool", Kind.BUSES: "PerBus<bool>", Kind.SPAN: "Span",
+    Kind.ALLOWED: "&'static [u8]", Kind.STEP: "Step",
+}  # fmt: skip
+_FIELD = re.compile(r"(?:    ///.*\n)*    pub (\w+): .*,\n")
+
+
+def written(text: str) -> str:
+    """The module with the fields of all facts. Fields that are no facts stand behind them."""
+    for part in dict.fromkeys(part for _, part in PLACES):
+        start = f"pub struct {type_name(part)} {{\n"
+        before, found, rest = text.partition(start)
+        if found:
+            body, end, after = rest.partition("}\n")
+            facts = facts_of(part)
+            names = {member_name(fact) for fact in facts}
+            others = (field.group() for field in _FIELD.finditer(body) if field.group(1) not in names)
+            text = before + start + "".join([*map(_field, facts), *others]) + end + after
+    return text
+
+
+def _field(fact: Fact) -> str:
+    # A time has its unit in its name.
+    about = doc([f"{fact.about[0].upper()}{fact.about[1:]}."], "    ", "///")
+    return f"{about}\n    pub {member_name(fact)}: {_type(fact)},\n"
+
+
+def _type(fact: Fact) -> str:
+    name = _TYPES.get(fact.kind) or ("u8" if fact.holds <= BYTE else "u32")
+    return f"Option<{name}>" if fact.is_optional else name
