@@ -48,7 +48,7 @@ ICD = {
                 {"at": 184, "bits": 16, "name": "constructor", "type": "bytes"},
             ],
         },
-        {"name": "aux", "id": 7, "kind": "telecommand", "length": 0, "summary": MARKUP},
+        {"name": "aux", "identifier": "aux message", "id": 7, "kind": "telecommand", "length": 0, "summary": MARKUP},
         {
             "name": ENDLESS, "identifier": "endless " + "y" * 300, "set_id": 60, "get_id": 61, "kind": "configuration",
             "length": 4096, "fields": [{"at": 0, "bits": 32768, "name": "A whole page", "type": "bytes"}],

@@ -1,0 +1,110 @@
+"""Steps of scales, limits and numbers for people, against exact arithmetic."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from icdgen import codec
+from icdgen.describe.bounds import allowed_ends, bounds
+from icdgen.describe.numbers import bit_range, byte_range, exact_text, factor_text, value_text
+from icdgen.describe.steps import steps
+from icdgen.describe.storage import Storage, holding
+from icdgen.icd.formula import Scale
+from icdgen.icd.model import Field, Limits
+
+fractions = st.fractions(min_value=-1000, max_value=1000, max_denominator=1000)
+scales = st.builds(Scale, fractions.filter(bool), fractions)
+
+
+@st.composite
+def scaled(draw) -> tuple[Field, int]:
+    """A field with a scale, and a raw value that it can hold."""
+    kind, bits = draw(st.sampled_from(["uint", "int"])), draw(st.integers(1, 64))
+    field = Field("it", 0, bits, kind, scale=draw(scales))
+    return field, draw(st.integers(field.raw_min, field.raw_max))
+
+
+@given(scaled())
+def test_the_steps_give_what_the_reference_codec_gives(case):
+    field, raw = case
+    found = steps(field)
+    assert found is not None and found.q > 0
+    assert found.physical(raw) == field.scale.physical(raw) == codec.physical(field, raw)
+    assert found.double(raw) == codec.physical_double(field, raw)
+
+
+@given(scaled())
+def test_where_they_are_called_exact_doubles_give_the_same(case):
+    field, raw = case
+    found = steps(field)
+    if found.exact_in_doubles:
+        assert (float(raw) * float(found.p) + float(found.c)) / float(found.q) == found.double(raw)
+
+
+@given(scaled())
+def test_no_value_lies_outside_the_span(case):
+    field, raw = case
+    low, high = steps(field).span
+    assert low <= steps(field).physical(raw) <= high
+    assert {low, high} == {steps(field).physical(end) for end in (field.raw_min, field.raw_max)}
+
+
+def test_what_no_double_holds_is_not_called_exact():
+    assert not steps(Field("wide", 0, 64, "uint", scale=Scale(Fraction(3)))).exact_in_doubles
+    assert steps(Field("small", 0, 16, "int", scale=Scale(Fraction(1, 100)))).exact_in_doubles
+
+
+LIMITS = Limits(min=Fraction(1), below=Fraction(3))
+
+
+@pytest.mark.parametrize(("value", "kept"), [(0.5, [False, True]), (1, [True, True]), (3, [True, False])])
+def test_each_limit_tells_whether_a_value_keeps_it(value, kept):
+    found = bounds(LIMITS)
+    assert [bound.key for bound in found] == ["min", "below"]
+    assert [bound.holds(value) for bound in found] == kept
+    assert not any(bound.holds(float("nan")) for bound in found)
+
+
+def test_the_ends_are_those_of_the_type_unless_an_inclusive_limit_is_narrower():
+    field = Field("it", 0, 8, "uint", scale=Scale(Fraction(-1, 2)), limits=Limits(min=Fraction(-5), above=Fraction(-9)))
+    assert allowed_ends(field) == (-5, 0)
+    assert allowed_ends(Field("it", 0, 32, "float")) == (None, None)
+
+
+@pytest.mark.parametrize("bits", range(1, 65))
+def test_the_storage_holds_what_it_must_and_is_not_twice_as_wide_as_need_be(bits):
+    for signed in (False, True):
+        storage = Storage(holding(bits), signed)
+        field = Field("it", 0, bits, "int" if signed else "uint")
+        assert storage.min <= field.raw_min and field.raw_max <= storage.max
+        assert storage.bits == 8 or storage.bits // 2 < bits
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        ("1/3", "0.3333333333333333"),
+        ("-1/8", "-0.125"),
+        ("7", "7"),
+        ("-32768/1000", "-32.768"),
+        ("1/1024", "0.0009765625"),
+    ],
+)
+def test_numbers_are_decimals_where_these_end(value, text):
+    assert exact_text(Fraction(value)) == text
+
+
+@given(st.fractions(max_denominator=10**6))
+def test_factors_are_exact_as_text(value):
+    assert Fraction(factor_text(value)) == value
+
+
+def test_places_and_values():
+    assert (bit_range(3, 1), bit_range(4, 4), byte_range(0, 1), byte_range(2, 3)) == (
+        "bit 3", "bits 4 to 7", "byte 0", "bytes 2 to 4",
+    )  # fmt: skip
+    assert [value_text(raw) for raw in (-1, 9, 10, 0x5A)] == ["-1", "9", "10 (0xA)", "90 (0x5A)"]
