@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from icdgen.protocol import crc, facts, ops
+from icdgen.protocol.sections import PROCEDURES
 from tests.c import harness, odd_protocol
 from tests.conformance import wire, wire_changed, wire_random
 from tests.conformance.build import build
