@@ -6,9 +6,13 @@
 
 /** How a client waits and tries again, in milliseconds. */
 typedef struct {
+    /** How long a reply may take, in milliseconds. */
     uint32_t reply_timeout;
-    uint32_t retries;
+    /** How often a request is sent again. */
+    uint8_t retries;
+    /** Time between two polls for an acknowledge, in milliseconds. */
     uint32_t poll_interval;
+    /** How long a telecommand may take to be processed, in milliseconds. */
     uint32_t poll_timeout;
 } icd_client_settings_t;
 
@@ -167,7 +171,11 @@ static inline void icdgen_put(
 /* Whether a number is one of those that are allowed, of which NULL stands for all. */
 static inline bool icdgen_allowed(const uint8_t *allowed, size_t count, uint8_t number)
 {
-    return allowed == NULL || memchr(allowed, number, count) != NULL;
+    bool found = allowed == NULL;
+    for (size_t i = 0; !found && i < count; ++i) {
+        found = allowed[i] == number;
+    }
+    return found;
 }
 
 /** Who the node is. */
