@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from functools import cache
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
 PACKAGE = Path(__file__).parent
@@ -27,3 +29,15 @@ def runtimes() -> Path:
 def icds() -> Path:
     """Folder of the shipped ICDs."""
     return _root() / "icd"
+
+
+def provide_runtime() -> None:
+    """Makes ``icdgen_runtime`` importable, what generated Python runs on: the tool talks to devices by it as well."""
+    name = "icdgen_runtime"
+    if name in sys.modules:
+        return
+    folder = runtimes() / "python" / name
+    spec = spec_from_file_location(name, folder / "__init__.py", submodule_search_locations=[str(folder)])
+    assert spec and spec.loader
+    sys.modules[name] = module = module_from_spec(spec)
+    spec.loader.exec_module(module)

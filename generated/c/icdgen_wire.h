@@ -462,7 +462,11 @@ static inline void icdgen_put(
 /* Whether a number is one of those that are allowed, of which NULL stands for all. */
 static inline bool icdgen_allowed(const uint8_t *allowed, size_t count, uint8_t number)
 {
-    return allowed == NULL || memchr(allowed, number, count) != NULL;
+    bool found = allowed == NULL;
+    for (size_t i = 0; !found && i < count; ++i) {
+        found = allowed[i] == number;
+    }
+    return found;
 }
 
 /** Who the node is. */

@@ -8,9 +8,9 @@ import re
 from collections.abc import Iterator
 
 from icdgen.icd.model import Icd
-from icdgen.protocol import facts, ops, scripts, transfer
-from icdgen.protocol.asked import Refusal
+from icdgen.protocol import errors, facts, ops, scripts
 from icdgen.protocol.client import TELEMETRY, Request
+from icdgen.protocol.request_keys import Refusal
 
 FRAMING = (0x1F, 0x7F, 0xFF)
 CAN_BYTES = 8  # a bus carries no longer packet, and not every language can hold one
@@ -113,7 +113,7 @@ def _frames_are_whole(icd: Icd, request: dict) -> bool:
     known = facts.of(icd, icd.node(request["node"]))
     try:
         procedure = scripts.procedure_of(known, request)
-    except (Refusal, facts.Unsupported, transfer.NotAllowed, transfer.TooLarge):
+    except (Refusal, facts.Unsupported, errors.RangeError, errors.TooLongError):
         return True
     for row in request["script"]:
         event, want = row.get("event"), procedure.want

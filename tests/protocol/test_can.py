@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from icdgen.protocol import can
+from icdgen.protocol import can, errors
 from tests.protocol import quick
 
 NODE, OBC, OTHER = 1, 0x42, 0x43
@@ -46,9 +46,9 @@ def test_the_longest_message_has_256_packets_and_no_more(known):
     packets = sent(known, bytes(1792))
     assert len(packets) == 256
     assert [p.data[7] for p in packets] == list(range(255, -1, -1))
-    with pytest.raises(can.TooLong):
+    with pytest.raises(errors.TooLongError):
         sent(known, bytes(1793))
-    with pytest.raises(can.TooLong):
+    with pytest.raises(errors.TooLongError):
         can.split(known, can.Message("acknowledge", 1, NODE, OBC, b"\0"))
 
 

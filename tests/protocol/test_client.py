@@ -6,17 +6,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from icdgen.protocol import can, i2c, uart
-from icdgen.protocol.client import Machine, NotNow, Request, UnknownId
-from icdgen.protocol.facts import Client
+from icdgen.protocol import can, uart
+from icdgen.protocol.client import Client, Request
+from icdgen.protocol.errors import BusyError, LengthError, UnknownIdError
+from icdgen.protocol.facts import Client as Settings
 from tests.protocol import quick
 
-SETTINGS = Client(reply_timeout=100, retries=2, poll_interval=10, poll_timeout=50)
+SETTINGS = Settings(reply_timeout=100, retries=2, poll_interval=10, poll_timeout=50)
 OUTCOMES = {"done", "refused", "timeout"}
 
 
-def machine(known, bus="uart", **options):
-    return Machine(known, bus, settings=SETTINGS, **options)
+def talking(known, bus="uart", **options):
+    return Client(known, bus, settings=SETTINGS, **options)
 
 
 def line(known, *data):
@@ -24,11 +25,11 @@ def line(known, *data):
 
 
 def test_the_next_telecommand_waits_for_the_acknowledge(known):
-    client = machine(known)
+    client = talking(known)
     client.start(0, Request("telecommand", 31, b"\1"))
     assert client.out == [line(known, 31, 1)]
     client.out.clear()
-    with pytest.raises(NotNow):
+    with pytest.raises(BusyError):
         client.start(1, Request("telecommand", 31, b"\1"))
     (event,) = client.received(2, line(known, 31, 0))
     assert (event["event"], event["attempts"]) == ("done", 1)
@@ -36,17 +37,17 @@ def test_the_next_telecommand_waits_for_the_acknowledge(known):
 
 
 def test_what_the_node_does_not_have_is_refused_before_it_is_sent(known):
-    client = machine(known)
-    with pytest.raises(UnknownId):
+    client = talking(known)
+    with pytest.raises(UnknownIdError):
         client.start(0, Request("telecommand", 0))
-    with pytest.raises(i2c.WrongLength):
+    with pytest.raises(LengthError):
         client.start(0, Request("telecommand", 31, b""))
     assert client.out == [] and client.deadline is None
 
 
 def test_a_telecommand_without_acknowledge_is_not_sent_twice_unless_it_may_be(known):
     for repeat, attempts in ((False, 1), (True, 3)):
-        client, events, now = machine(known), [], 0
+        client, events, now = talking(known), [], 0
         client.start(0, Request("telecommand", 31, b"\1", repeat))
         while client.deadline is not None:
             now = client.deadline
@@ -56,13 +57,13 @@ def test_a_telecommand_without_acknowledge_is_not_sent_twice_unless_it_may_be(kn
 
 
 def test_a_setting_may_always_be_sent_again(known):
-    client = machine(known)
+    client = talking(known)
     client.start(0, Request("telecommand", 3, b"\1"))
     assert client.tick(100) == [] and len(client.out) == 2
 
 
 def test_a_late_acknowledge_is_not_taken_for_that_of_the_next(known):
-    client = machine(known)
+    client = talking(known)
     client.start(0, Request("telecommand", 31, b"\1", repeat=True))
     client.tick(100)
     assert client.received(110, line(known, 31, 0))[0]["event"] == "done"
@@ -92,7 +93,7 @@ actions = st.one_of(
 @quick
 @given(st.lists(actions, max_size=40), st.booleans())
 def test_every_request_has_exactly_one_outcome(known, script, checked):
-    client, now, asked, outcomes = machine(known, checked=checked), 0, 0, 0
+    client, now, asked, outcomes = talking(known, crc=checked), 0, 0, 0
     for action, value in script:
         now += 1
         events = []
@@ -101,7 +102,7 @@ def test_every_request_has_exactly_one_outcome(known, script, checked):
             try:
                 events = client.start(now, value)
                 asked += 1
-            except NotNow:
+            except BusyError:
                 assert client.deadline is not None
         elif action == "wait":
             now += value
@@ -119,7 +120,7 @@ def test_every_request_has_exactly_one_outcome(known, script, checked):
 @quick
 @given(st.lists(st.tuples(st.booleans(), st.one_of(st.none(), st.binary(max_size=9)), st.integers(0, 60)), max_size=30))
 def test_on_i2c_nothing_hangs_either(known, script):
-    client, now = machine(known, "i2c", checked=True), 0
+    client, now = talking(known, "i2c", crc=True), 0
     for telecommand, data, pause in script:
         client.out.clear()
         if client.deadline is None:
@@ -133,7 +134,7 @@ def test_on_i2c_nothing_hangs_either(known, script):
 
 
 def test_on_can_a_frame_is_split_and_joined(known):
-    client = machine(known, "can", address=0x42)
+    client = talking(known, "can", address=0x42)
     client.start(0, Request("telemetry", 206))
     packets = can.split(known, can.Message("reply", 206, 1, 0x42, bytes(range(252)) * 2))
     events = [event for packet in packets for event in client.packet(5, packet)]

@@ -6,7 +6,7 @@ from random import Random
 
 import pytest
 
-from icdgen.protocol import facts, programs, transfer
+from icdgen.protocol import errors, facts, programs, transfer
 from icdgen.vectors.wire import node as nodes
 from icdgen.vectors.wire.procedures import record
 
@@ -85,20 +85,20 @@ def test_an_upload_through_a_node_that_takes_none_does_not_begin(known):
 
 @pytest.mark.parametrize("destination", [0, 2, 10, 17, 255])
 def test_an_upload_to_a_destination_that_is_not_supported_does_not_begin(boot, destination):
-    with pytest.raises(transfer.NotAllowed):
+    with pytest.raises(errors.RangeError):
         transfer.Upload(boot, destination, bytes(100))
 
 
 def test_an_upload_of_more_than_a_destination_holds_does_not_begin(boot):
     transfer.Upload(boot, 9, bytes(512 * 1024))
-    with pytest.raises(transfer.TooLarge) as caught:
+    with pytest.raises(errors.TooLongError) as caught:
         transfer.Upload(boot, 9, bytes(600 * 1024))
-    assert (caught.value.most, caught.value.actual) == (524_288, 614_400)
+    assert (caught.value.expected, caught.value.actual) == (524_288, 614_400)
 
 
 @pytest.mark.parametrize("program", [0, 1, 2, 10])
 def test_only_programs_that_can_be_copied_are_copied(boot, program):
-    with pytest.raises(transfer.NotAllowed):
+    with pytest.raises(errors.RangeError):
         programs.ProgramCopy(boot, program)
 
 

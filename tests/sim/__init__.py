@@ -1,0 +1,1 @@
+from icdgen import link as link

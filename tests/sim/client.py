@@ -7,10 +7,10 @@ import sys
 from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.link.ports import open_port
-from icdgen.link.session import Session
 from icdgen.protocol import crc, programs, transfer
 from icdgen.sim.values import fresh
 from tests.sim.device import FAST, ICD, download, hasty
+from tests.sim.reference import Session
 
 NODE = "cubeacp"
 STARTER = next(n for n in ICD.nodes if n.protocol.get("program_start", {}).get("application") == NODE)

@@ -9,10 +9,10 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 from icdgen.link.ports import open_port
-from icdgen.link.session import Session
 from icdgen.protocol import transfer
 from icdgen.protocol.facts import Client
 from tests.conformance.icds import icd_of
+from tests.sim.reference import Session
 
 FAST = Client(reply_timeout=150, retries=4, poll_interval=5, poll_timeout=2000)
 ICD = icd_of()

@@ -64,7 +64,7 @@ def refusable(client) -> set[str]:
 
 
 def test_the_checksum_of_a_telecommand_is_checked_where_there_is_one():
-    with session(checked=True) as client:
+    with session(crc=True) as client:
         assert client.telecommand(client.known.telecommands[17], bytes(6))["event"] == "done"
         wrong = bytes([17]) + bytes(6) + b"\x01"
         assert raw_exchange(client, wrong)["code"] == client.known.errors["checksum"]
@@ -161,7 +161,7 @@ def test_values_are_set_by_options_orders_and_scripts(tmp_path):
     options = ("--set", "Estimated Attitude Angles", "roll=12.34", "--script", str(script), "--orders")
     with simulator("--node", "cubeacp", "--tcp", "0", *options) as (place, process):
         from icdgen.link.ports import open_port
-        from icdgen.link.session import Session
+        from tests.sim.reference import Session
 
         with Session(ICD, ICD.node("cubeacp"), open_port(place, {}), settings=FAST) as client:
             name = "Estimated Attitude Angles"
@@ -292,12 +292,12 @@ def test_what_cannot_be_is_said(options, text, tmp_path):
 )  # fmt: skip
 def test_a_wrong_script_is_refused_before_anything_runs(script, tmp_path):
     from icdgen.errors import UserError
-    from icdgen.sim import orders
+    from icdgen.sim import control
 
     path = tmp_path / "script.yaml"
     path.write_text(script)
     with pytest.raises(UserError):
-        orders.read(path, ICD, ICD.node("cubeacp"))
+        control.read(path, ICD, ICD.node("cubeacp"))
 
 
 def test_monitor_and_send_from_the_outside():

@@ -72,21 +72,21 @@ def test_the_list_and_the_index_hold_every_file_until_they_are_erased(tmp_path):
         (tmp_path / str(number)).write_bytes(bytes([number]) * (100 + number))
         options += ["--file", f"2:{number}={tmp_path / str(number)}"]
     with session(*options, "--fault", "drop=10%@acknowledge") as client:
-        listed = transfer.List(client.known)
+        listed = transfer.FileList(client.known)
         assert client.run(listed) == "done"
         assert [(e["counter"], e["size"]) for e in listed.entries] == [(n, 100 + n) for n in range(5)]
         result, data = download(client, client.known.index.file_type, 0, None)
-        entries, truncated = files.index_decode(client.known, data)
+        entries, truncated = files.read_index(client.known, data)
         assert (result, truncated) == ("done", 0)
         assert [(e.counter, e.size, e.checksum) for e in entries] == [
             (e["counter"], e["size"], e["checksum"]) for e in listed.entries
         ]
         assert client.run(transfer.Erase(client.known, 2, 3, False)) == "done"
-        left = transfer.List(client.known)
+        left = transfer.FileList(client.known)
         client.run(left)
         assert [e["counter"] for e in left.entries] == [0, 1, 2, 4]
         assert client.run(transfer.Format(client.known)) == "done"
-        left = transfer.List(client.known)
+        left = transfer.FileList(client.known)
         assert (client.run(left), left.entries) == ("done", [])
 
 

@@ -5,26 +5,40 @@ from __future__ import annotations
 import sys
 
 import pytest
+from icdgen_runtime.wire import (
+    CanJoiner,
+    CanMessage,
+    CanPacket,
+    Done,
+    Link,
+    Request,
+    Timeout,
+    can_split,
+    identify,
+)
 
+from icdgen.backends.python.objects.links import link_of
+from icdgen.errors import UserError
 from icdgen.link.ports import Can, PortError, Serial, open_port
-from icdgen.link.session import Session
-from icdgen.protocol.can import Packet
-from tests.sim.device import FAST, ICD, simulator
+from icdgen.link.session import session
+from icdgen.protocol import facts
+from tests.sim.device import ICD, simulator
 
 
 @pytest.mark.pty
 def test_a_serial_port_by_pyserial():
-    node = ICD.node("cubeacp")
+    link = cubeacp()
     with simulator("--node", "cubeacp", "--pty") as (place, _):
-        port = Serial(place, ICD.protocol_of(node)["uart"])
-        with Session(ICD, node, port, settings=FAST) as client:
-            assert client.identify()[1]
+        port = Serial(place, ICD.protocol_of(ICD.node("cubeacp"))["uart"])
+        with session(link, port) as client:
+            outcome = client.start(Request("telemetry", link.identification.telemetry))
+            assert isinstance(outcome, Done) and identify(link, outcome.data).matches
 
 
 def test_a_can_bus_by_python_can():
     one, other = Can("virtual", "icdgen", 500_000), Can("virtual", "icdgen", 500_000)
     try:
-        packet = Packet(0x1234567, b"\x01\x02")
+        packet = CanPacket(0x1234567, b"\x01\x02")
         one.send(packet)
         assert other.receive(1.0) == packet
         assert other.receive(0.01) is None
@@ -34,9 +48,35 @@ def test_a_can_bus_by_python_can():
 
 
 def test_a_request_over_can_that_nobody_answers_ends():
-    node = ICD.node("cubeacp")
-    with Session(ICD, node, open_port("can://virtual/silent", {}), settings=FAST) as client:
-        assert client.identify() is None
+    link = cubeacp()
+    settings = link.settings._replace(reply_timeout=50, retries=2)
+    with session(link, open_port("can://virtual/silent", {}), settings=settings) as client:
+        assert client.start(Request("telemetry", link.identification.telemetry)) == Timeout(128, 3)
+
+
+def test_a_request_over_can_is_answered_by_the_node_of_the_icd():
+    link, other = cubeacp(), Can("virtual", "talking", 500_000)
+    node, ours = link.can.node_address, 0x2A
+    frame = bytes(range(link.frames[128]))
+    with session(link, open_port("can://virtual/talking", {}), address=ours) as client:
+        for packet in can_split(link, CanMessage("reply", 128, node, ours, frame)):
+            other.send(packet)  # it is read once the request has been sent
+        assert client.start(Request("telemetry", 128)).data == frame
+        asked = CanJoiner(link).feed(0, other.receive(1.0))[0].message
+        assert asked == CanMessage("request", 128, ours, node)
+    other.close()
+
+
+def test_what_cannot_be_asked_is_an_error_with_a_remedy_and_closes_the_port():
+    link, port = cubeacp(), Can("virtual", "closed", 500_000)
+    with pytest.raises(UserError) as error, session(link, port) as client:
+        client.start(Request("telecommand", 1, bytes(100)))
+    assert "100" in str(error.value) and error.value.help
+    assert port.bus._is_shutdown
+
+
+def cubeacp() -> Link:
+    return link_of(ICD, facts.of(ICD, ICD.node("cubeacp")))
 
 
 @pytest.mark.parametrize(

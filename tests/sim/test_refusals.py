@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from icdgen.link.session import Session
 from icdgen.protocol import transfer
 from tests.sim.device import ICD
 from tests.sim.port import Refusing
+from tests.sim.reference import Session
 
 ODD = 0x55
 NODE = ICD.node("bootloader")

@@ -43,13 +43,15 @@ def monitor(
     pipe each round is printed; --format json prints an object for each frame. Exit status: 1 if a frame was not answered in
     the last round.
     """
+    from icdgen_runtime.wire.client import Request
+
     from icdgen.link.live import Monitor, Screen
     from icdgen.link.options import open_session, stranger
 
     icd = load_or_exit(icds).icd
     watched = Monitor(icd, node, messages)
     rounds = 1 if once else count
-    with open_session(icd, watched.node, **options, on_event=watched.event) as session:
+    with open_session(icd, watched.known, **options, on_event=watched.event) as session:
         strange = stranger(session)
         if strange:
             say(f"icdgen: {strange}", err=True)
@@ -60,7 +62,8 @@ def monitor(
                 number += 1
                 begin = time.monotonic()
                 for message in watched.messages:
-                    watched.took(message, session.telemetry(message))
+                    assert message.telemetry_id is not None
+                    watched.took(message, session.start(Request("telemetry", message.telemetry_id)))
                     screen.show()
                 if form == "json":
                     _print_json(watched)
@@ -68,9 +71,9 @@ def monitor(
                     _print(watched, number)
                 if number == rounds:
                     break
-                for event in session.listen(session.now + round(max(0.0, every - (time.monotonic() - begin)) * 1000)):
-                    watched.event(event)
-                    screen.show()
+                while time.monotonic() < begin + every:
+                    if session.wait((begin + every) * 1000):
+                        screen.show()
     sys.exit(1 if watched.silent else 0)
 
 

@@ -13,6 +13,8 @@ from icdgen.commands.common import icd_option, load_or_exit, say
 from icdgen.link.options import session_options
 
 if TYPE_CHECKING:
+    from icdgen_runtime.wire.events import Refused, Timeout
+
     from icdgen.icd.model import Icd, Message, Node
 
 
@@ -31,19 +33,25 @@ def send(
 
     Exit status: 0 acknowledged (or sent, if it is never acknowledged), 1 refused or no answer, 2 misuse.
     """
+    from icdgen_runtime.wire.client import Request
+    from icdgen_runtime.wire.events import Done
+
     from icdgen import values
     from icdgen.link.options import open_session
+    from icdgen.protocol import facts
 
     icd = load_or_exit(icds).icd
     found = values.find_node(icd, node)
     frame = values.encode(icd, node, message, list(assignments), raw=raw, kind="telecommand")
-    with open_session(icd, found, **options) as session:
-        outcome = session.telecommand(frame.message, frame.data)
-    ok = outcome["event"] == "done"
+    assert frame.message.telecommand_id is not None
+    with open_session(icd, facts.of(icd, found), **options) as session:
+        outcome = session.start(Request("telecommand", frame.message.telecommand_id, frame.data))
+    ok = isinstance(outcome, Done)
     if form == "json":
-        answer = {key: outcome[key] for key in ("event", "code", "reason", "attempts") if outcome.get(key) is not None}
-        click.echo(json.dumps({"message": frame.message.name, **answer}))
-    elif ok:
+        known = {key: getattr(outcome, key, None) for key in ("code", "reason", "attempts")}
+        answer = {key: value for key, value in known.items() if value is not None}
+        click.echo(json.dumps({"message": frame.message.name, "event": type(outcome).__name__.lower(), **answer}))
+    elif isinstance(outcome, Done):
         say(f"{frame.message.name}: {_done(frame.message)}")
     else:
         say(f"{frame.message.name}: {_failed(icd, found, outcome)}", err=True)
@@ -56,13 +64,15 @@ def _done(message: Message) -> str:
     return "acknowledged" if message.acknowledge else "sent; it is never acknowledged"
 
 
-def _failed(icd: Icd, node: Node, outcome: dict[str, Any]) -> str:
-    if outcome["event"] == "timeout":
-        tries = outcome["attempts"]
+def _failed(icd: Icd, node: Node, outcome: Refused | Timeout) -> str:
+    from icdgen_runtime.wire.events import Timeout
+
+    if isinstance(outcome, Timeout):
+        tries = outcome.attempts
         return f"no answer{f' to {tries} attempts' if tries > 1 else ''}; whether it was executed is not known"
-    if outcome["code"] is None:
+    if outcome.code is None:
         return "refused"
     name = icd.protocol_of(node).get("errors", {}).get("enum")
     enums = {e.name: e for n in (*icd.included(node), node) for e in n.enums}
     members = {m.value: m.name for m in enums[name].members} if name in enums else {}
-    return f"refused: {members.get(outcome['code'], 'unknown error')} (code {outcome['code']})"
+    return f"refused: {members.get(outcome.code, 'unknown error')} (code {outcome.code})"

@@ -1,1 +1,5 @@
-"""Talking to a device: ports, and a session that runs the client and the procedures of `icdgen.protocol` over them."""
+"""Talking to a device: ports, and sessions over them of the Python runtime, which importing this makes importable."""
+
+from icdgen import shipped
+
+shipped.provide_runtime()

@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from icdgen_runtime.wire.events import Done, Log, Outcome
 
 from icdgen import tables, values
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Message
-from icdgen.protocol import facts, logs
-from icdgen.protocol.i2c import WrongLength
+from icdgen.protocol import facts
 from icdgen.tables import Column, clean
 from icdgen.values.frame import Frame, frame
+
+if TYPE_CHECKING:
+    from icdgen_runtime.wire.events import Event
+    from rich.table import Table
 
 _COLUMNS = ("frame", "field", "value", "unit", "remarks")
 
@@ -34,23 +40,19 @@ class Monitor:
         self.last: dict[str, bytes] = {}
         self.silent: set[str] = set()  # what was not answered in this round
 
-    def took(self, message: Message, data: bytes | None) -> None:
-        """The answer to a request; None: there was none."""
-        if data is None:
-            self.silent.add(message.name)
-        else:
+    def took(self, message: Message, outcome: Outcome) -> None:
+        """What became of a request for the frame."""
+        if isinstance(outcome, Done):
             self.silent.discard(message.name)
-            self.last[message.name] = data
+            self.last[message.name] = outcome.data
+        else:
+            self.silent.add(message.name)
 
-    def event(self, event: dict) -> None:
+    def event(self, event: Event) -> None:
         """Takes what came unasked: frames of a log."""
-        if event["event"] != "log":
+        if not isinstance(event, Log):
             return
-        try:
-            _, found = logs.decode_message(self.known, bytes.fromhex(event["bytes"]))
-        except WrongLength:
-            return
-        for one in found:
+        for one in event.log.frames:
             message = self.known.telemetry.get(one.id) if one.id is not None else None
             if message and message.length == len(one.data):
                 self.last[message.name] = one.data
@@ -107,7 +109,7 @@ class Screen:
         if self.live:
             self.live.refresh()
 
-    def _table(self):
+    def _table(self) -> Table:
         from rich.table import Table
         from rich.text import Text
 

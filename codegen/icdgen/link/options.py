@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from icdgen.errors import UserError
-from icdgen.icd.model import Icd, Node
+from icdgen.icd.model import Icd
+
+if TYPE_CHECKING:
+    from icdgen_runtime.wire.session import BusSession
+
+    from icdgen.link.session import OnEvent
+    from icdgen.protocol.facts import Facts
 
 
-def session_options(command: Callable) -> Callable:
+def session_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """--port, --crc, --address, --timeout, --retries."""
     options = [
         click.option(
@@ -31,41 +38,54 @@ def session_options(command: Callable) -> Callable:
     return command
 
 
+@contextmanager
 def open_session(
-    icd: Icd, node: Node, port: str, crc: bool, address: int, timeout: int | None, retries: int | None, on_event=None
-):
-    """The session. Raises `icdgen.errors.UserError`."""
-    from icdgen.link.ports import Can, open_port
-    from icdgen.link.session import Session
-    from icdgen.protocol import facts
+    icd: Icd,
+    known: Facts,
+    port: str,
+    crc: bool,
+    address: int,
+    timeout: int | None,
+    retries: int | None,
+    on_event: OnEvent | None = None,
+) -> Iterator[BusSession]:
+    """A session with a node, of which ``known`` are the facts. Raises `icdgen.errors.UserError`."""
+    from icdgen.backends.python.objects.links import link_of
+    from icdgen.link.ports import open_port
+    from icdgen.link.session import session
 
-    known = facts.of(icd, node)
-    is_can = port.startswith("can://")
+    node, is_can = known.node, port.startswith("can://")
     if (known.can if is_can else known.framing) is None:
         what = "CAN" if is_can else "a stream of bytes"
         raise UserError(f"the ICD does not say how to talk to {node.name} over {what}", "see docs/icd-format.md")
     if known.can and not 0 <= address < 1 << known.can.parts["source"].bits:
         raise UserError(f"--address {address} does not fit", f"{known.can.parts['source'].bits} bits hold it")
-    settings = replace(
-        known.client,
-        reply_timeout=known.client.reply_timeout if timeout is None else timeout,
-        retries=known.client.retries if retries is None else retries,
-    )
-    opened = open_port(port, icd.protocol_of(node))
-    assert isinstance(opened, Can) == is_can
-    return Session(icd, node, opened, crc, address, settings, on_event)
+    link = link_of(icd, known)
+    settings = link.settings
+    if timeout is not None:
+        settings = settings._replace(reply_timeout=timeout)
+    if retries is not None:
+        settings = settings._replace(retries=retries)
+    with session(link, open_port(port, icd.protocol_of(node)), crc, address, settings, on_event) as opened:
+        yield opened
 
 
-def stranger(session) -> str | None:
+def stranger(session: BusSession) -> str | None:
     """What is to be said if the node is another one than the ICD describes, or does not answer."""
-    if session.known.identification is None:
+    from icdgen_runtime.wire.client import Request
+    from icdgen_runtime.wire.events import Done
+    from icdgen_runtime.wire.identity import identify
+
+    link = session.client.link
+    if link.identification is None or link.identification.telemetry is None:
         return None
-    found = session.identify()
-    if found is None:
+    outcome = session.start(Request("telemetry", link.identification.telemetry))
+    if not isinstance(outcome, Done):
         return "the device does not answer"
-    values, same = found
-    if same:
+    found = identify(link, outcome.data)
+    if found.matches:
         return None
-    told = ", ".join(f"{role.replace('_', ' ')} {value}" for role, value in values.items())
-    node = session.node
-    return f"the device says {told}; the ICD is that of node type {node.node_type}, interface version {node.interface_version}"
+    return (
+        f"the device says node type {found.node_type}, interface version {found.interface_version}; "
+        f"the ICD is that of node type {link.node_type}, interface version {link.interface_version}"
+    )

@@ -13,11 +13,12 @@ import socket
 import stat
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Protocol
+from typing import Any, Protocol
 from urllib.parse import urlsplit
 
+from icdgen_runtime.wire.can import CanPacket
+
 from icdgen.errors import UserError
-from icdgen.protocol.can import Packet
 
 CONNECT_TIMEOUT = 5.0  # s
 WRITE_TIMEOUT = 5.0
@@ -133,7 +134,7 @@ class Terminal:
 class Serial:
     """A serial port, by pyserial."""
 
-    def __init__(self, name: str, settings: dict) -> None:
+    def __init__(self, name: str, settings: dict[str, Any]) -> None:
         serial = _library("serial", "pyserial")
         self.name, self.error = name, (serial.SerialException, OSError)
         try:
@@ -177,7 +178,7 @@ class Can:
         except (self.can.CanError, OSError, ValueError, ImportError) as error:
             raise PortError(f"cannot open {self.name}: {error}", f"a port is named so: {FORMS}") from None
 
-    def receive(self, timeout: float) -> Packet | None:
+    def receive(self, timeout: float) -> CanPacket | None:
         """The next packet with a 29-bit identifier, after ``timeout`` none. Raises `PortError`."""
         try:
             found = self.bus.recv(max(timeout, 0))
@@ -185,9 +186,9 @@ class Can:
             raise PortError(f"{self.name}: {error}") from None
         if found is None or not found.is_extended_id or found.is_error_frame or found.is_remote_frame:
             return None
-        return Packet(found.arbitration_id, bytes(found.data))
+        return CanPacket(found.arbitration_id, bytes(found.data))
 
-    def send(self, packet: Packet) -> None:
+    def send(self, packet: CanPacket) -> None:
         message = self.can.Message(arbitration_id=packet.id, data=packet.data, is_extended_id=True)
         try:
             self.bus.send(message, timeout=WRITE_TIMEOUT)
@@ -198,7 +199,7 @@ class Can:
         self.bus.shutdown()
 
 
-def open_port(text: str, protocol: dict) -> Port | Can:
+def open_port(text: str, protocol: dict[str, Any]) -> Port | Can:
     """The port. ``protocol`` is the ICD's section: baud rate and the like. Raises `icdgen.errors.UserError`."""
     scheme, separator, rest = text.partition("://")
     if separator:
@@ -230,7 +231,7 @@ def _address(text: str) -> tuple[str, int]:
     return host, port
 
 
-def _can(rest: str, section: dict) -> Can:
+def _can(rest: str, section: dict[str, Any]) -> Can:
     interface, separator, channel = rest.partition("/")
     if not separator or not interface or not channel:
         raise PortError(f"`can://{rest}` is no CAN bus", "can://INTERFACE/CHANNEL, as python-can names them")
@@ -245,7 +246,7 @@ def _is_pty(path: str) -> bool:
     return stat.S_ISCHR(found.st_mode) and os.path.realpath(path).startswith("/dev/pts/")
 
 
-def _library(name: str, package: str):
+def _library(name: str, package: str) -> Any:
     from importlib import import_module
 
     try:

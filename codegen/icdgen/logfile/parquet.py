@@ -7,7 +7,7 @@ import queue
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from icdgen.errors import UserError
 from icdgen.logfile.columns import TIME, Column, Plan
@@ -52,7 +52,7 @@ def _groups(source: Source, decoder: Decoder, head: int | None, done: Callable[[
 
 def _ahead(items: Iterator[pa.Table]) -> Iterator[pa.Table]:
     """The items, made in a thread, one ahead."""
-    made: queue.Queue = queue.Queue(maxsize=1)
+    made: queue.Queue[Any] = queue.Queue(maxsize=1)
     stop = threading.Event()
 
     def put(item: object) -> None:

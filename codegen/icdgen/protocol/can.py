@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from math import ceil
 from typing import NamedTuple
 
+from icdgen.protocol.errors import TooLongError
 from icdgen.protocol.facts import Can, Facts, need
 
 KINDS = ("telecommand", "acknowledge", "refusal", "request", "reply", "request_refusal")
@@ -21,14 +22,6 @@ INCOMPLETE = "incomplete"  # a message that was given up for want of packets
 MALFORMED = "malformed"  # a packet that cannot be part of such a message
 BUSY = "busy"  # more senders at once than there is room for, the packet is dropped
 UNKNOWN_TYPE = "unknown_type"  # a message type that the ICD does not have
-
-
-class TooLong(ValueError):
-    """The data do not fit the packets of a message."""
-
-    def __init__(self, most: int, actual: int) -> None:
-        super().__init__(f"{actual} bytes, at most {most} fit")
-        self.most, self.actual = most, actual
 
 
 class Packet(NamedTuple):
@@ -74,7 +67,7 @@ def parts_of(can: Can, id: int) -> dict[str, int]:
 
 
 def split(facts: Facts, message: Message) -> list[Packet]:
-    """The packets of a message, in the order in which they are sent. Raises `TooLong`."""
+    """The packets of a message, in the order in which they are sent. Raises `TooLongError`."""
     can = need(facts.can, "can")
 
     def packet(types: dict[str, int], data: bytes) -> Packet:
@@ -88,9 +81,9 @@ def split(facts: Facts, message: Message) -> list[Packet]:
         return [packet(can.types, data)]
     form = can.extended
     if form is None or message.kind not in can.extended_types:
-        raise TooLong(room, size)
+        raise TooLongError(room, size)
     if size > form.bytes:
-        raise TooLong(form.bytes, size)
+        raise TooLongError(form.bytes, size)
     count, packets = ceil(size / form.data_bytes), []
     for number in range(count):
         piece = data[number * form.data_bytes : (number + 1) * form.data_bytes].ljust(
@@ -102,7 +95,7 @@ def split(facts: Facts, message: Message) -> list[Packet]:
 
 
 @dataclass
-class _Transaction:
+class _Joining:
     """A message of several packets. ``count`` is that of all its packets."""
 
     key: tuple[int, int, int, int]  # type, id, source, destination
@@ -111,32 +104,32 @@ class _Transaction:
     length: int | None  # of the data, where the ICD knows it
     packets: dict[int, bytes]
     last: int  # when the last packet came, ms
-    run: int = 0  # packets 0 to run-1 came last, one after the other
-    done: int | None = None  # the packet that completed it
+    in_order: int = 0  # packets 0 to run-1 came last, one after the other
+    completed_by: int | None = None  # the packet that completed it
 
     def came(self, number: int, now: int) -> None:
         """Notes that a packet came, be it a repeated one."""
         self.last = now
-        if number == self.run:
-            self.run += 1
-        elif number != self.run - 1:
-            self.run = int(number == 0)
+        if number == self.in_order:
+            self.in_order += 1
+        elif number != self.in_order - 1:
+            self.in_order = int(number == 0)
 
 
 class Joiner:
-    """Puts messages together. ``address``: whose messages (None: everybody's), ``senders``: transactions at once."""
+    """Puts messages together. ``address``: whose messages (None: everybody's), ``senders``: joinings at once."""
 
     def __init__(self, facts: Facts, address: int | None = None, senders: int = 4) -> None:
         self.facts, self.can = facts, need(facts.can, "can")
         self.address, self.senders = address, senders
         self.room = ceil(facts.longest_data / self.can.extended.data_bytes) if self.can.extended else 0  # packets
-        self.open: list[_Transaction] = []
+        self.open: list[_Joining] = []
 
     def expire(self, now: int) -> list[Event]:
         """Gives up what has waited too long for its next packet, in the order in which the messages began."""
         form = self.can.extended
         late = [t for t in self.open if form and now - t.last >= form.packet_timeout]
-        return [event for transaction in late for event in self._give_up(transaction)]
+        return [event for joining in late for event in self._give_up(joining)]
 
     def feed(self, now: int, packet: Packet) -> list[Event]:
         """Takes one packet; ``now`` in milliseconds."""
@@ -165,37 +158,41 @@ class Joiner:
         length = self._length(kind, id)
         if length is not None:
             count = ceil(length / form.data_bytes)
-        elif old and old.done is None and left < old.count:
+        elif old and old.completed_by is None and left < old.count:
             count = old.count
         else:  # the first packet that comes tells how many there are
             count = left + 1
         if not 0 <= left < count <= self.room:
             return [*self._give_up(old), Event(MALFORMED, id, source)]
         number, events, kept = count - 1 - left, [], {}
-        if old and (old.done in (None, number)) and old.packets.get(number) == piece:
+        if old and (old.completed_by in (None, number)) and old.packets.get(number) == piece:
             old.came(number, now)
             return [Event(DUPLICATE, id, source)]
-        if old and (old.done is not None or old.count != count or number in old.packets):  # another message has begun
-            if old.done is None and number == old.run:  # ... with the same packets as the old one up to here
+        if old and (
+            old.completed_by is not None or old.count != count or number in old.packets
+        ):  # another message has begun
+            if (
+                old.completed_by is None and number == old.in_order
+            ):  # ... with the same packets as the old one up to here
                 kept = {n: old.packets[n] for n in range(number)}
             events += self._give_up(old)
             old = None
         if old is None:
-            old = _Transaction(key, kind, count, length, kept, now, len(kept))
-            if not self._room(old):
+            old = _Joining(key, kind, count, length, kept, now, len(kept))
+            if not self._make_room(old):
                 return [*events, Event(BUSY, id, source)]
         old.packets[number] = piece
         old.came(number, now)
         if len(old.packets) == old.count:
-            old.done = number
+            old.completed_by = number
             joined = b"".join(old.packets[n] for n in range(old.count))[: old.length]
             events.append(Event(MESSAGE, id, source, Message(kind, id, source, destination, joined)))
         return events
 
-    def _room(self, new: _Transaction) -> bool:
-        """Opens a transaction, for which the oldest finished one makes room."""
+    def _make_room(self, new: _Joining) -> bool:
+        """Opens a joining, for which the oldest finished one makes room."""
         if len(self.open) == self.senders:
-            finished = next((t for t in self.open if t.done is not None), None)
+            finished = next((t for t in self.open if t.completed_by is not None), None)
             if finished is None:
                 return False
             self.open.remove(finished)
@@ -207,12 +204,12 @@ class Joiner:
         known = (self.facts.telecommands if kind == "telecommand" else self.facts.telemetry).get(id)
         return known.length if known and known.length > self.can.data_bytes else None
 
-    def _give_up(self, transaction: _Transaction | None) -> list[Event]:
-        """Forgets a transaction. One that is finished leaves no event: it was kept to know repeated packets."""
-        if transaction is None:
+    def _give_up(self, joining: _Joining | None) -> list[Event]:
+        """Forgets a joining. One that is finished leaves no event: it was kept to know repeated packets."""
+        if joining is None:
             return []
-        self.open.remove(transaction)
-        if transaction.done is not None:
+        self.open.remove(joining)
+        if joining.completed_by is not None:
             return []
-        _, id, source, _ = transaction.key
-        return [Event(INCOMPLETE, id, source, missing=transaction.count - len(transaction.packets))]
+        _, id, source, _ = joining.key
+        return [Event(INCOMPLETE, id, source, missing=joining.count - len(joining.packets))]

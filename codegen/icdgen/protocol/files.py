@@ -5,20 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from icdgen.protocol.errors import LengthError, RangeError
 from icdgen.protocol.facts import Facts, need
-from icdgen.protocol.i2c import WrongLength
-
-
-class NoSuchPacket(ValueError):
-    """The number of a packet that the block does not have."""
 
 
 def hole_map(facts: Facts, packets: int, received: Iterable[int]) -> bytes:
-    """The map of a block of so many packets. Raises `NoSuchPacket`."""
+    """The map of a block of so many packets. Raises `RangeError`."""
     form, first = need(facts.hole_map, "file_transfer.hole_map"), need(facts.files, "file_transfer").first_packet
     there = {number - first for number in received}
     if packets > form.bytes * 8 or not there <= set(range(packets)):
-        raise NoSuchPacket
+        raise RangeError("packet")
     out = bytearray(form.bytes)
     for bit in range(form.bytes * 8):
         state = form.beyond_end if bit >= packets else form.received if bit in there else 1 - form.received
@@ -27,12 +23,12 @@ def hole_map(facts: Facts, packets: int, received: Iterable[int]) -> bytes:
 
 
 def missing(facts: Facts, packets: int, map_: bytes) -> list[int]:
-    """Numbers of the packets that the map says were not received, rising. Raises `NoSuchPacket`, `WrongLength`."""
+    """Numbers of the packets that the map says were not received, rising. Raises `RangeError`, `LengthError`."""
     form, first = need(facts.hole_map, "file_transfer.hole_map"), need(facts.files, "file_transfer").first_packet
     if len(map_) != form.bytes:
-        raise WrongLength(form.bytes, len(map_))
+        raise LengthError(form.bytes, len(map_))
     if packets > form.bytes * 8:
-        raise NoSuchPacket
+        raise RangeError("packet")
     found = []
     for bit in range(packets):
         if map_[bit // 8] >> (7 - bit % 8 if form.msb0 else bit % 8) & 1 != form.received:
@@ -57,7 +53,7 @@ class IndexEntry(NamedTuple):
     meta: bytes
 
 
-def index_decode(facts: Facts, data: bytes) -> tuple[list[IndexEntry], int]:
+def read_index(facts: Facts, data: bytes) -> tuple[list[IndexEntry], int]:
     """The entries, and the bytes of a truncated last one."""
     form = need(facts.index, "index_file")
     whole = len(data) // form.entry_bytes * form.entry_bytes
@@ -71,8 +67,8 @@ def index_decode(facts: Facts, data: bytes) -> tuple[list[IndexEntry], int]:
     return entries, len(data) - whole
 
 
-def index_encode(facts: Facts, entries: Iterable[IndexEntry]) -> bytes:
-    """The index file. Raises `OverflowError`, and `WrongLength` for meta-data of another size."""
+def write_index(facts: Facts, entries: Iterable[IndexEntry]) -> bytes:
+    """The index file. Raises `OverflowError`, and `LengthError` for meta-data of another size."""
     form, out = need(facts.index, "index_file"), b""
     for entry in entries:
         one = bytearray(form.entry_bytes)
@@ -80,7 +76,7 @@ def index_encode(facts: Facts, entries: Iterable[IndexEntry]) -> bytes:
             value = getattr(entry, role)
             if role == "meta":
                 if len(value) != place.bytes:
-                    raise WrongLength(place.bytes, len(value))
+                    raise LengthError(place.bytes, len(value))
             else:
                 value = facts.bytes_of(value, place.bytes)
             one[place.at : place.at + place.bytes] = value

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from icdgen.protocol.errors import LengthError
 from icdgen.protocol.facts import Facts, LogBit, need
-from icdgen.protocol.i2c import WrongLength
 
 
 class Frame(NamedTuple):
@@ -87,7 +87,7 @@ def frames(facts: Facts, slots: Iterable[LogBit], data: bytes) -> tuple[Frame, .
 
 
 def encode(facts: Facts, mask: bytes, entries: Iterable[tuple[int, int, Iterable[bytes]]]) -> bytes:
-    """A log file. An entry is seconds, milliseconds and the data of each frame. Raises `WrongLength`, `OverflowError`."""
+    """A log file. An entry is seconds, milliseconds and the data of each frame. Raises `LengthError`, `OverflowError`."""
     form = need(facts.log_file, "telemetry_log")
     out = bytearray(form.header_bytes)
     out[form.mask_at : form.mask_at + len(_mask(facts, mask))] = mask
@@ -100,20 +100,20 @@ def encode(facts: Facts, mask: bytes, entries: Iterable[tuple[int, int, Iterable
 
 
 def decode_message(facts: Facts, message: bytes) -> tuple[bytes, tuple[Frame, ...]]:
-    """Mask and frames of an unsolicited log message, which begins with its id. Raises `WrongLength`."""
+    """Mask and frames of an unsolicited log message, which begins with its id. Raises `LengthError`."""
     form, layout = need(facts.log_message, "unsolicited_log"), need(facts.mask, "log_mask")
     if len(message) < form.frames_at:
-        raise WrongLength(form.frames_at, len(message))
+        raise LengthError(form.frames_at, len(message))
     mask = message[form.mask_at : form.mask_at + layout.size]
     slots = layout.selected(mask)
     whole = form.frames_at + len(slots) * layout.slot_bytes
     if len(message) != whole:
-        raise WrongLength(whole, len(message))
+        raise LengthError(whole, len(message))
     return mask, frames(facts, slots, message[form.frames_at :])
 
 
 def encode_message(facts: Facts, mask: bytes, data: Iterable[bytes]) -> bytes:
-    """An unsolicited log message with its id. Raises `WrongLength`."""
+    """An unsolicited log message with its id. Raises `LengthError`."""
     form = need(facts.log_message, "unsolicited_log")
     out = bytearray(form.frames_at)
     out[0] = form.id
@@ -124,7 +124,7 @@ def encode_message(facts: Facts, mask: bytes, data: Iterable[bytes]) -> bytes:
 def _mask(facts: Facts, mask: bytes) -> bytes:
     layout = need(facts.mask, "log_mask")
     if len(mask) != layout.size:
-        raise WrongLength(layout.size, len(mask))
+        raise LengthError(layout.size, len(mask))
     return mask
 
 
@@ -132,9 +132,9 @@ def _slots(facts: Facts, mask: bytes, data: Iterable[bytes]) -> bytes:
     layout = need(facts.mask, "log_mask")
     slots, given, out = layout.selected(mask), list(data), b""
     if len(slots) != len(given):
-        raise WrongLength(len(slots), len(given))
+        raise LengthError(len(slots), len(given))
     for slot, one in zip(slots, given, strict=True):
         if len(one) != slot.length:
-            raise WrongLength(slot.length, len(one))
+            raise LengthError(slot.length, len(one))
         out += one.ljust(layout.slot_bytes, bytes([layout.fill]))
     return out

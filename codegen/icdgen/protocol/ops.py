@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from icdgen.icd.model import Icd
-from icdgen.protocol import can, crc, facts, files, i2c, logs, scripts, times, transfer, uart
-from icdgen.protocol.asked import Refusal, Request, flag, mappings, number, octets, rows, text
-from icdgen.protocol.asked import hex_bytes as _hex
+from icdgen.protocol import can, crc, errors, facts, files, i2c, logs, scripts, times, uart
 from icdgen.protocol.facts import Facts
+from icdgen.protocol.request_keys import Refusal, Request, flag, mappings, number, octets, rows, text
+from icdgen.protocol.request_keys import hex_bytes as _hex
 
 CAN_BYTES = 8  # of a classic CAN frame
 
@@ -24,15 +24,15 @@ def answer(icd: Icd, request: Request) -> dict:
         return refusal.answer
     except facts.Unsupported:
         return {"ok": False, "error": "unsupported"}
-    except i2c.WrongLength as error:
+    except errors.LengthError as error:
         return {"ok": False, "error": "length", "expected": error.expected, "actual": error.actual}
-    except (can.TooLong, transfer.TooLarge) as error:
-        return {"ok": False, "error": "too-long", "expected": error.most, "actual": error.actual}
-    except i2c.ChecksumError as error:
+    except errors.TooLongError as error:
+        return {"ok": False, "error": "too-long", "expected": error.expected, "actual": error.actual}
+    except errors.ChecksumError as error:
         return {"ok": False, "error": "checksum", "expected": error.expected, "actual": error.actual}
-    except times.OutOfRange as error:
-        return {"ok": False, "error": "range", "field": error.part}
-    except (files.NoSuchPacket, transfer.NotAllowed, OverflowError):
+    except errors.RangeError as error:
+        return {"ok": False, "error": "range"} | ({"field": error.field} if error.field in times.PARTS else {})
+    except OverflowError:
         return {"ok": False, "error": "range"}
 
 
@@ -196,7 +196,7 @@ def hole_map(known: Facts, request: Request) -> dict:
 
 
 def index_decode(known: Facts, request: Request) -> dict:
-    entries, truncated = files.index_decode(known, octets(request))
+    entries, truncated = files.read_index(known, octets(request))
     return {"entries": [{**e._asdict(), "meta": e.meta.hex()} for e in entries], "truncated": truncated}
 
 
@@ -205,7 +205,7 @@ def index_encode(known: Facts, request: Request) -> dict:
     for row in mappings(request, "entries"):
         numbers = {key: number(row, key) for key in files.IndexEntry._fields[:-1]}
         entries.append(files.IndexEntry(**numbers, meta=octets(row, "meta")))
-    return {"bytes": files.index_encode(known, entries).hex()}
+    return {"bytes": files.write_index(known, entries).hex()}
 
 
 def identify(known: Facts, request: Request) -> dict:
@@ -216,7 +216,7 @@ def identify(known: Facts, request: Request) -> dict:
     try:
         raw = codec.decode(known.node, step.message, data)
     except codec.LengthError as error:
-        raise i2c.WrongLength(error.expected, error.actual) from None
+        raise errors.LengthError(error.expected, error.actual) from None
     found = {role: raw[name] for role, name in step.fields.items()}
     expected = {"node_type": known.node.node_type, "interface_version": known.node.interface_version}
     matches = all(expected[role] in (None, found[role]) for role in expected)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from icdgen.protocol.errors import RangeError
 from icdgen.protocol.facts import Facts, Operation, Step, need
-from icdgen.protocol.transfer import Failed, NotAllowed, Procedure, Run
+from icdgen.protocol.transfer import Ended, Procedure, Steps
 
 
 class ProgramOperation(Procedure):
     """What a telecommand starts for a program, and a frame tells the end of.
 
-    Raises `icdgen.protocol.facts.Unsupported` and `icdgen.protocol.transfer.NotAllowed`.
+    Raises `icdgen.protocol.facts.Unsupported` and `RangeError`.
     """
 
     def __init__(self, known: Facts, form: Operation | None, name: str, program: int) -> None:
@@ -17,7 +18,7 @@ class ProgramOperation(Procedure):
         self.form, self.program = need(form, name), program
         self.values: dict[str, int] = {}  # of the last frame, by role
         if self.form.programs and program not in self.form.programs:
-            raise NotAllowed(program)
+            raise RangeError("program")
 
     def step(self, name: str) -> Step:
         return self.form.request if name == "request" else self.form.progress
@@ -25,14 +26,14 @@ class ProgramOperation(Procedure):
     def number(self, name: str) -> int:
         return self.form.poll_interval
 
-    def run(self) -> Run:
+    def _run(self) -> Steps:
         yield from self.telecommand("request", program=self.program)
         role, wanted = ("ready", 1) if "ready" in self.form.progress.fields else ("busy", 0)
         self.values, _ = yield from self.poll(
             "progress", role, wanted, "poll_interval", self.form.timeout, self.program
         )
         if self.values.get("error"):
-            raise Failed("error")
+            raise Ended("error")
 
 
 class ProgramCopy(ProgramOperation):

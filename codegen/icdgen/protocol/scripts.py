@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from icdgen.protocol import can, programs, transfer
-from icdgen.protocol.asked import Refusal, flag, hex_bytes, mappings, number, octets, text
-from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Machine, NotNow, Request, UnknownId
-from icdgen.protocol.facts import CAN, I2C, UART, Client, Facts
-from icdgen.protocol.i2c import WrongLength
+from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Client, Request
+from icdgen.protocol.errors import BusyError, LengthError, UnknownIdError
+from icdgen.protocol.facts import CAN, I2C, UART, Facts
+from icdgen.protocol.facts import Client as Settings
+from icdgen.protocol.request_keys import Refusal, flag, hex_bytes, mappings, number, octets, text
 
 BUSES = (UART, I2C, CAN)
 LONGEST = 1 << 20  # how often the bytes of an upload are repeated at most
@@ -17,20 +18,18 @@ def client(known: Facts, request: dict) -> dict:
     bus = text(request, "bus")
     if bus not in BUSES:
         raise Refusal("request", detail="there is no such bus")
-    machine = Machine(
-        known, bus, flag(request, "crc"), number(request, "address", 0, 255, 0), _settings(known, request)
-    )
+    talking = Client(known, bus, flag(request, "crc"), number(request, "address", 0, 255, 0), _settings(known, request))
     steps = []
     for row in mappings(request, "script"):
-        steps.append(_client_step(machine, row))
+        steps.append(_client_step(talking, row))
     return {"steps": steps}
 
 
-def _settings(known: Facts, request: dict) -> Client:
+def _settings(known: Facts, request: dict) -> Settings:
     given, default = request.get("settings", {}), known.client
     if not isinstance(given, dict):
         raise Refusal("request", detail="`settings` is no object")
-    return Client(
+    return Settings(
         number(given, "reply_timeout", 1, default=default.reply_timeout),
         number(given, "retries", 0, 255, default.retries),
         number(given, "poll_interval", 1, default=default.poll_interval),
@@ -38,41 +37,41 @@ def _settings(known: Facts, request: dict) -> Client:
     )
 
 
-def _client_step(machine: Machine, row: dict) -> dict:
+def _client_step(talking: Client, row: dict) -> dict:
     now = number(row, "at")
     step: dict[str, object] = {}
     events: list[dict] = []
     try:
         if "telecommand" in row:
-            asked = Request(TELECOMMAND, number(row, "telecommand", 0, 255), octets(row), flag(row, "repeat"))
-            events = machine.start(now, asked)
+            request = Request(TELECOMMAND, number(row, "telecommand", 0, 255), octets(row), flag(row, "repeat"))
+            events = talking.start(now, request)
         elif "telemetry" in row:
-            events = machine.start(now, Request(TELEMETRY, number(row, "telemetry", 0, 255)))
+            events = talking.start(now, Request(TELEMETRY, number(row, "telemetry", 0, 255)))
         elif "receive" in row:
-            events = _receive(machine, now, row)
+            events = _receive(talking, now, row)
         elif flag(row, "cancel"):
-            machine.cancel()
+            talking.cancel()
         else:
-            events = machine.tick(now)
-    except NotNow:
+            events = talking.tick(now)
+    except BusyError:
         step = {"error": "busy"}
-    except UnknownId:
+    except UnknownIdError:
         step = {"error": "unknown-id"}
-    except WrongLength as error:
+    except LengthError as error:
         step = {"error": "length", "expected": error.expected, "actual": error.actual}
-    out, machine.out = machine.out, []
-    return {**step, "out": [_sent(machine.bus, one) for one in out], "events": events, "deadline": machine.deadline}
+    out, talking.out = talking.out, []
+    return {**step, "out": [_sent(talking.bus, one) for one in out], "events": events, "deadline": talking.deadline}
 
 
-def _receive(machine: Machine, now: int, row: dict) -> list[dict]:
+def _receive(talking: Client, now: int, row: dict) -> list[dict]:
     given = row["receive"]
-    if machine.bus == UART:
-        return machine.received(now, hex_bytes(given))
-    if machine.bus == I2C:
-        return machine.transferred(now, None if given is None else hex_bytes(given))
+    if talking.bus == UART:
+        return talking.received(now, hex_bytes(given))
+    if talking.bus == I2C:
+        return talking.transferred(now, None if given is None else hex_bytes(given))
     if not isinstance(given, dict):
         raise Refusal("request", detail="`receive` is no packet")
-    return machine.packet(now, can.Packet(number(given, "id", 0, (1 << 29) - 1), octets(given)))
+    return talking.packet(now, can.Packet(number(given, "id", 0, (1 << 29) - 1), octets(given)))
 
 
 def _sent(bus: str, one) -> object:
@@ -96,7 +95,7 @@ def file(known: Facts, request: dict) -> dict:
     answer: dict = {"steps": steps}
     if isinstance(procedure, transfer.Download):
         answer["blocks"] = [{"offset": offset, "bytes": data.hex()} for offset, data in procedure.blocks]
-    elif isinstance(procedure, transfer.List):
+    elif isinstance(procedure, transfer.FileList):
         answer["entries"] = procedure.entries
     elif isinstance(procedure, transfer.Upload):
         answer["sent"] = procedure.sent
@@ -129,7 +128,7 @@ def procedure_of(known: Facts, request: dict) -> transfer.Procedure:
     name = text(request, "do")
     block = number(request, "block", 1) if "block" in request else None
     if name == "list":
-        return transfer.List(known)
+        return transfer.FileList(known)
     if name == "download":
         bus = text(request, "bus")
         if bus not in BUSES:

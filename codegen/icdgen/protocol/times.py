@@ -4,18 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from icdgen.protocol.errors import RangeError
 from icdgen.protocol.facts import Facts, need
 
 PARTS = ("year", "month", "day", "hour", "minute", "second")
 MONTH_DAYS = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)
-
-
-class OutOfRange(ValueError):
-    """A part of the date does not exist, or does not fit its bits."""
-
-    def __init__(self, part: str) -> None:
-        super().__init__(f"the {part} does not exist or does not fit")
-        self.part = part
 
 
 def unpack(facts: Facts, value: int) -> dict[str, int]:
@@ -27,17 +20,17 @@ def unpack(facts: Facts, value: int) -> dict[str, int]:
 def pack(facts: Facts, parts: Mapping[str, int]) -> int:
     """The packed time; what is finer than its resolution is cut off.
 
-    Raises `OutOfRange` for the first part, in the order of `PARTS`, that does not exist, or else that does not fit.
+    Raises `RangeError` for the first part, in the order of `PARTS`, that does not exist, or else that does not fit.
     """
     form, value = need(facts.time, "msdos_time"), 0
     bad = wrong(parts)
     if bad:
-        raise OutOfRange(bad)
+        raise RangeError(bad)
     for name in PARTS:
         part = form[name]
         raw = (parts[name] - part.offset) // part.factor
         if not 0 <= raw < 1 << part.bits:
-            raise OutOfRange(name)
+            raise RangeError(name)
         value |= raw << part.at
     return value
 

@@ -12,12 +12,13 @@ from dataclasses import dataclass
 from icdgen import codec
 from icdgen.protocol import crc, files
 from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Request
+from icdgen.protocol.errors import RangeError, TooLongError
 from icdgen.protocol.facts import UART, Facts, Step, need
 
 OUTCOMES = ("done", "refused", "timeout")
 
 
-class Failed(Exception):
+class Ended(Exception):
     """Why a procedure cannot go on: "refused", "timeout", "parameter", "length", "rounds", "checksum", "error"."""
 
 
@@ -28,19 +29,7 @@ class Wait:
     until: int
 
 
-Run = Generator["Request | Wait", "dict | None", None]
-
-
-class NotAllowed(ValueError):
-    """A destination or program that the ICD does not have among those that can be chosen."""
-
-
-class TooLarge(ValueError):
-    """A destination holds ``most`` bytes, and not ``actual``."""
-
-    def __init__(self, most: int, actual: int) -> None:
-        super().__init__(most, actual)
-        self.most, self.actual = most, actual
+Steps = Generator["Request | Wait", "dict | None", None]
 
 
 class Procedure:
@@ -50,29 +39,29 @@ class Procedure:
         self.known = known
         self.now = 0
         self.result: str | None = None
-        self.asked = False  # a request was given out, its outcome is waited for
-        self.want: Request | Wait | None = None
-        self.body: Run | None = None
+        self._is_asked = False  # a request was given out, its outcome is waited for
+        self._wanted: Request | Wait | None = None
+        self._steps: Steps | None = None
 
-    def run(self) -> Run:
+    def _run(self) -> Steps:
         raise NotImplementedError
 
     @property
     def deadline(self) -> int | None:
         """When `next` wants to be called at the latest; None: when something has come."""
-        return self.want.until if isinstance(self.want, Wait) else None
+        return self._wanted.until if isinstance(self._wanted, Wait) else None
 
     def next(self, now: int) -> Request | None:
         """The next request, once."""
         self.now = now
-        if self.body is None:
-            self.body = self.run()
-            self._resume(None)
-        while isinstance(self.want, Wait) and now >= self.want.until:
-            self._resume(None)
-        if isinstance(self.want, Request) and not self.asked:
-            self.asked = True
-            return self.want
+        if self._steps is None:
+            self._steps = self._run()
+            self._go_on(None)
+        while isinstance(self._wanted, Wait) and now >= self._wanted.until:
+            self._go_on(None)
+        if isinstance(self._wanted, Request) and not self._is_asked:
+            self._is_asked = True
+            return self._wanted
         return None
 
     def event(self, now: int, event: dict) -> None:
@@ -80,21 +69,21 @@ class Procedure:
         self.now = now
         if event["event"] == "packet":
             self.packet(event["number"], bytes.fromhex(event["bytes"]))
-        elif event["event"] in OUTCOMES and self.asked:
-            self.asked = False
-            self._resume(event)
+        elif event["event"] in OUTCOMES and self._is_asked:
+            self._is_asked = False
+            self._go_on(event)
 
     def packet(self, number: int, data: bytes) -> None:
         """Takes a download packet."""
 
-    def _resume(self, event: dict | None) -> None:
+    def _go_on(self, event: dict | None) -> None:
         try:
-            assert self.body
-            self.want = self.body.send(event)
+            assert self._steps
+            self._wanted = self._steps.send(event)
         except StopIteration:
-            self.want, self.result = None, "done"
-        except Failed as failure:
-            self.want, self.result = None, str(failure)
+            self._wanted, self.result = None, "done"
+        except Ended as failure:
+            self._wanted, self.result = None, str(failure)
 
     def ask(self, request: Request) -> Generator[Request | Wait, dict | None, dict]:
         """A request; its outcome."""
@@ -111,7 +100,7 @@ class Procedure:
         """Sends the telecommand of a step with values by role; others as a fresh message has them."""
         outcome = yield from self.ask(self.request(step, repeat, **values))
         if outcome["event"] != "done":
-            raise Failed(outcome["event"])
+            raise Ended(outcome["event"])
         return outcome
 
     def step(self, name: str) -> Step:
@@ -138,7 +127,7 @@ class Procedure:
         assert part.message.telemetry_id is not None
         outcome = yield from self.ask(Request(TELEMETRY, part.message.telemetry_id, repeat=True))
         if outcome["event"] != "done":
-            raise Failed(outcome["event"])
+            raise Ended(outcome["event"])
         frame = bytes.fromhex(outcome["bytes"])
         raw = codec.decode(self.known.node, part.message, frame)
         return {role: raw[name] for role, name in part.fields.items()}, frame
@@ -154,7 +143,7 @@ class Procedure:
             if (values[role] == wanted and meant) or values.get("error"):
                 return values, frame
             if self.now >= end:
-                raise Failed("timeout")
+                raise Ended("timeout")
             yield from self.wait(self.number(interval))
 
 
@@ -172,14 +161,14 @@ class Transfer(Procedure):
         return need(self.files.numbers.get(name), f"file_transfer.{name}")
 
 
-class List(Transfer):
+class FileList(Transfer):
     """The files of the node, one after the other, in ``entries``: values of the information frame by role."""
 
     def __init__(self, known: Facts) -> None:
         super().__init__(known)
         self.entries: list[dict] = []
 
-    def run(self) -> Run:
+    def _run(self) -> Steps:
         last, again = None, 0
         yield from self.telecommand("list.reset")
         while True:
@@ -192,12 +181,12 @@ class List(Transfer):
                 self.entries.append({role: value for role, value in values.items() if role != "busy"})
                 again = 0
             elif again > self.known.client.retries:
-                raise Failed("timeout")
+                raise Ended("timeout")
             last, again = frame, again + 1
             # Sent once: if only its acknowledge was lost, the next frame tells that it arrived.
             outcome = yield from self.ask(self.request("list.advance", False))
             if outcome["event"] == "refused":
-                raise Failed("refused")
+                raise Ended("refused")
 
 
 class Download(Transfer):
@@ -220,10 +209,10 @@ class Download(Transfer):
         if 0 <= position < self.count:
             self.got.setdefault(position, data)
             self.last = self.now
-            if len(self.got) == self.count and isinstance(self.want, Wait):
-                self.want = Wait(self.now)
+            if len(self.got) == self.count and isinstance(self._wanted, Wait):
+                self._wanted = Wait(self.now)
 
-    def run(self) -> Run:
+    def _run(self) -> Steps:
         while self.size is None or self.offset < self.size:
             want = self.block if self.size is None else min(self.block, self.size - self.offset)
             data = yield from self._block(want)
@@ -243,14 +232,14 @@ class Download(Transfer):
                 "download.ready", "ready", 1, "download.poll_interval_ms", self.number("download.ready_timeout_ms")
             )
             if ready["error"]:
-                raise Failed("parameter")
+                raise Ended("parameter")
             size = ready["length"]
             if size > want or (self.size is not None and size != want):
-                raise Failed("length")
+                raise Ended("length")
             self.count = self.known.packets_of(size)
             while len(self.got) < self.count:
                 if rounds == self.number("download.rounds"):
-                    raise Failed("rounds")
+                    raise Ended("rounds")
                 rounds += 1
                 yield from self._round()
             packets = b"".join(self.got[position] for position in range(self.count))
@@ -258,11 +247,11 @@ class Download(Transfer):
             if crc.compute(need(self.known.crc16, "crc16"), covered) == ready["checksum"]:
                 return packets[:size]
             if rounds == self.number("download.rounds"):
-                raise Failed("checksum")
+                raise Ended("checksum")
             if not size:
                 rounds += 1
 
-    def _round(self) -> Run:
+    def _round(self) -> Steps:
         if self.got:
             yield from self._send_hole_map()
         missing = [position for position in range(self.count) if position not in self.got]
@@ -278,7 +267,7 @@ class Download(Transfer):
             )
         )
         if outcome["event"] == "refused":
-            raise Failed("refused")
+            raise Ended("refused")
         if self.bus != UART:
             counter = self.files.counter_bytes
             for _ in missing:
@@ -297,7 +286,7 @@ class Download(Transfer):
         while len(self.got) < self.count and self.now < self.last + self.number("download.silence_ms"):
             yield Wait(self.last + self.number("download.silence_ms"))
 
-    def _send_hole_map(self) -> Run:
+    def _send_hole_map(self) -> Steps:
         form, first = need(self.known.hole_map, "file_transfer.hole_map"), self.files.first_packet
         map_ = files.hole_map(self.known, self.count, [first + position for position in self.got])
         for message, piece in list(zip(form.messages, files.in_messages(self.known, map_), strict=True))[
@@ -307,7 +296,7 @@ class Download(Transfer):
             data = codec.encode(self.known.node, message, {form.field: piece})
             outcome = yield from self.ask(Request(TELECOMMAND, message.telecommand_id, data, repeat=True))
             if outcome["event"] != "done":
-                raise Failed(outcome["event"])
+                raise Ended(outcome["event"])
 
     def _maps(self) -> int:
         """Messages that carry the hole map of this block."""
@@ -317,22 +306,22 @@ class Download(Transfer):
 class Upload(Transfer):
     """A file to the node, block by block. ``sent``: bytes that are committed.
 
-    Raises `icdgen.protocol.facts.Unsupported`, `NotAllowed` and `TooLarge`.
+    Raises `icdgen.protocol.facts.Unsupported`, `RangeError` and `TooLongError`.
     """
 
     def __init__(self, known: Facts, destination: int, data: bytes, block: int | None = None) -> None:
         super().__init__(known)
         self.step("upload.initiate")
         if self.files.destinations and destination not in self.files.destinations:
-            raise NotAllowed(destination)
+            raise RangeError("destination")
         most = self.files.numbers.get("upload.destination_bytes")
         if most is not None and len(data) > most:
-            raise TooLarge(most, len(data))
+            raise TooLongError(most, len(data))
         self.destination, self.data = destination, data
         self.block = min(block or self.files.block_bytes, self.files.block_bytes)
         self.sent = 0
 
-    def run(self) -> Run:
+    def _run(self) -> Steps:
         yield from self.telecommand(
             "upload.initiate", destination=self.destination, block_size=self.number("upload.block_size")
         )
@@ -343,7 +332,7 @@ class Upload(Transfer):
             yield from self._block(data)
             self.sent += len(data)
 
-    def _block(self, data: bytes) -> Run:
+    def _block(self, data: bytes) -> Steps:
         size, rounds = self.files.packet_bytes, 0
         count = self.known.packets_of(len(data))
         filled = data.ljust(count * size, bytes([self.files.fill]))
@@ -353,7 +342,7 @@ class Upload(Transfer):
             missing = list(range(count))
             while missing:
                 if rounds == self.number("upload.rounds"):
-                    raise Failed("rounds")
+                    raise Ended("rounds")
                 rounds += 1
                 for position in missing:
                     packet = filled[position * size : (position + 1) * size]
@@ -372,7 +361,7 @@ class Upload(Transfer):
                 if not finalized["error"]:
                     return
             if rounds == self.number("upload.rounds"):
-                raise Failed("checksum")
+                raise Ended("checksum")
 
     def _missing(self, count: int) -> Generator[Request | Wait, dict | None, list[int]]:
         """Positions of the packets that the node has not."""
@@ -382,7 +371,7 @@ class Upload(Transfer):
             assert message.telemetry_id is not None
             outcome = yield from self.ask(Request(TELEMETRY, message.telemetry_id, repeat=True))
             if outcome["event"] != "done":
-                raise Failed(outcome["event"])
+                raise Ended(outcome["event"])
             raw = codec.decode(self.known.node, message, bytes.fromhex(outcome["bytes"]))
             map_ += raw[form.field]  # type: ignore[operator]
         lost = files.missing(self.known, count, map_.ljust(form.bytes, b"\0"))
@@ -396,7 +385,7 @@ class Erase(Transfer):
         super().__init__(known)
         self.values = {"type": type, "counter": counter, "all": int(all)}
 
-    def run(self) -> Run:
+    def _run(self) -> Steps:
         yield from self.telecommand("erase.request", True, **self.values)
         if self.values["all"]:
             timeout = self.number("erase.timeout_ms")
@@ -406,7 +395,7 @@ class Erase(Transfer):
 class Format(Transfer):
     """Formats the medium."""
 
-    def run(self) -> Run:
+    def _run(self) -> Steps:
         yield from self.telecommand("format.request")
         timeout = self.number("format.timeout_ms")
         yield from self.poll("format.progress", "busy", 0, "format.poll_interval_ms", timeout)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.protocol import facts
 from icdgen.sim.program import Outcome, Program
@@ -71,7 +73,7 @@ class Computer:
         name = node.protocol.get("program_start", {}).get("application")
         return next((n for n in self.icd.nodes if n.name == name), None)
 
-    def _protocol(self, node: Node) -> dict:
+    def _protocol(self, node: Node) -> dict[str, Any]:
         return self.icd.protocol_of(node)
 
 

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import heapq
 
-from icdgen.protocol import uart
-from icdgen.protocol.facts import UART, need
+from icdgen_runtime.wire.uart import UartDecoder, uart_encode
+
+from icdgen.protocol.facts import UART
 from icdgen.sim.computer import Computer
 from icdgen.sim.faults import Faults
 from icdgen.sim.program import Outcome
 
-FLAGS = {
-    uart.UNEXPECTED_START: "uart_incomplete",
-    uart.PROTOCOL_ERROR: "uart_protocol",
-    uart.OVERRUN: "overrun",
+FLAGS: dict[str, str] = {  # event of the decoder -> what the statistics call it
+    "unexpected_start": "uart_incomplete",
+    "protocol_error": "uart_protocol",
+    "overrun": "overrun",
 }
 
 
@@ -22,9 +23,9 @@ class Line:
 
     def __init__(self, computer: Computer, faults: Faults) -> None:
         self.computer, self.faults = computer, faults
-        known = computer.program.known
         # Programs of a device share its line, and its framing.
-        self.decoder = uart.Decoder(need(known.framing, "uart"), known.longest_telecommand)
+        self.link = computer.program.link
+        self.decoder = UartDecoder(self.link, computer.program.known.longest_telecommand)
         self._queue: list[tuple[int, int, bytes]] = []
         self._sent = 0
 
@@ -32,7 +33,7 @@ class Line:
         """The next bytes from the client."""
         self.tick(now)
         for event in self.decoder.feed(data):
-            if event.event == uart.MESSAGE:
+            if event.event == "message":
                 self._message(now, event.message)
             elif event.event in FLAGS:
                 self.computer.program.count(FLAGS[event.event])
@@ -115,6 +116,6 @@ class Line:
             self._send(now, "packet", head + number + packet.data)
 
     def _send(self, now: int, on: str, message: bytes) -> None:
-        for delay, data in self.faults.spoil(on, uart.encode(self.decoder.framing, message)):
+        for delay, data in self.faults.spoil(on, uart_encode(self.link, message)):
             self._sent += 1
             heapq.heappush(self._queue, (now + delay, self._sent, data))

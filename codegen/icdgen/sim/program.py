@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
+from icdgen_runtime.wire.i2c import i2c_write
+from icdgen_runtime.wire.logs import LogMessage
+
+from icdgen import codec
+from icdgen.backends.python.objects.links import link_of
 from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
-from icdgen.protocol import facts, i2c, logs
+from icdgen.protocol import facts
 from icdgen.sim.programs import Programs
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import Storage
@@ -30,9 +36,10 @@ class Program:
     def __init__(self, icd: Icd, node: Node, storage: Storage, settings: Settings, now: int) -> None:
         self.icd, self.node, self.settings = icd, node, settings
         self.known = facts.of(icd, node)
+        self.link = link_of(icd, self.known)
         self.values = Values(icd, node)
         form = self.known.files
-        self.transfers = Transfers(self.known, form, storage, settings.busy_ms) if form else None
+        self.transfers = Transfers(self.known, self.link, form, storage, settings.busy_ms) if form else None
         self.programs = self._programs(storage)
         self.unsupported = self._unsupported()
         self.counts: dict[str, int] = {}  # statistics by role
@@ -105,7 +112,7 @@ class Program:
             message = self.known.telemetry.get(slot.id) if slot.id is not None else None
             data = self.current(now, message) if message else bytes([layout.fill]) * slot.length
             frames.append(data[: slot.length].ljust(slot.length, bytes([layout.fill])))
-        return logs.encode_message(self.known, asked[0], frames)
+        return LogMessage.encode(self.link, asked[0], frames)
 
     def _take(self, now: int, message: bytes, bus: str) -> Outcome:
         known = self.known.telecommands.get(message[0])
@@ -113,12 +120,12 @@ class Program:
             return Outcome(self._refusal("unknown_id").code, 0, known is None or known.acknowledge)
         data, form = message[1:], self.known.checksum
         if form and bus in form.telecommand_buses and len(data) == known.length + form.bytes:
-            data, given = data[: known.length], data[known.length :]
-            if self.known.number(given) != i2c.checksum(self.known, message[0], data):
+            data = data[: known.length]
+            if message != i2c_write(self.link, message[0], data, crc=True):
                 return self._refusal("checksum")
         if len(data) != known.length:
             return self._refusal("length")
-        raw = self._decoded(known, data)
+        raw = codec.decode(self.icd.node(known.node), known, data)
         for index, field in enumerate(known.fields):
             value = raw[field.name]
             wrong = isinstance(value, int) and (
@@ -146,7 +153,7 @@ class Program:
         protocol = self.icd.protocol_of(self.node)
         copy_to = protocol.get("program_copy", {}).get("destination")
         room = protocol.get("boot", {}).get("internal_flash", {}).get("application_bytes")
-        return Programs(self.known, storage, self.settings.busy_ms, copy_to, room)
+        return Programs(self.known, self.link, storage, self.settings.busy_ms, copy_to, room)
 
     def _unsupported(self) -> set[str]:
         """Telecommands of a procedure that the ICD gives to other nodes only."""
@@ -155,11 +162,6 @@ class Program:
             return set()
         return {step["message"] for step in given.values() if isinstance(step, dict) and "message" in step}
 
-    def _decoded(self, message: Message, data: bytes) -> Raw:
-        from icdgen import codec
-
-        return codec.decode(self.icd.node(message.node), message, data)
-
     def _refusal(self, reason: str, parameter: int = 0) -> Outcome:
         return Outcome(self.known.errors.get(reason, 1), parameter)
 
@@ -167,7 +169,7 @@ class Program:
         step = self.known.identification
         if step:
             given = {"node_type": self.node.node_type, "interface_version": self.node.interface_version}
-            self.values.update(step.message, {n: given.get(r) or 0 for r, n in step.fields.items() if r in given})  # type: ignore[arg-type]
+            self.values.update(step.message, {n: given.get(r) or 0 for r, n in step.fields.items() if r in given})
 
     def _statistics(self, message: Message) -> Raw:
         step = self.known.statistics
@@ -198,8 +200,9 @@ class Program:
         head = self.known.bytes_of(packet.number, self.transfers.form.counter_bytes)
         return (head + packet.data).ljust(message.length, bytes([self.transfers.form.fill]))[: message.length]
 
-    def _log_role(self) -> dict:
-        return self.icd.protocol_of(self.node).get("unsolicited_log", {}).get("configured_by", {})
+    def _log_role(self) -> dict[str, Any]:
+        role: dict[str, Any] = self.icd.protocol_of(self.node).get("unsolicited_log", {}).get("configured_by", {})
+        return role
 
     def _log_setting(self) -> tuple[bytes, int] | None:
         """Mask and period in milliseconds."""
@@ -208,7 +211,7 @@ class Program:
         if message is None or not self.known.log_message:
             return None
         raw, fields = self.values.raw(message), role["fields"]
-        return bytes(raw[fields["mask"]]), int(raw[fields["period"]]) * role["period_unit_ms"]  # type: ignore[arg-type]
+        return bytes(raw[fields["mask"]]), int(raw[fields["period"]]) * role["period_unit_ms"]
 
     def _plan_log(self, now: int) -> None:
         asked = self._log_setting()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from icdgen_runtime.wire.link import Link
+
 from icdgen.icd.model import Message
 from icdgen.protocol.facts import Facts, Operation
 from icdgen.sim.storage import Storage, checksum_of
@@ -11,8 +13,10 @@ from icdgen.sim.transfers import Raw, Refused
 class Programs:
     """The operations on the programs of the storage. ``copy_to``: the program that a copy becomes."""
 
-    def __init__(self, known: Facts, storage: Storage, busy_ms: int, copy_to: int | None, room: int | None) -> None:
-        self.known, self.storage, self.busy_ms = known, storage, busy_ms
+    def __init__(
+        self, known: Facts, link: Link, storage: Storage, busy_ms: int, copy_to: int | None, room: int | None
+    ) -> None:
+        self.known, self.link, self.storage, self.busy_ms = known, link, storage, busy_ms
         self.copy_to, self.room = copy_to, room
         self.asked = 0  # the program whose information is asked for
         self.failed = False
@@ -37,14 +41,14 @@ class Programs:
         for name, form in self._forms():
             if form.progress.message.name == message.name:
                 busy = now < self.busy.get(name, now)
-                told: dict[str, int] = {"busy": int(busy), "ready": int(not busy)}
+                values: dict[str, int] = {"busy": int(busy), "ready": int(not busy)}
                 if form is self.known.program_copy:
-                    told["error"] = int(self.failed and not busy)
+                    values["error"] = int(self.failed and not busy)
                 else:
                     data = b"" if busy else bytes(self.storage.programs.get(self.asked, b""))
-                    checksum = checksum_of(self.known.crc16, data) if data else 0
-                    told |= {"program": self.asked, "size": len(data), "checksum": checksum}
-                return {field: told[role] for role, field in form.progress.fields.items() if role in told}
+                    checksum = checksum_of(self.link, data) if data else 0
+                    values |= {"program": self.asked, "size": len(data), "checksum": checksum}
+                return {field: values[role] for role, field in form.progress.fields.items() if role in values}
         return {}
 
     def _forms(self) -> list[tuple[str, Operation]]:

@@ -9,17 +9,24 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from random import Random
+from typing import Any
 
+from icdgen_runtime._errors import IcdError
+from icdgen_runtime.wire.times import dos_time_pack
+
+from icdgen.backends.python.objects.links import link_of
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Node
-from icdgen.protocol import facts, times
-from icdgen.sim import faults, orders, serve
+from icdgen.protocol import facts
+from icdgen.sim import control, faults, serve
 from icdgen.sim.computer import Computer, has_protocol
 from icdgen.sim.line import Line
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import File, Storage
 from icdgen.values import find_node, numbers
 from icdgen.values.errors import BadValue
+
+Way = tuple[Any, ...]  # name of a function of `serve`, and what it is given
 
 
 @dataclass
@@ -60,7 +67,7 @@ def included(icd: Icd, node: Node) -> bool:
     return any(node.name in other.includes for other in icd.nodes)
 
 
-def build(icd: Icd, name: str | None, options: Options) -> tuple[Line, orders.Orders]:
+def build(icd: Icd, name: str | None, options: Options) -> tuple[Line, control.Control]:
     """The device on its line, and who gives it orders. Raises `icdgen.errors.UserError`."""
     node = node_of(icd, name)
     storage = Storage(on_upload=_saver(options.uploads))
@@ -68,24 +75,26 @@ def build(icd: Icd, name: str | None, options: Options) -> tuple[Line, orders.Or
     settings = Settings(options.boot, options.busy, options.processing, options.strict)
     spoil = faults.Faults(Random(options.seed), [faults.parse(one) for one in options.faults], options.late)
     line = Line(Computer(icd, node, settings, storage), spoil)
-    steps = orders.read(options.script, icd, node) if options.script else []
-    told = orders.Orders(icd, node, line, steps)
+    steps = control.read(options.script, icd, node) if options.script else []
+    controlled = control.Control(icd, node, line, steps)
     for message, text in options.values:
         key, equals, value = text.partition("=")
         if not equals:
             raise BadValue(f"`{text}` is not of the form field=value", "for instance --set 'Message' speed=100")
-        told.set(message, key, value)
-    return line, told
+        controlled.set(message, key, value)
+    return line, controlled
 
 
-def run(icd: Icd, name: str | None, ways: list[tuple], options: Options, tell: Callable[[str], None]) -> None:
+def run(icd: Icd, name: str | None, ways: list[Way], options: Options, tell: Callable[[str], None]) -> None:
     """Serves until interrupted."""
-    line, told = build(icd, name, options)
-    asyncio.run(_run(line, told, ways, options.orders, tell))
+    line, controlled = build(icd, name, options)
+    asyncio.run(_run(line, controlled, ways, options.orders, tell))
 
 
-async def _run(line: Line, told: orders.Orders, ways: list[tuple], listens: bool, tell: Callable[[str], None]) -> None:
-    server, kept = serve.Server(line, told), []
+async def _run(
+    line: Line, controlled: control.Control, ways: list[Way], listens: bool, tell: Callable[[str], None]
+) -> None:
+    server, kept = serve.Server(line, controlled), []
     for way, *where in ways:
         place, holder = await getattr(serve, way)(server, *where)
         kept.append(holder)
@@ -139,10 +148,9 @@ def _file(icd: Icd, node: Node, text: str) -> tuple[tuple[int, int], File]:
         changed = datetime.fromtimestamp(Path(path).stat().st_mtime, UTC)
     except OSError as error:
         raise UserError(f"cannot read {path}: {error.strerror}", "check the path after the =") from None
-    parts = {part: getattr(changed, part) for part in times.PARTS}
     try:
-        packed = times.pack(known, parts)
-    except (times.OutOfRange, facts.Unsupported):
+        packed = dos_time_pack(link_of(icd, known), changed)
+    except IcdError:
         packed = 0
     return (type_, number), File(data, packed)
 

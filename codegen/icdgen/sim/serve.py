@@ -8,10 +8,11 @@ import os
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from typing import Any, cast
 
 from icdgen.errors import UserError
+from icdgen.sim.control import Control
 from icdgen.sim.line import Line
-from icdgen.sim.orders import Orders
 
 Send = Callable[[bytes], None]
 IDLE = 0.5  # s; the longest sleep, in which an interrupt is noticed everywhere
@@ -20,8 +21,8 @@ IDLE = 0.5  # s; the longest sleep, in which an interrupt is noticed everywhere
 class Server:
     """Gives the line what comes, and sends what is due to everybody who is connected."""
 
-    def __init__(self, line: Line, orders: Orders) -> None:
-        self.line, self.orders = line, orders
+    def __init__(self, line: Line, control: Control) -> None:
+        self.line, self.control = line, control
         self.begin = time.monotonic()
         self.clients: list[Send] = []
         self.wake = asyncio.Event()
@@ -33,14 +34,14 @@ class Server:
 
     def received(self, data: bytes) -> None:
         now = self.now
-        self.orders.tick(now)
+        self.control.tick(now)
         self.line.received(now, data)
         self._flush(now)
         self.wake.set()
 
     def say(self, text: str) -> str:
         """An order; the answer. Raises `icdgen.errors.UserError`."""
-        answer = self.orders.say(self.now, text)
+        answer = self.control.say(self.now, text)
         self._flush(self.now)
         self.wake.set()
         return answer
@@ -49,10 +50,10 @@ class Server:
         """Lets time pass, for ever."""
         while True:
             now = self.now
-            self.orders.tick(now)
+            self.control.tick(now)
             self.line.tick(now)
             self._flush(now)
-            times = [at for at in (self.line.deadline, self.orders.deadline) if at is not None]
+            times = [at for at in (self.line.deadline, self.control.deadline) if at is not None]
             self.wake.clear()
             wait = IDLE if not times else min(IDLE, max(0.0, (min(times) - self.now) / 1000 + 0.0005))
             try:
@@ -98,13 +99,13 @@ async def udp(server: Server, host: str, port: int) -> tuple[str, object]:
     class Protocol(asyncio.DatagramProtocol):
         def __init__(self) -> None:
             self.transport: asyncio.DatagramTransport | None = None
-            self.peer: tuple | None = None
+            self.peer: tuple[Any, ...] | None = None
 
-        def connection_made(self, transport) -> None:
-            self.transport = transport
+        def connection_made(self, transport: asyncio.BaseTransport) -> None:
+            self.transport = cast(asyncio.DatagramTransport, transport)
             server.clients.append(self.send)
 
-        def datagram_received(self, data: bytes, addr: tuple) -> None:
+        def datagram_received(self, data: bytes, addr: tuple[Any, ...]) -> None:
             self.peer = addr
             server.received(data)
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
-from icdgen.protocol import crc
-from icdgen.protocol.facts import Crc, Facts
-from icdgen.protocol.files import IndexEntry, index_encode
+from icdgen_runtime.wire.crc import crc16
+from icdgen_runtime.wire.files import IndexEntry, write_index
+from icdgen_runtime.wire.link import Link
 
 LARGEST = 1 << 24  # bytes of a program: no offset makes us run out of memory
-
-_MIRRORED = bytes(int(f"{byte:08b}"[::-1], 2) for byte in range(256))
 
 
 @dataclass
@@ -30,20 +28,20 @@ class Storage:
     programs: dict[int, bytearray] = field(default_factory=dict)
     on_upload: Callable[[int, bytes], None] | None = None
 
-    def read(self, known: Facts, type_: int, counter: int) -> bytes | None:
+    def read(self, link: Link, type_: int, counter: int) -> bytes | None:
         """The content of a file, or of the index file; None if there is none."""
-        if known.index and type_ == known.index.file_type:
-            return index_encode(known, [self._entry(known, key) for key in self.files])
+        if link.index_file and type_ == link.index_file.file_type:
+            return write_index(link, [self._entry(link, key) for key in self.files])
         found = self.files.get((type_, counter))
         return found.data if found else None
 
-    def _entry(self, known: Facts, key: tuple[int, int]) -> IndexEntry:
+    def _entry(self, link: Link, key: tuple[int, int]) -> IndexEntry:
         file = self.files[key]
-        size = known.index.fields["meta"].bytes if known.index and "meta" in known.index.fields else 0
-        form, mask, meta = known.log_file, known.mask, b""
+        _, size = link.index_file.fields.get("meta", (0, 0)) if link.index_file else (0, 0)
+        form, mask, meta = link.log_file, link.mask, b""
         if form and mask and key[0] == form.file_type:
             meta = file.data[form.mask_at : form.mask_at + mask.size]
-        checksum = checksum_of(known.crc16, file.data)
+        checksum = checksum_of(link, file.data)
         return IndexEntry(key[0], key[1], checksum, len(file.data), file.time, meta[:size].ljust(size, b"\0"))
 
     def put(self, destination: int, data: bytes) -> None:
@@ -64,14 +62,6 @@ class Storage:
         return True
 
 
-def checksum_of(form: Crc | None, data: bytes) -> int:
-    """The CRC of a file; byte by byte from a table, for files are large."""
-    if form is None:
-        return 0
-    if not data or form.width < 8:
-        return crc.compute(form, data)
-    table, low, value = crc.table(form), form.width - 8, form.init
-    mask = (1 << low) - 1
-    for byte in data.translate(_MIRRORED) if form.reflect_in else data:
-        value = (value & mask) << 8 ^ table[value >> low ^ byte]
-    return crc.compute(replace(form, init=value, empty=None), b"")
+def checksum_of(link: Link, data: bytes) -> int:
+    """The CRC of a file or a block; 0 where the ICD has none."""
+    return crc16(link, data) if link.crc16 else 0

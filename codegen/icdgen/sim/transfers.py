@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
+from icdgen_runtime.wire.files import HoleMap
+from icdgen_runtime.wire.link import Link
+
 from icdgen.icd.model import Message
-from icdgen.protocol import files
 from icdgen.protocol.facts import Facts, Files
 from icdgen.sim.storage import Storage, checksum_of
 
@@ -31,8 +33,8 @@ class Packet(NamedTuple):
 class Transfers:
     """The state of all transfers of a program. ``busy_ms``: how long slow things take."""
 
-    def __init__(self, known: Facts, form: Files, storage: Storage, busy_ms: int) -> None:
-        self.known, self.form, self.storage, self.busy_ms = known, form, storage, busy_ms
+    def __init__(self, known: Facts, link: Link, form: Files, storage: Storage, busy_ms: int) -> None:
+        self.known, self.link, self.form, self.storage, self.busy_ms = known, link, form, storage, busy_ms
         self.pointer = 0
         self.block = b""
         self.loaded = self.bad = False
@@ -91,8 +93,9 @@ class Transfers:
         """Values of the fields that play a part in a transfer."""
         found: dict[str, int | bytes] = {}
         if message.name in self.maps and self.known.hole_map:
-            pieces = files.in_messages(self.known, bytes(self.map))
-            found[self.known.hole_map.field] = pieces[self.maps[message.name]]
+            size = self.known.hole_map.message_bytes
+            at = self.maps[message.name] * size
+            found[self.known.hole_map.field] = bytes(self.map[at : at + size])
         for step, handler in self.frames.get(message.name, ()):
             values = handler(now)
             found |= {name: values[role] for role, name in self.form.steps[step].fields.items() if role in values}
@@ -126,7 +129,7 @@ class Transfers:
             return {"busy": 0, "type": 0, "counter": 0, "size": 0, "time": 0, "checksum": 0}
         key = keys[self.pointer]
         file = self.storage.files[key]
-        checksum = checksum_of(self.known.crc16, file.data)
+        checksum = checksum_of(self.link, file.data)
         return {
             "busy": 0,
             "type": key[0],
@@ -139,8 +142,8 @@ class Transfers:
     def _load(self, now: int, values: Raw) -> None:
         self.block, self.loaded, self.bad, self.burst = b"", True, False, []
         self._work("download.load", now)
-        content = self.storage.read(self.known, values["type"], values["counter"])  # type: ignore[arg-type]
-        offset, length = int(values["offset"]), int(values["length"])  # type: ignore[arg-type]
+        content = self.storage.read(self.link, values["type"], values["counter"])  # type: ignore[arg-type]
+        offset, length = int(values["offset"]), int(values["length"])
         if content is None or offset > len(content) or length > self.form.block_bytes:
             self.bad = True
         else:
@@ -152,7 +155,7 @@ class Transfers:
         covered = self.block
         if self.form.numbers.get("download.checksum_covers_fill"):
             covered = b"".join(self._packet_at(at).data for at in range(self.known.packets_of(len(covered))))
-        checksum = checksum_of(self.known.crc16, covered)
+        checksum = checksum_of(self.link, covered)
         return {"ready": 1, "error": int(self.bad), "checksum": checksum, "length": len(self.block)}
 
     def _burst(self, now: int, values: Raw) -> None:
@@ -162,7 +165,10 @@ class Transfers:
         count = self.known.packets_of(len(self.block))
         wanted = list(range(count))
         if not values.get("ignore_hole_map") and self.known.hole_map:
-            wanted = [n - self.form.first_packet for n in files.missing(self.known, count, bytes(self.map))]
+            wanted = [
+                number - self.form.first_packet
+                for number in HoleMap.from_bytes(self.link, count, bytes(self.map)).missing()
+            ]
         self.burst = wanted
         self.pushed = [self._packet_at(at) for at in wanted]
 
@@ -192,7 +198,7 @@ class Transfers:
         self.map = bytearray([empty]) * len(self.map)
 
     def _packet(self, now: int, values: Raw) -> None:
-        number = int(values["number"])  # type: ignore[arg-type]
+        number = int(values["number"])
         position, form = number - self.form.first_packet, self.known.hole_map
         if not 0 <= position < self.form.block_packets:
             return
@@ -206,11 +212,11 @@ class Transfers:
         return b"".join(self.received.get(at, empty) for at in range(max(self.received, default=-1) + 1))
 
     def _checksum(self, now: int) -> Raw:
-        return {"checksum": checksum_of(self.known.crc16, self._upload_block())}
+        return {"checksum": checksum_of(self.link, self._upload_block())}
 
     def _finalize(self, now: int, values: Raw) -> None:
-        block, length = self._upload_block(), int(values["length"])  # type: ignore[arg-type]
-        destination, offset = self._destination(values), int(values["offset"])  # type: ignore[arg-type]
+        block, length = self._upload_block(), int(values["length"])
+        destination, offset = self._destination(values), int(values["offset"])
         room = self.form.numbers.get("upload.destination_bytes")
         self.failed = length > len(block) or not self.storage.write(destination, offset, block[:length], room)
         self._work("upload.finalize", now)

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from icdgen.backends.html.texts import count
 from icdgen.icd.model import Message
 from icdgen.protocol import can, i2c, uart
+from icdgen.protocol.errors import TooLongError
 from icdgen.protocol.facts import Facts, Unsupported
 
 _SHOWN = 24  # data bytes that are written out
@@ -210,7 +211,7 @@ def _packets(wire: Wire, message: can.Message, label: str) -> Iterator[Line]:
     assert form is not None
     try:
         packets = can.split(wire.facts, message)
-    except (can.TooLong, Unsupported):
+    except (TooLongError, Unsupported):
         return
     if len(packets) == 1 and len(message.data) <= form.data_bytes:
         yield Line(label, [_identifier(wire, packets[0].id), *_data(packets[0].data)])

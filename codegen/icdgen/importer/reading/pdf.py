@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import os
 import re
 import signal
+import zlib
 from collections.abc import Callable, Iterator
 from itertools import pairwise
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.errors import UserError
@@ -20,6 +23,7 @@ from icdgen.importer.profile import Profile
 
 FEW = 12  # pages; below this, starting processes costs more than it saves
 MOST_PAGES = 5000
+MOST_CONTENTS = 6_000_000  # bytes of a page: a table has some ten thousand; drawings with more would take minutes
 _WORD = re.compile(r"[^\s]+")
 
 
@@ -100,7 +104,7 @@ def _pages(path: Path, wanted: range, jobs: int | None) -> Iterator[Page]:
         yield from pool.imap(_work, wanted, chunksize=max(1, min(8, count // (4 * jobs))))
 
 
-_open_file = None
+_open_file: Any = None
 
 
 def _start_worker(path: Path, ignore: bool) -> None:
@@ -122,13 +126,30 @@ def _end_worker() -> None:
 
 
 def _work(number: int) -> Page:
+    assert _open_file is not None
     page = _open_file.pages[number]
     try:
+        _weigh(page)
         return extract(page)
     except Exception as error:  # one broken page must not cost the others
         return Page(number + 1, 595.0, 842.0, failed=f"{type(error).__name__}: {error}"[:200])
     finally:
         page.close()
+
+
+def _weigh(page: Any) -> None:
+    """Raises `ValueError` for a page whose contents unpack to more than any page of text and tables needs."""
+    from pdfminer.pdftypes import stream_value
+
+    left = MOST_CONTENTS
+    for one in page.page_obj.contents:
+        raw = stream_value(one).rawdata or b""
+        unpacked = len(raw)
+        with contextlib.suppress(zlib.error):
+            unpacked = max(unpacked, len(zlib.decompressobj().decompress(raw, left + 1)))
+        left -= unpacked
+        if left < 0:
+            raise ValueError(f"its contents are more than {MOST_CONTENTS:,} bytes")
 
 
 def _look_over(pages: list[Page], document: Document, name: str) -> None:

@@ -54,6 +54,15 @@ def find(table: Table, profile: Profile) -> tuple[Grid, list[Row]] | None:
     return None
 
 
+def is_heading(row: Row) -> bool:
+    """Whether a row of a text is surely the heading row of a grid: numbers in a row behind words, or all of them words."""
+    columns, words = _columns(row.cells)
+    others = [cell for index, cell in enumerate(row.cells) if cell and index not in columns]
+    return len(columns) >= FEWEST and (
+        bool(words) or (bool(others) and not any(c.isdigit() for cell in others for c in cell))
+    )
+
+
 def _columns(cells: list[str]) -> tuple[dict[int, int], set[str]]:
     """The longest run of cells that number columns one by one, and the words before the numbers."""
     best: dict[int, int] = {}

@@ -55,7 +55,7 @@ def requests(known: Facts, source: Random) -> Requests:
                 {r: source.randbytes(n).hex() if r == "meta" else source.getrandbits(8 * n) for r, n in sizes.items()}
             )
         made = [reference.IndexEntry(**{**e, "meta": bytes.fromhex(e["meta"])}) for e in entries]
-        data = reference.index_encode(known, made)
+        data = reference.write_index(known, made)
         yield "three entries", {"op": "index_encode", "entries": entries}
         for size in (0, 1, index.entry_bytes, len(data) - 1, len(data)):
             yield f"{size} of {len(data)} bytes", {"op": "index_decode", "bytes": data[:size].hex()}

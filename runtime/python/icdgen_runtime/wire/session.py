@@ -1,4 +1,4 @@
-"""A client over any byte port, for programs that may wait."""
+"""A client over any port, for programs that may wait."""
 
 from __future__ import annotations
 
@@ -24,29 +24,17 @@ if TYPE_CHECKING:
 _LONGEST_WAIT = 1000.0  # ms in one go
 
 
-class Session:
-    """Asks, and waits for the outcome, over a UART or whatever carries its bytes.
-
-    The port is yours: ``write(data)`` sends, ``read(seconds)`` returns what has come,
-    after so many seconds at the latest, if need be nothing; `serial_port` makes them of
-    a serial port. What they raise ends the request. ``clock`` gives seconds.
-    ``on_event`` is told of what comes unasked, such as logs, and by `run` of refusals
-    with a code that the ICD does not have.
-    """
+class BusSession:
+    """Asks, and waits for the outcome, over whatever ``_flush`` and ``_receive`` reach."""
 
     def __init__(
         self,
-        link: Link,
-        write: Callable[[bytes], object],
-        read: Callable[[float], bytes],
-        crc: bool = False,
-        settings: Settings | None = None,
+        client: Client,
         on_event: Callable[[Event], object] | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self.client = Client(link, "uart", crc, settings=settings)
-        self._write, self._read, self._clock = write, read, clock
-        self._on_event = on_event
+        self.client = client
+        self._clock, self._on_event = clock, on_event
 
     def get(self, message: type[M]) -> M:
         """Requests telemetry, or reads a setting.
@@ -127,11 +115,7 @@ class Session:
         now = self._now()
         times = [time for time in (until, self.client.deadline) if time is not None]
         wait = min([_LONGEST_WAIT, *(time - now for time in times)])
-        data = self._read(max(0.0, wait) / 1000)
-        if data:
-            events = self.client.received(self._now(), data)
-        else:
-            events = self.client.tick(self._now())
+        events = self._receive(max(0.0, wait) / 1000)
         self._flush()
         for event in events:
             if not isinstance(event, (Done, Refused, Timeout)):
@@ -154,12 +138,50 @@ class Session:
             self.client.cancel()  # else a port that fails leaves it busy
 
     def _flush(self) -> None:
+        """Sends what the client wants to be sent."""
+        raise NotImplementedError
+
+    def _receive(self, seconds: float) -> list[Event]:
+        """Gives the client what comes, or lets it know after so long that nothing does."""
+        raise NotImplementedError
+
+    def _now(self) -> float:
+        return self._clock() * 1000
+
+
+class Session(BusSession):
+    """Asks, and waits for the outcome, over a UART or whatever carries its bytes.
+
+    The port is yours: ``write(data)`` sends, ``read(seconds)`` returns what has come,
+    after so many seconds at the latest, if need be nothing; `serial_port` makes them of
+    a serial port. What they raise ends the request. ``clock`` gives seconds.
+    ``on_event`` is told of what comes unasked, such as logs, and by `run` of refusals
+    with a code that the ICD does not have.
+    """
+
+    def __init__(
+        self,
+        link: Link,
+        write: Callable[[bytes], object],
+        read: Callable[[float], bytes],
+        crc: bool = False,
+        settings: Settings | None = None,
+        on_event: Callable[[Event], object] | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        super().__init__(Client(link, "uart", crc, settings=settings), on_event, clock)
+        self._write, self._read = write, read
+
+    def _flush(self) -> None:
         data = self.client.output()
         if data:
             self._write(data)
 
-    def _now(self) -> float:
-        return self._clock() * 1000
+    def _receive(self, seconds: float) -> list[Event]:
+        data = self._read(seconds)
+        if data:
+            return self.client.received(self._now(), data)
+        return self.client.tick(self._now())
 
 
 def _done(outcome: Outcome) -> Done:

@@ -56,11 +56,6 @@ bool ask_number(
     return true;
 }
 
-static int digit(char c)
-{
-    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
-}
-
 bool octets_of(talk_t *talk, size_t index, octets_t *octets)
 {
     const json_value_t *value = value_at(talk, index);
@@ -71,7 +66,8 @@ bool octets_of(talk_t *talk, size_t index, octets_t *octets)
     octets->length = value->text.length / 2u;
     octets->data = (uint8_t *)memory(octets->length);
     for (i = 0; i < octets->length; i++) {
-        const int high = digit(value->text.at[2u * i]), low = digit(value->text.at[(2u * i) + 1u]);
+        const int high = json_hex_digit(value->text.at[2u * i]);
+        const int low = json_hex_digit(value->text.at[(2u * i) + 1u]);
         if (high < 0 || low < 0) {
             return refuse_request(talk, "not hex digits, two a byte");
         }

@@ -43,7 +43,7 @@ static bool take(reader_t *reader, char wanted)
     return false;
 }
 
-static int hex_digit(char c)
+int json_hex_digit(char c)
 {
     if (c >= '0' && c <= '9') {
         return c - '0';
@@ -62,7 +62,7 @@ static bool read_unit(reader_t *reader, uint32_t *unit)
     int i;
     *unit = 0;
     for (i = 0; i < 4; i++) {
-        int digit = reader->at < reader->end ? hex_digit(*reader->at) : -1;
+        int digit = reader->at < reader->end ? json_hex_digit(*reader->at) : -1;
         if (digit < 0) {
             return false;
         }

@@ -50,6 +50,9 @@ size_t json_find(const json_row_t *row, size_t object, const char *key);
 /** Whether two texts are the same. */
 bool json_same(json_text_t text, const char *other, size_t length);
 
+/** The value of a hex digit in either case; -1 if it is none. */
+int json_hex_digit(char c);
+
 /** Memory of that size with what was in it; ends the program if there is none. */
 void *json_grown(void *memory, size_t size);
 

@@ -78,19 +78,11 @@ bool find_message(talk_t *talk)
     return true;
 }
 
-static int digit_of(char c)
-{
-    return c >= '0' && c <= '9' ? c - '0'
-        : c >= 'a' && c <= 'f'  ? c - 'a' + 10
-        : c >= 'A' && c <= 'F'  ? c - 'A' + 10
-                                : -1;
-}
-
 static bool is_hex(json_text_t text)
 {
     size_t i;
     for (i = 0; i < text.length; i++) {
-        if (digit_of(text.at[i]) < 0) {
+        if (json_hex_digit(text.at[i]) < 0) {
             return false;
         }
     }
@@ -99,7 +91,7 @@ static bool is_hex(json_text_t text)
 
 static uint8_t hex_byte(const char *at)
 {
-    return (uint8_t)(digit_of(at[0]) * 16 + digit_of(at[1]));
+    return (uint8_t)(json_hex_digit(at[0]) * 16 + json_hex_digit(at[1]));
 }
 
 static bool hex_bits(const json_value_t *value, size_t bytes, uint64_t *bits)

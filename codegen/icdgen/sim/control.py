@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import shlex
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import yaml
 
@@ -19,6 +20,7 @@ from icdgen.values import find_field, find_message, find_node
 from icdgen.values.entry import from_physical
 from icdgen.values.errors import NotFound
 
+Wave = Mapping[str, Any]  # as a script has it
 WAVES = ("sine", "ramp", "steps", "noise")
 HELP = "a script is a list of steps such as `- {at: 2.5, set: {Message: {field: value}}}`; see docs/sim.md"
 
@@ -34,13 +36,13 @@ class Step:
     restart: bool = False
 
 
-class Orders:
-    """Carries out orders on a line."""
+class Control:
+    """Carries out a user's orders on a line."""
 
     def __init__(self, icd: Icd, node: Node, line: Line, steps: list[Step]) -> None:
         self.icd, self.node, self.line = icd, node, line
         self.steps = sorted(steps, key=lambda step: step.at)
-        self.moving: list[tuple[Message, Field, Mapping]] = []
+        self.moving: list[tuple[Message, Field, Wave]] = []
 
     @property
     def deadline(self) -> int | None:
@@ -132,7 +134,7 @@ def fitting(message: Message, one: Field, value: object) -> int | bytes:
     return raw
 
 
-def at(wave: Mapping, seconds: float, random) -> float:
+def at(wave: Wave, seconds: float, random: Callable[[], float]) -> float:
     """The physical value of a wave at a time."""
     low, high = float(wave.get("min", -1)), float(wave.get("max", 1))
     period = float(wave.get("period", 60))
@@ -190,7 +192,7 @@ def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
     )
 
 
-def _check_wave(where: str, one: Field, wave: Mapping) -> None:
+def _check_wave(where: str, one: Field, wave: Wave) -> None:
     numbers = [wave.get(key, 1) for key in ("min", "max", "period")]
     if set(wave) - {"wave", "min", "max", "period"} or wave.get("wave", "sine") not in WAVES or one.type == "bytes":
         raise UserError(f"{where}: there is no such wave", f"{{wave: {'|'.join(WAVES)}, min: -1, max: 1, period: 60}}")

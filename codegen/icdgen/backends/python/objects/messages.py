@@ -1,0 +1,97 @@
+"""Messages of the model as the classes that the runtime's client and procedures ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+from icdgen_runtime._base import Buffer, FieldInfo, Message
+from icdgen_runtime._errors import LengthError, RangeError, UnknownIdError
+from icdgen_runtime._lazy import Messages
+
+from icdgen import codec
+from icdgen.describe import Description, FieldDescription, MessageDescription
+from icdgen.icd import model
+
+
+class ModelMessage(Message):
+    """A message whose frame the reference codec reads and writes. It has raw values, and no physical ones."""
+
+    description: ClassVar[MessageDescription]
+
+    def __init__(self) -> None:
+        for one in self.description.fields:
+            field = one.field
+            setattr(self, one.name, _value(field, bytes(field.bits // 8) if field.type == "bytes" else one.fresh))
+
+    @classmethod
+    def from_bytes(cls, data: Buffer) -> ModelMessage:
+        """The message in a frame. Raises `LengthError`."""
+        description, frame = cls.description, bytes(data)
+        if len(frame) != cls.LENGTH:
+            raise LengthError(cls.NAME, cls.LENGTH, len(frame))
+        raw, made = codec.decode(description.node, description.message, frame), cls()
+        for one in description.fields:
+            setattr(made, one.name, _value(one.field, raw[one.field.name]))
+        return made
+
+    def to_bytes(self) -> bytes:
+        """The frame, with reserved bits 0. Raises `RangeError`."""
+        description = self.description
+        raw = {one.field.name: _raw(one, getattr(self, one.name)) for one in description.fields}
+        return codec.encode(description.node, description.message, raw)
+
+
+class ModelMessages(Messages):
+    """Messages of the model by id; a class is made when it is asked for."""
+
+    def __init__(self, node: str, kind: str, known: Mapping[int, model.Message], description: Description) -> None:
+        super().__init__({}, node, kind, {id: message.name for id, message in known.items()})
+        self._known, self._description = known, description
+
+    def _load(self, id: int) -> type[Message]:
+        if id not in self:
+            raise UnknownIdError(self._node, self._kind, id)
+        self._loaded[id] = found = _class(self._description.message(self._known[id]))
+        return found
+
+
+def _class(description: MessageDescription) -> type[ModelMessage]:
+    message = description.message
+    members = {
+        "description": description,
+        "NODE": message.node,
+        "NAME": message.name,
+        "KIND": message.kind,
+        "LENGTH": message.length,
+        "IDS": message.ids,
+        "ACKNOWLEDGED": message.acknowledge,
+        "FIELDS": tuple(
+            FieldInfo(one.name, one.field.name, one.field.at, one.field.bits, one.field.type)
+            for one in description.fields
+        ),
+        "BYTE_ORDER": description.node.byte_order,
+        "BIT_ORDER": description.node.bit_order,
+    }
+    return type("ModelMessage", (ModelMessage,), members)
+
+
+def _value(field: model.Field, raw: int | bytes) -> object:
+    """What an attribute holds: a float's number, and not its bits."""
+    if isinstance(raw, bytes):
+        return raw
+    if field.type == "float":
+        return codec.float_value(field, raw)
+    return bool(raw) if field.type == "bool" else raw
+
+
+def _raw(one: FieldDescription, value: object) -> int | bytes:
+    """The reverse of `_value`. Raises `RangeError`."""
+    field = one.field
+    try:
+        raw = codec.float_bits(field, value) if isinstance(value, float) else value
+        assert isinstance(raw, int | bytes)
+        codec.check_raw(field, raw)
+    except codec.CodecError as error:
+        raise RangeError(one.name, str(error), value) from None
+    return raw
