@@ -6,6 +6,7 @@ import itertools
 import re
 from collections import Counter
 from dataclasses import dataclass, field
+from typing import Any
 
 from icdgen.importer import headings, labels
 from icdgen.importer.document import Box
@@ -82,8 +83,8 @@ def items(pages: list[Page], profile: Profile) -> list[Item]:
 
 
 def _body(loose: dict[int, list[Line]]) -> Type:
-    sizes: Counter = Counter()
-    styles: Counter = Counter()
+    sizes: Counter[Any] = Counter()
+    styles: Counter[Any] = Counter()
     for found in loose.values():
         for line in found:
             sizes[round(line.size, 1)] += len(line.text)
@@ -299,7 +300,7 @@ class _Flow:
         return gap > 2.2 * line.size and not self.has_key(line, found)
 
     def begins_anew(self, rest: list[Line], found: Columns) -> bool:
-        again = columns.find(rest[:3], self.profile)
+        again = columns.find(rest[:3], self.profile, loose=False)
         return again is not None
 
     def has_key(self, line: Line, found: Columns) -> bool:
