@@ -1,4 +1,4 @@
-"""The C self-test: the golden vectors as tables, for boards. It includes the headers of ``c`` and takes all names from its plan."""
+"""The self-test's files: the golden vectors as rows of tables."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
-from icdgen.backends import Identifier
 from icdgen.backends.c import names, physical
 from icdgen.backends.c.accessors import whole_name
 from icdgen.backends.c.text import literal, plain
@@ -99,21 +98,6 @@ class EnumRow(NamedTuple):
     """An enumeration."""
 
     name: str
-
-
-class CSelftestBackend:
-    """``icdgen --lang c-selftest``: the golden vectors as C source; needs no file system, no heap and no output."""
-
-    name = "c-selftest"
-    reserved: frozenset[str] = frozenset()
-
-    def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """The engine, the list of nodes, and one file of vectors a node."""
-        return files(icd, render)
-
-    def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """None of its own: all are made from those of the ``c`` backend."""
-        return iter(())
 
 
 def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
