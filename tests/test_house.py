@@ -43,6 +43,12 @@ def test_our_python_is_linted_and_formatted(command):
     assert result.returncode == 0, result.stdout + result.stderr
 
 
+def test_our_python_is_typed():
+    command = [sys.executable, "-m", "mypy", "--strict", "codegen/icdgen"]
+    result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout + result.stderr
+
+
 def test_no_file_of_ours_outgrows_a_head():
     large = {
         str(p.relative_to(ROOT)): n

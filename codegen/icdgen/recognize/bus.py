@@ -61,7 +61,7 @@ def _left_out(speaker: Speaker, packets: list[can.Packet]) -> int:
     """All messages that the packets begin, known or not."""
     joiner = can.Joiner(speaker.facts, senders=len(packets))
     events = [event.event for packet in packets for event in joiner.feed(0, packet)]
-    return len([e for e in events if e != can.DUPLICATE]) + sum(one.done is None for one in joiner.open)
+    return len([e for e in events if e != can.DUPLICATE]) + sum(one.completed_by is None for one in joiner.open)
 
 
 def _chosen(found: list[Reading]) -> Reading:
