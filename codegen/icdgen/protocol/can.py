@@ -13,7 +13,6 @@ from typing import NamedTuple
 from icdgen.protocol.errors import TooLongError
 from icdgen.protocol.facts import Can, Facts, need
 
-KINDS = ("telecommand", "acknowledge", "refusal", "request", "reply", "request_refusal")
 WITH_DATA = ("telecommand", "reply")  # the others have no data
 
 MESSAGE = "message"

@@ -7,6 +7,7 @@ from random import Random
 
 from icdgen.protocol import can
 from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import CAN_KINDS
 
 Requests = Iterator[tuple[str, dict]]
 
@@ -17,7 +18,7 @@ def requests(known: Facts, source: Random) -> Requests:
     assert form
     node, other, third = form.node_address, 0x42, 0xFE
     samples: list[can.Message] = []
-    for kind in can.KINDS:
+    for kind in CAN_KINDS:
         ids = known.telecommands if kind in ("telecommand", "acknowledge", "refusal") else known.telemetry
         if kind not in form.types:
             continue

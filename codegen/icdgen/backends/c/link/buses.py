@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from icdgen.backends.c.link.base import BUSES, Tables
 from icdgen.backends.c.link.rows import boolean, lines, row_of
-from icdgen.protocol import crc
-from icdgen.protocol.can import KINDS
 from icdgen.protocol.facts import Crc, Step
+from icdgen.protocol.sections import CAN_KINDS
 
 _CAN_BYTES = 8
 _MOST_PACKETS = 256
@@ -48,7 +47,7 @@ class BusTables(Tables):
         form = one and one.extended
         if one is None or one.data_bytes > _CAN_BYTES or (form and self.too_wide()):
             return "NULL"
-        types = (", ".join(str(t.get(kind, -1)) for kind in KINDS) for t in (one.types, one.extended_types))
+        types = (", ".join(str(t.get(kind, -1)) for kind in CAN_KINDS) for t in (one.types, one.extended_types))
         rows = [
             row_of(f"{{{one.parts[role].bits}u, {one.parts[role].shift}u}}", f"{role}: bits, shift")
             for role in ("type", "channel", "source", "destination")
@@ -80,7 +79,7 @@ class BusTables(Tables):
     def crc(self, name: str, one: Crc) -> str:
         table = "NULL"
         if 8 <= one.width <= 16:
-            entries = [f"{value:#0{2 + -(-one.width // 4)}x}u," for value in crc.table(one)]
+            entries = [f"{value:#0{2 + -(-one.width // 4)}x}u," for value in _table(one)]
             self.add(f"{name}_table[]", "uint16_t", lines(entries), "")
             table = f"{name}_table"
         flags = (one.reflect_in, one.reflect_out, one.empty is not None)
@@ -103,3 +102,15 @@ class BusTables(Tables):
     def crc16(self) -> str:
         one = self.known.crc16
         return "NULL" if one is None else self.add("crc16", "icd_crc_form_t", [self.crc("crc16", one)])
+
+
+def _table(one: Crc) -> list[int]:
+    """What each byte, first bit on top, makes of a register of zeros."""
+    top, mask = 1 << one.width - 1, (1 << one.width) - 1
+    table = []
+    for byte in range(256):
+        register = byte << one.width - 8
+        for _ in range(8):
+            register = register << 1 & mask ^ (one.polynomial if register & top else 0)
+        table.append(register)
+    return table
