@@ -33,18 +33,27 @@ typedef struct {
 
 /** How messages are delimited on the UART; the escape byte comes before each of the other three. */
 typedef struct {
+    /** The escape byte. */
     uint8_t escape;
+    /** Follows the escape byte at the beginning of a message. */
     uint8_t start;
+    /** Follows the escape byte at the end of a message. */
     uint8_t end;
-    uint8_t escaped;    /**< After the escape byte: the escape byte itself as data. */
-    bool escapes_id;    /**< Whether the id is escaped like the data. */
-    bool ignores_other; /**< Whether an escape byte before any other byte is skipped, or an error. */
+    /** Follows the escape byte where the escape byte itself is meant as data. */
+    uint8_t escaped;
+    /** Whether the id is escaped like the data. */
+    bool escapes_id;
+    /** Whether an escape byte before any other byte is skipped with it, or an error. */
+    bool ignores_other;
 } icd_framing_t;
 
 /** The acknowledge on the UART: its length, and where the id of the telecommand and the error code stand. */
 typedef struct {
+    /** Bytes of the message. */
     uint16_t length;
+    /** Where the id of the telecommand stands. */
     uint16_t id_at;
+    /** Where the error code stands. */
     uint16_t error_at;
 } icd_acknowledge_t;
 
@@ -66,24 +75,36 @@ typedef struct {
 
 /** Parameters of a CRC in the notation of the usual catalogues. */
 typedef struct {
-    uint8_t width;
-    bool reflect_in;
-    bool reflect_out;
-    bool has_empty; /**< Whether `empty` is the value for no bytes at all. */
+    /** Bits of the checksum. */
+    uint32_t width;
+    /** Generator polynomial, most significant bit first, without the leading term. */
     uint32_t polynomial;
+    /** Value of the register at the beginning. */
     uint32_t init;
+    /** Whether each byte enters least significant bit first. */
+    bool reflect_in;
+    /** Whether the bits of the register are reversed at the end. */
+    bool reflect_out;
+    /** What the register is combined with at the end. */
     uint32_t xor_out;
+    /** Whether `empty` is known. */
+    bool has_empty;
+    /** Checksum of no bytes at all, where it is not what the algorithm gives. */
     uint32_t empty;
     const uint16_t *table; /**< NULL: it is computed without. */
 } icd_crc_form_t;
 
 /** The optional checksum of telecommands and frames. */
 typedef struct {
-    icd_crc_form_t crc;
+    /** Whether the id byte is part of what the checksum covers. */
     bool covers_id;
-    uint8_t telecommand_buses; /**< Bit n: on bus n of icd_bus_t. */
+    /** Where telecommands have it; bit n: on bus n of icd_bus_t. */
+    uint8_t telecommand_buses;
+    /** Where telemetry has it; bit n: on bus n of icd_bus_t. */
     uint8_t telemetry_buses;
-    uint8_t bytes; /**< That it adds to a message. */
+    /** Bytes that it adds to a message. */
+    uint8_t bytes;
+    icd_crc_form_t crc;
 } icd_checksum_form_t;
 
 /** A part of the CAN identifier. */
@@ -104,23 +125,37 @@ typedef enum {
 
 #define ICD_CAN_KINDS 6u
 
+/** CAN messages of several packets. */
+typedef struct {
+    /** Data bytes of a packet. */
+    uint8_t data_bytes;
+    /** Index of the byte that counts the packets still to come. */
+    uint8_t left_at;
+    /** What that byte counts in the last packet. */
+    uint8_t left_in_last;
+    /** Most packets of a message. */
+    uint32_t packets;
+    /** Most bytes of a message. */
+    uint32_t bytes;
+    /** Value of the bytes of the last packet that hold no data. */
+    uint8_t fill;
+    /** Longest time between two packets of a message, in milliseconds. */
+    uint32_t packet_timeout;
+} icd_can_extended_t;
+
 /** CAN. Message types are -1 where the ICD has none; they stand in the order of icd_can_kind_t. */
 typedef struct {
+    /** Address of the node. */
+    uint8_t node_address;
+    /** Most data bytes of one packet, of which CAN 2.0 has up to 8. */
+    uint8_t data_bytes;
     icd_can_part_t type;
     icd_can_part_t channel;
     icd_can_part_t source;
     icd_can_part_t destination;
-    uint8_t node_address;
-    uint8_t data_bytes; /**< Most of a packet. */
     int32_t types[ICD_CAN_KINDS];
     int32_t extended_types[ICD_CAN_KINDS];
-    bool extended;           /**< Whether there are messages of several packets; the rest is about them. */
-    uint8_t packet_bytes;    /**< Data of each of their packets. */
-    uint8_t left_at;         /**< Where the count of packets still to come stands. */
-    uint8_t left_in_last;    /**< That count in the last packet. */
-    uint8_t fill;            /**< Of what is left of the last packet. */
-    uint32_t most_bytes;     /**< Of a message. */
-    uint32_t packet_timeout; /**< Milliseconds from packet to packet. */
+    const icd_can_extended_t *extended; /**< NULL if there are no messages of several packets. */
 } icd_can_form_t;
 
 /** A bit of the log mask: the frame that it selects, id -1 for none, and its bytes. */
@@ -131,10 +166,14 @@ typedef struct {
 
 /** The mask of a log. Frames stand in slots, in the order of rising bits. */
 typedef struct {
-    uint8_t bytes;
+    /** Length of the mask. */
+    uint8_t size;
+    /** Whether bit 0 is the most significant one of a byte. */
     bool msb0;
-    uint8_t fill;
+    /** Length of each frame in a log. */
     uint16_t slot_bytes;
+    /** Value of the bytes after a short frame. */
+    uint8_t fill;
     const icd_log_bit_t *bits; /**< One for every bit of the mask. */
 } icd_log_mask_form_t;
 
@@ -146,17 +185,27 @@ typedef struct {
 
 /** The file form of a log. */
 typedef struct {
+    /** Where the mask stands in the header. */
     uint16_t mask_at;
+    /** Bytes of the header. */
     uint16_t header_bytes;
+    /** Where the Unix time stands in an entry. */
     icd_part_t seconds;
+    /** Where the milliseconds stand in an entry. */
     icd_part_t milliseconds;
+    /** Where in an entry the selected frames begin. */
     uint16_t frames_at;
+    /** Type of such a file; -1 if the ICD does not say. */
+    int16_t file_type;
 } icd_log_file_form_t;
 
 /** The unsolicited form of a log; places are counted from the id. */
 typedef struct {
+    /** Id of such messages. */
     uint8_t id;
+    /** Where the mask stands. */
     uint16_t mask_at;
+    /** Where the selected frames begin, counted from the id. */
     uint16_t frames_at;
 } icd_log_message_form_t;
 
@@ -175,7 +224,10 @@ typedef struct {
 
 /** An entry of the index file. */
 typedef struct {
-    uint16_t bytes;
+    /** Length of an entry. */
+    uint16_t entry_bytes;
+    /** Type of such a file; -1 if the ICD does not say. */
+    int16_t file_type;
     icd_part_t type, counter, checksum, size, time, meta;
 } icd_index_form_t;
 
@@ -232,78 +284,148 @@ typedef struct {
 
 /** A bit for each packet of a block. */
 typedef struct {
+    /** Length of the map. */
     uint16_t bytes;
-    uint16_t message_bytes; /**< In each message. */
+    /** Bytes of the map in each message. */
+    uint16_t message_bytes;
+    /** Whether bit 0 is the most significant one of a byte. */
     bool msb0;
-    bool received;   /**< The bit of a packet that was received. */
-    bool beyond_end; /**< The bits beyond the end of the block. */
+    /** Value of the bit of a received packet. */
+    bool received;
+    /** Value of the bits of packets beyond the end of the block. */
+    bool beyond_end;
     uint8_t message_count;
     const icd_hole_map_message_t *messages;
 } icd_hole_map_form_t;
 
 /** Files and their blocks. An id is -1 where there are no download packets on that bus. */
 typedef struct {
+    /** Bytes of the file in a packet. */
     uint16_t packet_bytes;
+    /** Bytes of the packet counter before them. */
     uint8_t counter_bytes;
+    /** Number of the first packet of a block. */
     uint16_t first_packet;
+    /** Value of the bytes of the last packet beyond the end of the file. */
     uint8_t fill;
+    /** Most packets of a block. */
+    uint32_t block_packets;
+    /** Most bytes of a block. */
     uint32_t block_bytes;
     int16_t packet_ids[3];
 } icd_files_form_t;
 
 /** Listing files. Times are in milliseconds, here and below. */
 typedef struct {
-    icd_step_t reset, advance, information;
+    /** Returns to the first file. */
+    icd_step_t reset;
+    /** Goes on to the next file. */
+    icd_step_t advance;
+    /** Describes a file. */
+    icd_step_t information;
+    /** Time between two polls of the busy flag, in milliseconds. */
     uint32_t poll_interval;
+    /** How long the busy flag may stay set, in milliseconds. */
     uint32_t timeout;
 } icd_list_form_t;
 
 /** Downloading a file. */
 typedef struct {
-    icd_step_t load, ready, burst;
+    /** Loads a block. */
+    icd_step_t load;
+    /** Tells whether the block is loaded. */
+    icd_step_t ready;
+    /** Starts the transfer of the block. */
+    icd_step_t burst;
+    /** What the burst telecommand gives as length. */
     uint32_t message_length;
-    uint32_t poll_interval;
-    uint32_t ready_timeout;
-    uint32_t silence;
-    uint32_t rounds;
+    /** Whether the checksum of a block covers the fill of its last packet. */
     bool checksum_covers_fill;
+    /** Counter that goes with the type of the index file. */
+    uint8_t index_counter;
+    /** Time between two polls of the ready flag, in milliseconds. */
+    uint32_t poll_interval;
+    /** How long a block may take to load, in milliseconds. */
+    uint32_t ready_timeout;
+    /** A burst is over if no packet came for this long, in milliseconds. */
+    uint32_t silence;
+    /** Most bursts for one block. */
+    uint32_t rounds;
 } icd_download_form_t;
 
 /** Uploading a file. */
 typedef struct {
-    icd_step_t initiate, initiated, begin, packet, checksum, finalize, finalized;
+    /** Erases the destination. */
+    icd_step_t initiate;
+    /** Tells whether the destination is erased. */
+    icd_step_t initiated;
+    /** Begins a block. */
+    icd_step_t begin;
+    /** Carries a packet. */
+    icd_step_t packet;
+    /** Tells the checksum of the block received. */
+    icd_step_t checksum;
+    /** Commits a block. */
+    icd_step_t finalize;
+    /** Tells whether the block is committed. */
+    icd_step_t finalized;
+    /** What `initiate` gives as block size. */
     uint32_t block_size;
-    uint32_t poll_interval;
-    uint32_t erase_timeout;
-    uint32_t finalize_timeout;
-    uint32_t rounds;
+    /** Whether the checksum of a block covers the fill of its last packet. */
     bool checksum_covers_fill;
-    uint32_t destination_bytes;  /**< That a destination holds, 0 if the ICD does not say. */
-    const uint8_t *destinations; /**< Those that are supported, NULL for all. */
-    uint16_t destination_count;
+    /** Time between two polls of a busy flag, in milliseconds. */
+    uint32_t poll_interval;
+    /** How long the destination may take to be erased, in milliseconds. */
+    uint32_t erase_timeout;
+    /** How long committing a block may take, in milliseconds. */
+    uint32_t finalize_timeout;
+    /** Most rounds of packets for one block. */
+    uint32_t rounds;
+    /** Bytes that a destination holds: no file may be larger; 0 if the ICD does not say. */
+    uint32_t destination_bytes;
+    /** The destinations that are supported; NULL: all. */
+    const uint8_t *destinations;
+    /** How many they are. */
+    uint16_t destinations_count;
 } icd_upload_form_t;
 
 /** Erasing files, or formatting their medium. */
 typedef struct {
-    icd_step_t request, progress;
+    /** Begins it. */
+    icd_step_t request;
+    /** Tells whether it is done. */
+    icd_step_t progress;
+    /** Time between two polls of the busy flag, in milliseconds. */
     uint32_t poll_interval;
+    /** How long it may take, in milliseconds. */
     uint32_t timeout;
 } icd_erase_form_t;
 
 /** What a telecommand starts for a stored program, and a frame tells the end of. */
 typedef struct {
-    icd_step_t request, progress;
+    /** Starts it. */
+    icd_step_t request;
+    /** Tells when it is done. */
+    icd_step_t progress;
+    /** Time between two polls of that frame, in milliseconds. */
     uint32_t poll_interval;
+    /** How long it may take, in milliseconds. */
     uint32_t timeout;
-    const uint8_t *programs; /**< Those that it may be asked for, NULL for all. */
-    uint16_t program_count;
+    /** The programs that it may be asked for; NULL: all. */
+    const uint8_t *programs;
+    /** How many they are. */
+    uint16_t programs_count;
 } icd_operation_form_t;
 
 /** How a client waits and tries again, in milliseconds. */
 typedef struct {
+    /** How long a reply may take, in milliseconds. */
     uint32_t reply_timeout;
-    uint32_t retries;
+    /** How often a request is sent again. */
+    uint8_t retries;
+    /** Time between two polls for an acknowledge, in milliseconds. */
     uint32_t poll_interval;
+    /** How long a telecommand may take to be processed, in milliseconds. */
     uint32_t poll_timeout;
 } icd_client_settings_t;
 
@@ -849,7 +971,7 @@ static inline void icd_uart_feed(
 static inline size_t icdgen_log_slots(const icd_link_t *link, const uint8_t *mask, size_t length)
 {
     size_t count = 0;
-    for (size_t i = 0; i < length && i < link->log_mask->bytes; ++i) {
+    for (size_t i = 0; i < length && i < link->log_mask->size; ++i) {
         for (unsigned bits = mask[i]; bits != 0u; bits &= bits - 1u) {
             count++;
         }
@@ -984,8 +1106,8 @@ static inline bool icdgen_can_has_data(icd_can_kind_t kind)
 static inline size_t icd_can_most(const icd_link_t *link, icd_can_kind_t kind)
 {
     const icd_can_form_t *const can = link->can;
-    if (can->extended && can->extended_types[kind] >= 0) {
-        return can->most_bytes;
+    if (can->extended != NULL && can->extended_types[kind] >= 0) {
+        return can->extended->bytes;
     }
     return icdgen_can_has_data(kind) ? can->data_bytes : 0u;
 }
@@ -1038,32 +1160,34 @@ static inline icd_status_t icd_can_split(
     splitter->can = can;
     splitter->data = data;
     splitter->length = length;
-    splitter->count =
-        splitter->extended ? ICDGEN_U32((length + can->packet_bytes - 1u) / can->packet_bytes) : ICDGEN_U32(1);
+    splitter->count = splitter->extended
+        ? ICDGEN_U32((length + can->extended->data_bytes - 1u) / can->extended->data_bytes)
+        : ICDGEN_U32(1);
     return ICD_OK;
 }
 
 /** The next packet; false after the last. */
 static inline bool icd_can_next(icd_can_splitter_t *splitter, icd_can_packet_t *packet)
 {
-    const icd_can_form_t *const can = splitter->can;
+    const icd_can_extended_t *form;
     size_t at, size;
     if (splitter->next >= splitter->count) {
         return false;
     }
+    form = splitter->can->extended;
     packet->id = splitter->id;
-    at = splitter->extended ? splitter->next * can->packet_bytes : 0u;
+    at = splitter->extended ? splitter->next * form->data_bytes : 0u;
     size = splitter->length - at;
     memset(packet->data, 0, sizeof packet->data);
     if (splitter->extended) {
-        size = size < can->packet_bytes ? size : can->packet_bytes;
-        memset(packet->data, can->fill, can->left_at);
-        packet->data[can->left_at] = ICDGEN_U8(can->left_in_last + splitter->count - 1u - splitter->next);
+        size = size < form->data_bytes ? size : form->data_bytes;
+        memset(packet->data, form->fill, form->left_at);
+        packet->data[form->left_at] = ICDGEN_U8(form->left_in_last + splitter->count - 1u - splitter->next);
     }
     if (size != 0u) {
         memcpy(packet->data, splitter->data + at, size);
     }
-    packet->length = ICDGEN_U8(splitter->extended ? can->left_at + 1u : size);
+    packet->length = ICDGEN_U8(splitter->extended ? form->left_at + 1u : size);
     splitter->next++;
     return true;
 }
@@ -1099,9 +1223,9 @@ typedef struct {
 /** Bytes that each slot takes of the buffer: NODE_CAN_SLOT_BYTES is the constant for a node. The node is on CAN. */
 static inline size_t icd_can_slot_bytes(const icd_link_t *link)
 {
-    const icd_can_form_t *const can = link->can;
-    const size_t packets = can->extended ? (link->longest_data + can->packet_bytes - 1u) / can->packet_bytes : 0u;
-    return 1u + (packets * can->packet_bytes);
+    const icd_can_extended_t *const form = link->can->extended;
+    return 1u +
+        (form != NULL ? (link->longest_data + form->data_bytes - 1u) / form->data_bytes * form->data_bytes : 0u);
 }
 
 /**
@@ -1134,7 +1258,7 @@ static inline icd_status_t icd_can_joiner_init(
     joiner->address = address;
     joiner->slots = slots;
     joiner->slot_count = count;
-    joiner->room = link->can->extended ? ICDGEN_U32((each - 1u) / link->can->packet_bytes) : 0u;
+    joiner->room = link->can->extended != NULL ? ICDGEN_U32((each - 1u) / link->can->extended->data_bytes) : 0u;
     return ICD_OK;
 }
 
@@ -1204,7 +1328,7 @@ static inline void icdgen_can_give_up(icd_can_joiner_t *joiner, size_t index, ic
 static inline void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event_fn *on_event, void *context)
 {
     for (size_t i = 0; i < joiner->used;) {
-        if (icdgen_reached(now, joiner->slots[i].last + joiner->link->can->packet_timeout)) {
+        if (icdgen_reached(now, joiner->slots[i].last + joiner->link->can->extended->packet_timeout)) {
             icdgen_can_give_up(joiner, i, on_event, context);
         } else {
             ++i;
@@ -1274,7 +1398,8 @@ static inline void icdgen_can_extended(
     const icd_link_t *const link = joiner->link;
     const icd_can_form_t *const can = link->can;
     const uint32_t length = icdgen_can_length(link, kind, icdgen_can_part(can->channel, packet->id));
-    const size_t size = can->packet_bytes;
+    const icd_can_extended_t *const form = can->extended;
+    const size_t size = form->data_bytes;
     size_t index = 0;
     icd_can_slot_t *slot, fresh;
     uint32_t left, count, number;
@@ -1282,7 +1407,7 @@ static inline void icdgen_can_extended(
         ++index;
     }
     slot = index < joiner->used ? &joiner->slots[index] : NULL;
-    left = packet->data[can->left_at] - ICDGEN_U32(can->left_in_last);
+    left = packet->data[form->left_at] - ICDGEN_U32(form->left_in_last);
     if (length != 0u) {
         count = ICDGEN_U32((length + size - 1u) / size);
     } else if (slot != NULL && !slot->done && left < slot->count) {
@@ -1290,7 +1415,7 @@ static inline void icdgen_can_extended(
     } else { /* the first packet that comes tells how many there are */
         count = left + 1u;
     }
-    if (packet->length != can->left_at + 1u || left >= count || count > joiner->room) {
+    if (packet->length != form->left_at + 1u || left >= count || count > joiner->room) {
         if (slot != NULL) {
             icdgen_can_give_up(joiner, index, on_event, context);
         }
@@ -1363,7 +1488,7 @@ static inline void icd_can_feed(
             return;
         }
     }
-    for (unsigned i = 0; can->extended && i < ICD_CAN_KINDS; ++i) {
+    for (unsigned i = 0; can->extended != NULL && i < ICD_CAN_KINDS; ++i) {
         if (can->extended_types[i] >= 0 && ICDGEN_U32(can->extended_types[i]) == type) {
             icdgen_can_extended(joiner, now, ICDGEN_CAST(icd_can_kind_t, i), packet, on_event, context);
             return;
@@ -1399,7 +1524,7 @@ typedef struct {
 /** Frames of an entry: as many as the mask selects. The node has logs. */
 static inline size_t icd_log_count(const icd_link_t *link, const uint8_t *mask)
 {
-    return icdgen_log_slots(link, mask, link->log_mask->bytes);
+    return icdgen_log_slots(link, mask, link->log_mask->size);
 }
 
 /** `slots`: where they begin, such as `slots` of icd_log_entry_t. */
@@ -1416,7 +1541,7 @@ static inline void icd_log_frames(
 static inline bool icd_log_next(icd_log_frames_t *frames, icd_log_frame_t *frame)
 {
     const icd_log_mask_form_t *const form = frames->form;
-    while (frames->bit < form->bytes * 8u) {
+    while (frames->bit < form->size * 8u) {
         const unsigned bit = frames->bit++;
         const unsigned weight = form->msb0 ? 7u - (bit % 8u) : bit % 8u;
         if (((ICDGEN_U32(frames->mask[bit / 8u]) >> weight) & 1u) != 0u) {
@@ -1455,7 +1580,7 @@ typedef struct {
 static inline size_t icd_log_bytes(const icd_link_t *link)
 {
     const icd_log_mask_form_t *const mask = link->log_mask;
-    const size_t most = mask->bytes + ICDGEN_U32(link->log_file->frames_at) + (mask->bytes * 8u * mask->slot_bytes);
+    const size_t most = mask->size + ICDGEN_U32(link->log_file->frames_at) + (mask->size * 8u * mask->slot_bytes);
     return most > link->log_file->header_bytes ? most : link->log_file->header_bytes;
 }
 
@@ -1477,7 +1602,7 @@ static inline icd_status_t icd_log_reader_init(
 static inline void icdgen_log_header(icd_log_reader_t *reader)
 {
     const icd_link_t *const link = reader->link;
-    memmove(reader->buffer, reader->buffer + link->log_file->mask_at, link->log_mask->bytes);
+    memmove(reader->buffer, reader->buffer + link->log_file->mask_at, link->log_mask->size);
     reader->entry_bytes =
         link->log_file->frames_at + (icd_log_count(link, reader->buffer) * link->log_mask->slot_bytes);
     reader->has_mask = true;
@@ -1487,7 +1612,7 @@ static inline void icdgen_log_header(icd_log_reader_t *reader)
 static inline void icdgen_log_tell(icd_log_reader_t *reader, icd_log_entry_fn *on_entry, void *context)
 {
     const icd_log_file_form_t *const form = reader->link->log_file;
-    const uint8_t *const at = reader->buffer + reader->link->log_mask->bytes;
+    const uint8_t *const at = reader->buffer + reader->link->log_mask->size;
     icd_log_entry_t entry;
     entry.seconds = icdgen_number(reader->link, at + form->seconds.at, form->seconds.bytes);
     entry.milliseconds = icdgen_number(reader->link, at + form->milliseconds.at, form->milliseconds.bytes);
@@ -1503,7 +1628,7 @@ static inline void icd_log_feed(
 {
     while (count != 0u) {
         const size_t whole = reader->has_mask ? reader->entry_bytes : reader->link->log_file->header_bytes;
-        const size_t before = reader->has_mask ? reader->link->log_mask->bytes : 0u;
+        const size_t before = reader->has_mask ? reader->link->log_mask->size : 0u;
         const size_t wanted = whole - reader->length;
         const size_t taken = wanted < count ? wanted : count;
         memcpy(reader->buffer + before + reader->length, bytes, taken);
@@ -1528,7 +1653,7 @@ static inline icd_status_t icd_log_write_header(
     if (link->log_file == NULL || link->log_mask == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (mask_length != link->log_mask->bytes || capacity < link->log_file->header_bytes) {
+    if (mask_length != link->log_mask->size || capacity < link->log_file->header_bytes) {
         return ICD_ERROR_LENGTH;
     }
     memset(buffer, 0, link->log_file->header_bytes);
@@ -1651,7 +1776,7 @@ static inline icd_status_t icd_log_message_encode(
     if (form == NULL || link->log_mask == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (mask_length != link->log_mask->bytes || capacity < form->frames_at) {
+    if (mask_length != link->log_mask->size || capacity < form->frames_at) {
         return ICD_ERROR_LENGTH;
     }
     memset(buffer, 0, form->frames_at);
@@ -1828,7 +1953,7 @@ static inline icd_status_t icd_index_entry_decode(
     if (form == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (length != form->bytes) {
+    if (length != form->entry_bytes) {
         return ICD_ERROR_LENGTH;
     }
     entry->type = icdgen_number(link, bytes + form->type.at, form->type.bytes);
@@ -1849,10 +1974,10 @@ static inline icd_status_t icd_index_entry_encode(
     if (form == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (capacity < form->bytes) {
+    if (capacity < form->entry_bytes) {
         return ICD_ERROR_LENGTH;
     }
-    memset(bytes, 0, form->bytes);
+    memset(bytes, 0, form->entry_bytes);
     if (icdgen_put_number(link, bytes + form->type.at, form->type.bytes, entry->type) != ICD_OK ||
         icdgen_put_number(link, bytes + form->counter.at, form->counter.bytes, entry->counter) != ICD_OK ||
         icdgen_put_number(link, bytes + form->checksum.at, form->checksum.bytes, entry->checksum) != ICD_OK ||
@@ -3463,7 +3588,7 @@ static inline icd_status_t icd_upload_init(
     if (icdgen_procedure_init(&upload->procedure, link, known, icdgen_upload_resume) != ICD_OK) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (!icdgen_allowed(link->upload->destinations, link->upload->destination_count, destination)) {
+    if (!icdgen_allowed(link->upload->destinations, link->upload->destinations_count, destination)) {
         return ICD_ERROR_RANGE;
     }
     if (link->upload->destination_bytes != 0u && size > link->upload->destination_bytes) {
@@ -3581,7 +3706,7 @@ static inline icd_status_t icdgen_program_init(
     operation->size = 0;
     operation->checksum = 0;
     operation->procedure.program = program;
-    if (status == ICD_OK && !icdgen_allowed(form->programs, form->program_count, program)) {
+    if (status == ICD_OK && !icdgen_allowed(form->programs, form->programs_count, program)) {
         return ICD_ERROR_RANGE;
     }
     return status;

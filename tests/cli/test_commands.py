@@ -78,6 +78,16 @@ class TestFmt:
         assert overlay.read_text().startswith("errata: 1\n")
 
 
+CONSTANT = """messages:
+  - name: Restart
+    id: 33
+    kind: telecommand
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Magic, type: uint, const: 0x5A}
+"""
+
+
 class TestDecode:
     def test_raw_and_physical_values_with_units_and_names(self, icdgen, demo):
         out = icdgen("decode", "demo", "146", "2efb 01", "--icd", demo).out
@@ -111,6 +121,44 @@ class TestDecode:
     def test_a_mistake_is_said_in_words(self, icdgen, demo, arguments, words):
         result = icdgen("decode", *arguments, "--icd", demo)
         assert result.status == 2 and words in result.err and "Traceback" not in result.err
+
+    def test_a_frame_need_not_be_one_word_and_finds_its_message(self, icdgen, demo):
+        outs = {
+            icdgen("decode", *arguments, "--icd", demo).out
+            for arguments in (["demo", "146", "2e", "fb", "01"], ["demo", "146", "2efb01"], ["demo", "0x2efb01"])
+        }
+        assert all("-12.34" in out for out in outs) and any("found by its length" in out for out in outs)
+
+    def test_a_file_needs_no_sign_and_holds_any_number_of_frames(self, icdgen, demo, tmp_path):
+        (tmp_path / "frames.txt").write_text("92 2efb01\n92 000000\n")
+        found = json.loads(icdgen("decode", "demo", "frames.txt", "--icd", demo, "--format", "json").out)
+        assert [one["fields"][0]["raw"] for one in found] == [-1234, 0]
+        assert [one["direction"] for one in found] == ["telemetry", "telemetry"]
+
+    def test_csv_has_a_line_a_field(self, icdgen, demo):
+        lines = icdgen("decode", "demo", "146", "2efb01", "--icd", demo, "--format", "csv").out.splitlines()
+        assert lines[0].startswith("frame,node,message,direction,id,field,raw,value,unit")
+        assert lines[1].startswith("0,demo,Estimated Roll,telemetry,,") and "-1234,-12.34,deg" in lines[1]
+
+    def test_a_wrong_constant_is_an_exit_status(self, icdgen, demo):
+        demo.write_text(DEMO.replace("messages:\n", CONSTANT))
+        assert icdgen("decode", "demo", "33", "5a", "--icd", demo).status == 0
+        result = icdgen("decode", "demo", "33", "5b", "--icd", demo)
+        assert result.status == 1 and "must be 90 (0x5A)" in result.out
+
+    @pytest.mark.parametrize(
+        ("arguments", "words"),
+        [
+            (["zz"], "`z` is not hexadecimal"),
+            ([], "Missing argument"),
+            (["demo"], "there is no frame for demo"),
+            (["-", "demo"], "no node"),
+        ],
+    )
+    def test_what_is_no_frame_is_said(self, icdgen, demo, arguments, words, monkeypatch):
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"")))
+        result = icdgen("decode", *arguments, "--icd", demo)
+        assert result.status == 2 and result.err.startswith("icdgen: error:"), result
 
 
 class TestEncode:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from icdgen.importer.run import Result
 
 
-class _Pages(click.ParamType):
+class _Pages(click.ParamType):  # type: ignore[type-arg]  # older versions of click know no argument
     """``12``, ``20-35``"""
 
     name = "pages"

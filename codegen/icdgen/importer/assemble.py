@@ -4,35 +4,20 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from dataclasses import dataclass, field
+from typing import Any
 
-from icdgen.importer import references, trees
+from icdgen.importer import icd_trees, references
 from icdgen.importer.document import Document, Trouble
-from icdgen.importer.profile import NodeWords, Profile
-from icdgen.importer.understand.model import Listed, ReadEnum, ReadList, ReadLog, ReadMessage
+from icdgen.importer.parts import NodeParts
+from icdgen.importer.profile import Profile
+from icdgen.importer.understand.model import ReadEnum, ReadList, ReadMessage
 from icdgen.importer.understand.survey import Found, Survey
 from icdgen.importer.words import folded, squeezed
 
 
-@dataclass
-class NodeParts:
-    """What belongs to one node."""
-
-    name: str
-    title: str
-    shared: bool = False
-    words: NodeWords | None = None
-    messages: list[ReadMessage] = field(default_factory=list)
-    enums: list[ReadEnum] = field(default_factory=list)
-    lists: list[ReadList] = field(default_factory=list)
-    logs: list[ReadLog] = field(default_factory=list)
-    include: list[str] = field(default_factory=list)
-    missing: list[Listed] = field(default_factory=list)
-
-
-def assemble(document: Document, survey: Survey, profile: Profile, prose: bool = False) -> dict[str, dict]:
+def assemble(document: Document, survey: Survey, profile: Profile, prose: bool = False) -> dict[str, dict[str, Any]]:
     """The trees by node name; appends to ``survey.troubles``. ``prose``: keep descriptions as summaries."""
-    nodes = _dealt(document, survey, profile)
+    nodes = _parts_by_node(document, survey, profile)
     everything = survey.of(ReadEnum)
     for node in nodes:
         _merge_enums(node, survey)
@@ -44,7 +29,7 @@ def assemble(document: Document, survey: Survey, profile: Profile, prose: bool =
     for node in nodes:
         references.complete(node, survey.troubles)
     held = [node for node in nodes if node.messages or node.enums or node.logs]
-    return {node.name: trees.tree(node, document, profile, prose, survey.troubles) for node in held}
+    return {node.name: icd_trees.tree(node, document, profile, prose, survey.troubles) for node in held}
 
 
 def _runs(survey: Survey) -> dict[int, int]:
@@ -52,7 +37,7 @@ def _runs(survey: Survey) -> dict[int, int]:
     return {id(one.table): one.run for one in survey.found}
 
 
-def _dealt(document: Document, survey: Survey, profile: Profile) -> list[NodeParts]:
+def _parts_by_node(document: Document, survey: Survey, profile: Profile) -> list[NodeParts]:
     """Each thing to its node."""
     keys = _keys(survey, profile)
     used = [key for key, one in zip(keys, survey.found, strict=True) if one.thing is not None]
@@ -71,19 +56,25 @@ def _dealt(document: Document, survey: Survey, profile: Profile) -> list[NodePar
 
 def _put(node: NodeParts, one: Found) -> None:
     thing = one.thing
-    target = {ReadMessage: node.messages, ReadEnum: node.enums, ReadList: node.lists, ReadLog: node.logs}[type(thing)]
-    target.append(thing)
+    if isinstance(thing, ReadMessage):
+        node.messages.append(thing)
+    elif isinstance(thing, ReadEnum):
+        node.enums.append(thing)
+    elif isinstance(thing, ReadList):
+        node.lists.append(thing)
+    elif thing is not None:
+        node.logs.append(thing)
 
 
 def _keys(survey: Survey, profile: Profile) -> list[str]:
     """The node of each table, as the manual calls it; "" where nothing tells."""
     by_number = {}
-    for one in survey.of(ReadList):
-        for row in one.thing.rows:
+    for one, listed in survey.of(ReadList):
+        for row in listed.rows:
             if row.table_number is not None:
-                by_number[(one.run, row.table_number)] = one.thing.node
+                by_number[(one.run, row.table_number)] = listed.node
     numbered = [one.table.number for one in survey.found if one.table.number is not None]
-    restarts = len(set(numbered)) < len(numbered) and not any(one.thing.node for one in survey.of(ReadList))
+    restarts = len(set(numbered)) < len(numbered) and not any(listed.node for _, listed in survey.of(ReadList))
     keys, current, twins = [], "", _twins(survey)
     for one in survey.found:
         told = _by_profile(one, profile)
@@ -91,7 +82,8 @@ def _keys(survey: Survey, profile: Profile) -> list[str]:
             current = one.thing.node
         if told is None and not profile.nodes and restarts:
             told = f"part {one.run}"
-        key = told if told is not None else by_number.get((one.run, one.table.number)) or current
+        number = one.table.number
+        key = told if told is not None else (by_number.get((one.run, number)) if number is not None else "") or current
         if told is not None:
             current = told
         keys.append(key)
@@ -104,8 +96,8 @@ def _twins(survey: Survey) -> dict[int, int]:
     """Enumeration table -> a later one of the same name, both by identity."""
     last: dict[str, int] = {}
     made: dict[int, int] = {}
-    for one in reversed(survey.of(ReadEnum)):
-        name = squeezed(one.thing.name)
+    for one, enum in reversed(survey.of(ReadEnum)):
+        name = squeezed(enum.name)
         if name in last:
             made[id(one.table)] = last[name]
         else:
@@ -177,12 +169,12 @@ def _merge_enums(node: NodeParts, survey: Survey) -> None:
     order = {id(one.table): index for index, one in enumerate(survey.found)}
     pointed = {
         (one.run, field.described.enum_table)
-        for one in survey.of(ReadMessage)
-        for field in one.thing.fields
+        for one, message in survey.of(ReadMessage)
+        for field in message.fields
         if field.described.enum_table is not None
     }
     kept: dict[str, ReadEnum] = {}
-    taken: Counter = Counter()
+    taken: Counter[str] = Counter()
     for one in node.enums:
         first = kept.get(one.name)
         if first is None:

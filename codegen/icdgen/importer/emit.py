@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from icdgen.icd import source
 from icdgen.icd.fmt import format_text, kinds, write
-from icdgen.icd.fmt.commented import Branch, Child, Text
-from icdgen.importer.trees import Spelled
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
+from icdgen.importer.icd_trees import Spelled
 
 SCHEMA_LINE = "# yaml-language-server: $schema=https://raw.githubusercontent.com/icdgen/icdgen/main/codegen/icdgen/icd/schema.json"
 
 
-def text(tree: dict, header: list[str] | None = None) -> str:
+def text(tree: dict[str, Any], header: list[str] | None = None) -> str:
     """The canonical YAML of a tree."""
     root = branch(tree)
     root.header = header if header is not None else [SCHEMA_LINE]
@@ -24,11 +26,11 @@ def of(root: Branch) -> str:
     return format_text(made, "the result")
 
 
-def branch(value: dict | list) -> Branch:
+def branch(value: dict[str, Any] | list[Any]) -> Branch:
     """A mapping or a list as the formatter holds it."""
     made = Branch(isinstance(value, dict), False, 0)
     items = value.items() if isinstance(value, dict) else ((None, item) for item in value)
-    made.children = [Child(Text(key, key) if key is not None else None, node(item)) for key, item in items]
+    made.children = [Child(Text(key, key) if key is not None else NOTHING, node(item)) for key, item in items]
     return made
 
 

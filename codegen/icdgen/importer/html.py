@@ -121,7 +121,7 @@ class _Pictures:
 
     def __enter__(self) -> _Pictures:
         if any(one.table.boxes for one in self.result.survey.found):
-            import pypdfium2
+            import pypdfium2  # type: ignore[import-untyped]
 
             try:
                 self.file = pypdfium2.PdfDocument(self.result.document.file)

@@ -6,11 +6,11 @@ import re
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
-from icdgen.diagnostics import Finding, Findings
+from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.icd import source
-from icdgen.icd.build import plain as without_places
+from icdgen.icd.build import plain_mapping
 from icdgen.icd.located import Map
 from icdgen.importer.words import folded
 
@@ -30,7 +30,7 @@ class NodeWords:
     match: list[str] = field(default_factory=list)  # words in list captions or section headings
     tables: tuple[int, int] | None = None  # first and last table, where no words tell
     group: int | None = None  # which run of table numbers, where the numbers start anew
-    head: dict = field(default_factory=dict)
+    head: dict[str, Any] = field(default_factory=dict)
     include: list[str] = field(default_factory=list)
 
 
@@ -74,7 +74,7 @@ class Profile:
         return {tuple(sorted(folded(text))): what for what, texts in self.data["labels"].items() for text in texts}
 
     @cached_property
-    def caption(self) -> re.Pattern:
+    def caption(self) -> re.Pattern[str]:
         """A line that begins like a caption."""
         words = "|".join(re.escape(word) for word in sorted(self.data["captions"], key=len, reverse=True))
         return re.compile(
@@ -82,7 +82,7 @@ class Profile:
         )
 
     @cached_property
-    def titles(self) -> dict[str, list[re.Pattern]]:
+    def titles(self) -> dict[str, list[re.Pattern[str]]]:
         return {what: [title(text) for text in texts] for what, texts in self.data["titles"].items()}
 
     @cached_property
@@ -117,15 +117,15 @@ class Profile:
         return {folded(text) for text in self.data["reserved"]}
 
     @cached_property
-    def types(self) -> dict[str, dict]:
+    def types(self) -> dict[str, dict[str, Any]]:
         return {"".join(folded(name)): rule for name, rule in self.data["types"].items()}
 
     @cached_property
-    def phrases(self) -> dict[str, list[re.Pattern]]:
+    def phrases(self) -> dict[str, list[re.Pattern[str]]]:
         return {what: [phrase(text) for text in texts] for what, texts in self.data["phrases"].items()}
 
     @cached_property
-    def background(self) -> list[re.Pattern]:
+    def background(self) -> list[re.Pattern[str]]:
         return [re.compile(re.escape(text).replace(r"\*", ".*"), re.I) for text in self.data["background"]]
 
     @cached_property
@@ -143,12 +143,12 @@ class Profile:
         ]
 
 
-def title(text: str) -> re.Pattern:
+def title(text: str) -> re.Pattern[str]:
     """``{name} Command Format`` as a pattern for a whole caption."""
     return re.compile(_pattern(text, {"name": "(?P<name>.+?)", "node": "(?P<node>.+?)"}) + r"\.?\Z", re.I)
 
 
-def phrase(text: str) -> re.Pattern:
+def phrase(text: str) -> re.Pattern[str]:
     """A phrase of descriptions as a pattern to be searched for."""
     stand_ins = {
         "unit": r"(?:\[\s*(?P<unit>[^\]]+?)\s*\]|(?P<bare>[^\s.,;)]+(?: units)?))",
@@ -175,21 +175,21 @@ def find(name: str | None) -> Path | None:
     if path.exists() or path.suffix or len(path.parts) > 1:
         return path
     folder = shipped.icds() / "profiles"
-    shipped = folder / f"{name}.yaml"
-    if shipped.is_file():
-        return shipped
+    ours = folder / f"{name}.yaml"
+    if ours.is_file():
+        return ours
     known = ", ".join(sorted(p.stem for p in folder.glob("*.yaml"))) or "none"
     raise UserError(f"there is no profile `{name}`", f"name a file, or one of those shipped: {known}")
 
 
 def load(path: Path | None = None) -> Profile:
     """The profile that comes with icdgen, with ``path`` laid over it. Raises `Findings` for a profile that is wrong."""
-    base = without_places(source.read(DEFAULT))
+    base = plain_mapping(source.read(DEFAULT))
     if path is None:
         return Profile(base)
     tree = source.read(path)
     _check(tree, base, str(path))
-    own = without_places(tree)
+    own = plain_mapping(tree)
     return Profile(_laid_over(_without_moved(base, own), own), str(path), own)
 
 
@@ -204,7 +204,7 @@ def _without_moved(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]
     return made
 
 
-def _laid_over(base: dict, over: dict) -> dict:
+def _laid_over(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
     """Lists are put before those below; everything else replaces what is below."""
     merged = dict(base)
     for key, value in over.items():
@@ -218,15 +218,21 @@ def _laid_over(base: dict, over: dict) -> dict:
     return merged
 
 
+class Add(Protocol):
+    """Takes a finding."""
+
+    def __call__(self, message: str, place: Place, help: str = ...) -> None: ...
+
+
 _NODE_KEYS = {"name", "title", "summary", "node_type", "interface_version", "byte_order", "bit_order", "source"}
 _SELECTORS = {"match": list, "tables": list, "group": int, "include": list}
 
 
-def _check(tree: Map, base: dict, name: str) -> None:
+def _check(tree: Map, base: dict[str, Any], name: str) -> None:
     """Raises `Findings` where the file does not have the form of the profile that comes with icdgen."""
     findings: list[Finding] = []
 
-    def add(message: str, place, help: str = "see docs/import.md") -> None:
+    def add(message: str, place: Place, help: str = "see docs/import.md") -> None:
         findings.append(Finding(CODE, message, place, help))
 
     if tree.get("profile") != 1:
@@ -246,12 +252,12 @@ def _check(tree: Map, base: dict, name: str) -> None:
         raise Findings(findings)
 
 
-def _check_like(value: object, like: object, place, key: str, add) -> None:
+def _check_like(value: object, like: object, place: Place, key: str, add: Add) -> None:
     if isinstance(like, list):
         if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
             add(f"`{key}` must be a list of texts", place)
     elif isinstance(like, dict) and key in ("types", "node"):
-        if not isinstance(value, dict):
+        if not isinstance(value, Map):
             add(f"`{key}` must be a mapping", place)
         elif key == "types":
             for word, rule in value.items():
@@ -274,7 +280,7 @@ def _check_like(value: object, like: object, place, key: str, add) -> None:
 _DAMAGE = ({"printed": str, "meant": str}, {"table": int, "before": int, "group": str})
 
 
-def _check_damage(value: object, place, add) -> None:
+def _check_damage(value: object, place: Place, add: Add) -> None:
     for item in value if isinstance(value, list) else [None]:
         if not isinstance(item, Map) or not any(
             item.keys() == form.keys() and all(type(item[key]) is kind for key, kind in form.items())
@@ -284,7 +290,7 @@ def _check_damage(value: object, place, add) -> None:
             add(f"each of `damage` must be {forms}", getattr(item, "place", place))
 
 
-def _check_nodes(value: object, place, add) -> None:
+def _check_nodes(value: object, place: Place, add: Add) -> None:
     if not isinstance(value, list):
         add("`nodes` must be a list", place)
         return

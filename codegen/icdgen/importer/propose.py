@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from icdgen.icd.units import SPELLINGS, STANDARD
@@ -25,10 +26,10 @@ class Column:
     def filled(self) -> list[str]:
         return [cell for cell in self.cells if cell]
 
-    def share(self, test: object) -> float:
+    def share(self, test: Callable[[str], bool]) -> float:
         """Which share of the filled cells passes a test."""
         filled = self.filled
-        return sum(1 for cell in filled if test(cell)) / len(filled) if filled else 0.0  # type: ignore[operator]
+        return sum(1 for cell in filled if test(cell)) / len(filled) if filled else 0.0
 
 
 def proposal(

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from icdgen.icd.rules.ids import BYTE
 from icdgen.importer.document import DOUBTFUL, Trouble
+from icdgen.importer.parts import NodeParts
 from icdgen.importer.understand import messages
 from icdgen.importer.understand.model import Listed, ReadEnum, ReadField, ReadMessage
+from icdgen.importer.understand.survey import Found
 from icdgen.importer.words import plain, squeezed
-
-if TYPE_CHECKING:
-    from icdgen.importer.assemble import NodeParts
-    from icdgen.importer.understand.survey import Found
 
 
 def listed(node: NodeParts, troubles: list[Trouble]) -> None:
@@ -93,7 +89,11 @@ _SAID = {"name": "name", "length": "length", "id": "id", "set_id": "set id", "ge
 
 
 def enums(
-    node: NodeParts, nodes: list[NodeParts], everything: list[Found], runs: dict[int, int], troubles: list[Trouble]
+    node: NodeParts,
+    nodes: list[NodeParts],
+    everything: list[tuple[Found, ReadEnum]],
+    runs: dict[int, int],
+    troubles: list[Trouble],
 ) -> None:
     """Finds the enumeration of each enum field, and brings it within reach of the node."""
     for message in node.messages:
@@ -104,14 +104,14 @@ def enums(
 
 
 def _resolve(
-    node: NodeParts, nodes: list[NodeParts], everything: list[Found], run: int, message: ReadMessage,
+    node: NodeParts, nodes: list[NodeParts], everything: list[tuple[Found, ReadEnum]], run: int, message: ReadMessage,
     field: ReadField, troubles: list[Trouble],
 ) -> None:  # fmt: skip
     said = field.described
     where = f"{message.table.title}, field `{field.name}`"
-    numbered = next((f.thing for f in everything if f.run == run and f.table.number == said.enum_table), None)
+    numbered = next((enum for f, enum in everything if f.run == run and f.table.number == said.enum_table), None)
     if numbered is None and said.enum_table is not None:
-        numbered = next((f.thing for f in everything if f.table.number == said.enum_table), None)
+        numbered = next((enum for f, enum in everything if f.table.number == said.enum_table), None)
     titled = _by_title(said.enum_title, everything, node)
     chosen = numbered or titled
     if numbered and said.enum_title and titled is not None and squeezed(titled.name) != squeezed(numbered.name):
@@ -134,11 +134,11 @@ def _resolve(
     field.enum = _within_reach(node, nodes, chosen)
 
 
-def _by_title(title: str, everything: list[Found], node: NodeParts) -> ReadEnum | None:
+def _by_title(title: str, everything: list[tuple[Found, ReadEnum]], node: NodeParts) -> ReadEnum | None:
     wanted = squeezed(title)
     if not wanted:
         return None
-    near = [*node.enums, *(found.thing for found in everything)]
+    near = [*node.enums, *(enum for _, enum in everything)]
     for enum in near:
         if wanted in (squeezed(enum.name), squeezed(enum.table.caption)):
             return enum

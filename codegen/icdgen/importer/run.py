@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from icdgen.errors import UserError
-from icdgen.importer import assemble, damage, emit, profile, reading, update
+from icdgen.importer import assemble, emit, profile, reading, repairs, update
 from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Document, Table, Trouble
 from icdgen.importer.understand import survey
 from icdgen.importer.understand.survey import Survey
@@ -69,7 +69,7 @@ def run(
     and the finding IMP004. ``pages``: the first and the last one to read of a PDF."""
     document = reading.read(manual, words, progress, jobs, pages)
     document.count_tables()
-    damage.mend(document, words)
+    repairs.mend(document, words)
     found = survey.survey(document, words)
     trees = assemble.assemble(document, found, words, prose)
     if not trees:

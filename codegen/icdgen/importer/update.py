@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import Any
 
 from icdgen.icd import source
 from icdgen.icd.fmt import read, scalars
-from icdgen.icd.fmt.commented import Branch, Child, Text
+from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
 from icdgen.importer import emit
 
 # What people add to the manual's facts.
@@ -30,7 +31,7 @@ class Updated:
     changes: list[str] = field(default_factory=list)
 
 
-def update(text: str, name: str, tree: dict) -> Updated:
+def update(text: str, name: str, tree: dict[str, Any]) -> Updated:
     """Raises `Findings` if the old text is no YAML."""
     root = read.read(text, source.parse(text.encode("utf-8", "surrogatepass"), name))
     made = Updated("")
@@ -43,7 +44,7 @@ def update(text: str, name: str, tree: dict) -> Updated:
     return made
 
 
-def _announced(root: Branch, words: dict | None, changes: list[str]) -> None:
+def _announced(root: Branch, words: dict[str, Any] | None, changes: list[str]) -> None:
     """What the manual announces of all formulas of a kind of messages."""
     old = _child(root, "formula_for")
     before = _plain(old.value) if old is not None else None
@@ -58,7 +59,7 @@ def _announced(root: Branch, words: dict | None, changes: list[str]) -> None:
         root.children.append(Child(Text("formula_for", "formula_for"), emit.branch(words)))
 
 
-def _section(root: Branch, key: str, kind: str, items: list[dict], changes: list[str]) -> None:
+def _section(root: Branch, key: str, kind: str, items: list[dict[str, Any]], changes: list[str]) -> None:
     old = _child(root, key)
     if not items and old is None:
         return
@@ -73,7 +74,7 @@ def _section(root: Branch, key: str, kind: str, items: list[dict], changes: list
         root.children.remove(old)
 
 
-def _merged(old: list[Child], items: list[dict], kind: str, where: str, changes: list[str]) -> list[Child]:
+def _merged(old: list[Child], items: list[dict[str, Any]], kind: str, where: str, changes: list[str]) -> list[Child]:
     """The items with what the old ones have of our own. Old ones stay in their order, new ones come after their
     predecessor."""
     pairs = _matched(old, items, kind)
@@ -84,7 +85,7 @@ def _merged(old: list[Child], items: list[dict], kind: str, where: str, changes:
         before = pairs.get(index)
         if before is None:
             changes.append(f"+ {where}{kind} {_title(kind, item)}")
-            made.append((place, Child(None, emit.branch(item))))
+            made.append((place, Child(NOTHING, emit.branch(item))))
             continue
         place = old.index(before)
         placed[index] = place
@@ -97,7 +98,7 @@ def _merged(old: list[Child], items: list[dict], kind: str, where: str, changes:
     return [child for _, child in (made if ascending else sorted(made, key=lambda m: m[0]))]
 
 
-def _merge(old: Child, item: dict, kind: str, where: str, changes: list[str]) -> Child:
+def _merge(old: Child, item: dict[str, Any], kind: str, where: str, changes: list[str]) -> Child:
     """One entry: the vendor's keys from ``item``, ours and the comments from the old one."""
     assert isinstance(old.value, Branch)
     title = _title(kind, item)
@@ -110,7 +111,7 @@ def _merge(old: Child, item: dict, kind: str, where: str, changes: list[str]) ->
         else:
             changes.append(f"~ {where}{kind} {title}: {key} {_shown(_plain(child.value))} -> (absent)")
     for key, value in item.items():
-        child = before.get(key)
+        child: Child | None = before.get(key)  # type: ignore[no-redef]
         if inner and key == inner[0]:
             children = child.value.children if child is not None and isinstance(child.value, Branch) else []
             lines = _merged(children, value, inner[1], f"{where}{kind} {title}: ", changes)
@@ -134,7 +135,7 @@ def _merge(old: Child, item: dict, kind: str, where: str, changes: list[str]) ->
     return Child(old.key, result, old.before, old.trailing)
 
 
-def _matched(old: list[Child], items: list[dict], kind: str) -> dict[int, Child]:
+def _matched(old: list[Child], items: list[dict[str, Any]], kind: str) -> dict[int, Child]:
     """Index of the new item -> the old entry that it goes on from, each used once; the surest match first."""
     plain = [_plain(child.value) for child in old]
     free = {index for index, value in enumerate(plain) if isinstance(value, dict)}
@@ -153,12 +154,12 @@ def _matched(old: list[Child], items: list[dict], kind: str) -> dict[int, Child]
     return found
 
 
-def _ids(item: dict) -> object:
+def _ids(item: dict[str, Any]) -> object:
     ids = (item.get("kind"), item.get("id"), item.get("set_id"), item.get("get_id"))
     return ids if any(i is not None for i in ids[1:]) else None
 
 
-_MATCHES: dict[str, list[Callable[[dict], object]]] = {
+_MATCHES: dict[str, list[Callable[[dict[str, Any]], object]]] = {
     "message": [lambda i: (i.get("name"), _ids(i)), lambda i: i.get("name"), _ids],
     "field": [lambda i: (i.get("name"), i.get("at")), lambda i: i.get("name"), lambda i: i.get("at")],
     "enumeration": [lambda i: i.get("name"), lambda i: (i.get("source") or {}).get("table")],
@@ -167,7 +168,7 @@ _MATCHES: dict[str, list[Callable[[dict], object]]] = {
 }
 
 
-def _added(root: Branch, key: str, by: str, items: list[dict], changes: list[str]) -> None:
+def _added(root: Branch, key: str, by: str, items: list[dict[str, Any]], changes: list[str]) -> None:
     """Entries that are not there yet."""
     child = _child(root, key)
     have = (
@@ -192,7 +193,7 @@ def _name(child: Child) -> str:
     return scalars.name(child.key) if child.key is not None else ""
 
 
-def _plain(value: object):
+def _plain(value: object) -> Any:
     if isinstance(value, Branch):
         if value.mapping:
             return {_name(child): _plain(child.value) for child in value.children}
@@ -200,7 +201,7 @@ def _plain(value: object):
     return value.value if isinstance(value, Text) else value
 
 
-def _title(kind: str, item: dict) -> str:
+def _title(kind: str, item: dict[str, Any]) -> str:
     if kind == "loggable":
         return f"bit {item.get('bit')}"
     if kind == "member":

@@ -120,9 +120,9 @@ static inline const icd_link_t *bootloader_link(void)
         0x1fu, /* escape */
         0x7fu, /* start */
         0xffu, /* end */
-        0x1fu, /* the escape byte as data */
-        true,  /* the id is escaped */
-        false, /* an escape byte before any other byte is skipped */
+        0x1fu, /* escaped */
+        true,  /* escapes_id */
+        false, /* ignores_other */
     };
     /**
      * Assumed data: Two bytes are announced, the last being the error. That the first is the id of the telecommand, and
@@ -130,8 +130,8 @@ static inline const icd_link_t *bootloader_link(void)
      */
     static const icd_acknowledge_t acknowledge = {
         2u, /* length */
-        0u, /* id */
-        1u, /* error */
+        0u, /* id_at */
+        1u, /* error_at */
     };
     static const icd_place_t polled_places[] = {
         {ICD_ROLE_ID, 0u, 8u},         /* Last TC ID */
@@ -146,20 +146,25 @@ static inline const icd_link_t *bootloader_link(void)
      * Assumed fill: Neither the value of the fill nor how the receiver learns the true length is said. The receiver
      * takes the length of the message from its id. Assumed packet_timeout_ms: No time-out between packets is given.
      */
+    static const icd_can_extended_t can_extended = {
+        7u,    /* data_bytes */
+        7u,    /* left_at */
+        0u,    /* left_in_last */
+        256u,  /* packets */
+        1792u, /* bytes */
+        0x00u, /* fill */
+        1000u, /* packet_timeout in ms */
+    };
     static const icd_can_form_t can = {
+        0x01u,                  /* node_address */
+        8u,                     /* data_bytes */
         {5u, 24u},              /* type: bits, shift */
         {8u, 16u},              /* channel: bits, shift */
         {8u, 8u},               /* source: bits, shift */
         {8u, 0u},               /* destination: bits, shift */
-        1u,                     /* address of the node */
-        8u,                     /* bytes of a packet */
         {1, 2, 3, 4, 5, 6},     /* types */
         {7, -1, -1, -1, 8, -1}, /* types of messages of several packets */
-        true, 7u,               /* bytes of each of their packets */
-        7u, 0u,                 /* the count of packets left, and in the last one */
-        0x00u,                  /* fill */
-        1792u,                  /* most bytes */
-        1000u,                  /* time-out */
+        &can_extended,          /* messages of several packets */
     };
     static const uint16_t crc16_table[] = {
         0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50a5u, 0x60c6u, 0x70e7u, 0x8108u, 0x9129u, 0xa14au, 0xb16bu,
@@ -186,7 +191,7 @@ static inline const icd_link_t *bootloader_link(void)
         0x2e93u, 0x3eb2u, 0x0ed1u, 0x1ef0u,
     };
     static const icd_crc_form_t crc16 = {
-        16u, false, false, false, 0x1021u, 0x0u, 0x0u, 0x0u, crc16_table
+        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, crc16_table
     };
     static const icd_time_form_t packed_time = {
         {25u, 7u, 1u, 1980u}, /* year */
@@ -197,7 +202,8 @@ static inline const icd_link_t *bootloader_link(void)
         {0u, 5u, 2u, 0u},     /* second */
     };
     static const icd_index_form_t index_entry = {
-        37u,        /* bytes of an entry */
+        37u,        /* entry_bytes */
+        15,         /* file_type */
         {0u, 1u},   /* type */
         {1u, 1u},   /* counter */
         {2u, 2u},   /* checksum */
@@ -220,10 +226,11 @@ static inline const icd_link_t *bootloader_link(void)
      * sent for them; from the node they are ignored.
      */
     static const icd_hole_map_form_t hole_map = {
-        128u, 16u, /* bytes, and in each message */
-        false,     /* bit 0 of a byte is the most significant one */
-        true,      /* received */
-        true,      /* beyond the end */
+        128u,  /* bytes */
+        16u,   /* message_bytes */
+        false, /* msb0 */
+        true,  /* received */
+        true,  /* beyond_end */
         8u, hole_maps,
     };
     /**
@@ -231,10 +238,12 @@ static inline const icd_link_t *bootloader_link(void)
      * fill: The value is not defined. Erased flash memory reads 0xFF.
      */
     static const icd_files_form_t files = {
-        20u, 2u,         /* bytes of a packet, and of its number */
-        0u,              /* number of the first */
+        20u,             /* packet_bytes */
+        2u,              /* counter_bytes */
+        0u,              /* first_packet */
         0xffu,           /* fill */
-        20480u,          /* bytes of a block */
+        1024u,           /* block_packets */
+        20480u,          /* block_bytes */
         {119, 241, 241}, /* ids of download packets */
     };
     static const icd_place_t list_information_places[] = {
@@ -253,8 +262,8 @@ static inline const icd_link_t *bootloader_link(void)
         {118, -1, 0u, 0u, NULL, NULL},                     /* Reset File List Read Pointer */
         {113, -1, 0u, 0u, NULL, NULL},                     /* Advance File List Read Pointer */
         {-1, 243, 12u, 6u, list_information_places, NULL}, /* File Information */
-        50u,                                               /* poll_interval_ms */
-        10000u,                                            /* timeout_ms */
+        50u,                                               /* poll_interval in ms */
+        10000u,                                            /* timeout in ms */
     };
     static const icd_place_t download_load_places[] = {
         {ICD_ROLE_TYPE, 0u, 8u},     /* File Type */
@@ -286,11 +295,12 @@ static inline const icd_link_t *bootloader_link(void)
         {-1, 242, 5u, 4u, download_ready_places, NULL}, /* Download Block Ready */
         {119, -1, 2u, 2u, download_burst_places, NULL}, /* Initiate Download Burst */
         20u,                                            /* message_length */
-        50u,                                            /* poll_interval_ms */
-        10000u,                                         /* ready_timeout_ms */
-        500u,                                           /* silence_ms */
+        false,                                          /* checksum_covers_fill */
+        0u,                                             /* index_counter */
+        50u,                                            /* poll_interval in ms */
+        10000u,                                         /* ready_timeout in ms */
+        500u,                                           /* silence in ms */
         32u,                                            /* rounds */
-        false,                                          /* the checksum covers the fill */
     };
     static const icd_place_t upload_initiate_places[] = {
         {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
@@ -315,7 +325,7 @@ static inline const icd_link_t *bootloader_link(void)
         {ICD_ROLE_BUSY, 0u, 1u},  /* Busy */
         {ICD_ROLE_ERROR, 1u, 1u}, /* Error */
     };
-    static const uint8_t destinations[] = {
+    static const uint8_t upload_destinations[] = {
         3u, 4u, 5u, 6u, 7u, 8u, 9u,
     };
     /**
@@ -333,13 +343,13 @@ static inline const icd_link_t *bootloader_link(void)
         {116, -1, 7u, 3u, upload_finalize_places, NULL},  /* Finalize Upload Block */
         {-1, 245, 1u, 2u, upload_finalized_places, NULL}, /* Upload Block Complete */
         0u,                                               /* block_size */
-        50u,                                              /* poll_interval_ms */
-        8000u,                                            /* erase_timeout_ms */
-        5000u,                                            /* finalize_timeout_ms */
+        true,                                             /* checksum_covers_fill */
+        50u,                                              /* poll_interval in ms */
+        8000u,                                            /* erase_timeout in ms */
+        5000u,                                            /* finalize_timeout in ms */
         32u,                                              /* rounds */
-        true,                                             /* the checksum covers the fill */
-        524288u,                                          /* bytes of a destination */
-        destinations, 7u,                                 /* destinations */
+        524288u,                                          /* destination_bytes */
+        upload_destinations, 7u,                          /* destinations */
     };
     static const icd_place_t erase_request_places[] = {
         {ICD_ROLE_TYPE, 0u, 8u},    /* File Type */
@@ -353,8 +363,8 @@ static inline const icd_link_t *bootloader_link(void)
     static const icd_erase_form_t erase = {
         {108, -1, 3u, 3u, erase_request_places, NULL},  /* Erase File */
         {-1, 234, 1u, 1u, erase_progress_places, NULL}, /* SD card format/erase progress */
-        200u,                                           /* poll_interval_ms */
-        60000u,                                         /* timeout_ms */
+        200u,                                           /* poll_interval in ms */
+        60000u,                                         /* timeout in ms */
     };
     static const uint8_t format_request_fresh[] = {
         0x5au,
@@ -366,8 +376,8 @@ static inline const icd_link_t *bootloader_link(void)
     static const icd_erase_form_t format = {
         {33, -1, 1u, 0u, NULL, format_request_fresh},    /* Format SD card */
         {-1, 234, 1u, 1u, format_progress_places, NULL}, /* SD card format/erase progress */
-        200u,                                            /* poll_interval_ms */
-        60000u,                                          /* timeout_ms */
+        200u,                                            /* poll_interval in ms */
+        60000u,                                          /* timeout in ms */
     };
     static const icd_place_t program_copy_request_places[] = {
         {ICD_ROLE_PROGRAM, 0u, 8u}, /* Source Program Index */
@@ -387,8 +397,9 @@ static inline const icd_link_t *bootloader_link(void)
     static const icd_operation_form_t program_copy = {
         {103, -1, 2u, 1u, program_copy_request_places, NULL},  /* Copy Program to Internal Flash */
         {-1, 233, 1u, 2u, program_copy_progress_places, NULL}, /* Copy To Internal Flash Progress */
-        50u, 10000u,                                           /* poll_interval_ms, timeout_ms */
-        program_copy_programs, 7u,                             /* program_copy_programs */
+        50u,                                                   /* poll_interval in ms */
+        10000u,                                                /* timeout in ms */
+        program_copy_programs, 7u,                             /* programs */
     };
     static const icd_place_t program_information_request_places[] = {
         {ICD_ROLE_PROGRAM, 0u, 8u}, /* Program Index */
@@ -403,8 +414,9 @@ static inline const icd_link_t *bootloader_link(void)
     static const icd_operation_form_t program_information = {
         {102, -1, 1u, 1u, program_information_request_places, NULL},  /* Read Program Information */
         {-1, 232, 8u, 4u, program_information_progress_places, NULL}, /* Program Information */
-        50u, 2000u,                                                   /* poll_interval_ms, timeout_ms */
-        NULL, 0u,                                                     /* program_information_programs */
+        50u,                                                          /* poll_interval in ms */
+        2000u,                                                        /* timeout in ms */
+        NULL, 0u,                                                     /* programs */
     };
     static const icd_place_t identification_places[] = {
         {ICD_ROLE_NODE_TYPE, 0u, 8u},         /* Node type */

@@ -351,9 +351,9 @@ static inline const icd_link_t *cubeacp_link(void)
         0x1fu, /* escape */
         0x7fu, /* start */
         0xffu, /* end */
-        0x1fu, /* the escape byte as data */
-        true,  /* the id is escaped */
-        false, /* an escape byte before any other byte is skipped */
+        0x1fu, /* escaped */
+        true,  /* escapes_id */
+        false, /* ignores_other */
     };
     /**
      * Assumed data: Two bytes are announced, the last being the error. That the first is the id of the telecommand, and
@@ -361,8 +361,8 @@ static inline const icd_link_t *cubeacp_link(void)
      */
     static const icd_acknowledge_t acknowledge = {
         2u, /* length */
-        0u, /* id */
-        1u, /* error */
+        0u, /* id_at */
+        1u, /* error_at */
     };
     static const icd_place_t polled_places[] = {
         {ICD_ROLE_ID, 0u, 8u},         /* Last TC ID */
@@ -377,20 +377,25 @@ static inline const icd_link_t *cubeacp_link(void)
      * Assumed fill: Neither the value of the fill nor how the receiver learns the true length is said. The receiver
      * takes the length of the message from its id. Assumed packet_timeout_ms: No time-out between packets is given.
      */
+    static const icd_can_extended_t can_extended = {
+        7u,    /* data_bytes */
+        7u,    /* left_at */
+        0u,    /* left_in_last */
+        256u,  /* packets */
+        1792u, /* bytes */
+        0x00u, /* fill */
+        1000u, /* packet_timeout in ms */
+    };
     static const icd_can_form_t can = {
+        0x01u,                  /* node_address */
+        8u,                     /* data_bytes */
         {5u, 24u},              /* type: bits, shift */
         {8u, 16u},              /* channel: bits, shift */
         {8u, 8u},               /* source: bits, shift */
         {8u, 0u},               /* destination: bits, shift */
-        1u,                     /* address of the node */
-        8u,                     /* bytes of a packet */
         {1, 2, 3, 4, 5, 6},     /* types */
         {7, -1, -1, -1, 8, -1}, /* types of messages of several packets */
-        true, 7u,               /* bytes of each of their packets */
-        7u, 0u,                 /* the count of packets left, and in the last one */
-        0x00u,                  /* fill */
-        1792u,                  /* most bytes */
-        1000u,                  /* time-out */
+        &can_extended,          /* messages of several packets */
     };
     static const uint16_t crc8_table[] = {
         0x00u, 0x12u, 0x24u, 0x36u, 0x48u, 0x5au, 0x6cu, 0x7eu, 0x90u, 0x82u, 0xb4u, 0xa6u, 0xd8u, 0xcau, 0xfcu, 0xeeu,
@@ -416,10 +421,11 @@ static inline const icd_link_t *cubeacp_link(void)
      * sent there by choice, for in an extended message the receiver could not tell the checksum from the fill.
      */
     static const icd_checksum_form_t checksum = {
-        {8u, true, true, true, 0x12u, 0x0u, 0x0u, 0xffu, crc8_table}, /* CRC */
-        false,                                                        /* covers the id */
-        3u, 2u,                                                       /* buses of telecommands and of telemetry */
+        false,                                                        /* covers_id */
+        3u,                                                           /* telecommand_buses */
+        2u,                                                           /* telemetry_buses */
         1u,                                                           /* bytes */
+        {8u, 0x12u, 0x0u, true, true, 0x0u, true, 0xffu, crc8_table}, /* CRC */
     };
     static const uint16_t crc16_table[] = {
         0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50a5u, 0x60c6u, 0x70e7u, 0x8108u, 0x9129u, 0xa14au, 0xb16bu,
@@ -446,7 +452,7 @@ static inline const icd_link_t *cubeacp_link(void)
         0x2e93u, 0x3eb2u, 0x0ed1u, 0x1ef0u,
     };
     static const icd_crc_form_t crc16 = {
-        16u, false, false, false, 0x1021u, 0x0u, 0x0u, 0x0u, crc16_table
+        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, crc16_table
     };
     static const icd_log_bit_t log_bits[] = {
         {144, 6u}, /* bit 0: Communication Status */
@@ -538,25 +544,28 @@ static inline const icd_link_t *cubeacp_link(void)
      * sizes count every bit that is set.
      */
     static const icd_log_mask_form_t log_mask = {
-        10u,   /* bytes */
-        false, /* bit 0 of a byte is the most significant one */
+        10u,   /* size */
+        false, /* msb0 */
+        6u,    /* slot_bytes */
         0x00u, /* fill */
-        6u,    /* bytes of a slot */
-        log_bits
+        log_bits,
     };
     static const icd_log_file_form_t log_file = {
-        0u, 10u,  /* the mask, and the bytes of the header */
+        0u,       /* mask_at */
+        10u,      /* header_bytes */
         {0u, 4u}, /* seconds */
         {4u, 2u}, /* milliseconds */
-        6u,       /* frames */
+        6u,       /* frames_at */
+        2,        /* file_type */
     };
     /**
      * Assumed framed: Section 5.2 has start, end and escapes for all that goes over the UART, and makes no exception
      * for these messages.
      */
     static const icd_log_message_form_t log_message = {
-        255u,    /* id */
-        1u, 11u, /* mask and frames */
+        255u, /* id */
+        1u,   /* mask_at */
+        11u,  /* frames_at */
     };
     static const icd_time_form_t packed_time = {
         {25u, 7u, 1u, 1980u}, /* year */
@@ -567,7 +576,8 @@ static inline const icd_link_t *cubeacp_link(void)
         {0u, 5u, 2u, 0u},     /* second */
     };
     static const icd_index_form_t index_entry = {
-        37u,        /* bytes of an entry */
+        37u,        /* entry_bytes */
+        15,         /* file_type */
         {0u, 1u},   /* type */
         {1u, 1u},   /* counter */
         {2u, 2u},   /* checksum */
@@ -590,10 +600,11 @@ static inline const icd_link_t *cubeacp_link(void)
      * sent for them; from the node they are ignored.
      */
     static const icd_hole_map_form_t hole_map = {
-        128u, 16u, /* bytes, and in each message */
-        false,     /* bit 0 of a byte is the most significant one */
-        true,      /* received */
-        true,      /* beyond the end */
+        128u,  /* bytes */
+        16u,   /* message_bytes */
+        false, /* msb0 */
+        true,  /* received */
+        true,  /* beyond_end */
         8u, hole_maps,
     };
     /**
@@ -601,10 +612,12 @@ static inline const icd_link_t *cubeacp_link(void)
      * fill: The value is not defined. Erased flash memory reads 0xFF.
      */
     static const icd_files_form_t files = {
-        20u, 2u,         /* bytes of a packet, and of its number */
-        0u,              /* number of the first */
+        20u,             /* packet_bytes */
+        2u,              /* counter_bytes */
+        0u,              /* first_packet */
         0xffu,           /* fill */
-        20480u,          /* bytes of a block */
+        1024u,           /* block_packets */
+        20480u,          /* block_bytes */
         {119, 241, 241}, /* ids of download packets */
     };
     static const icd_place_t list_information_places[] = {
@@ -623,8 +636,8 @@ static inline const icd_link_t *cubeacp_link(void)
         {118, -1, 0u, 0u, NULL, NULL},                     /* Reset File List Read Pointer */
         {113, -1, 0u, 0u, NULL, NULL},                     /* Advance File List Read Pointer */
         {-1, 243, 12u, 6u, list_information_places, NULL}, /* File Information */
-        50u,                                               /* poll_interval_ms */
-        10000u,                                            /* timeout_ms */
+        50u,                                               /* poll_interval in ms */
+        10000u,                                            /* timeout in ms */
     };
     static const icd_place_t download_load_places[] = {
         {ICD_ROLE_TYPE, 0u, 8u},     /* File Type */
@@ -656,11 +669,12 @@ static inline const icd_link_t *cubeacp_link(void)
         {-1, 242, 5u, 4u, download_ready_places, NULL}, /* Download Block Ready */
         {119, -1, 2u, 2u, download_burst_places, NULL}, /* Initiate Download Burst */
         20u,                                            /* message_length */
-        50u,                                            /* poll_interval_ms */
-        10000u,                                         /* ready_timeout_ms */
-        500u,                                           /* silence_ms */
+        false,                                          /* checksum_covers_fill */
+        0u,                                             /* index_counter */
+        50u,                                            /* poll_interval in ms */
+        10000u,                                         /* ready_timeout in ms */
+        500u,                                           /* silence in ms */
         32u,                                            /* rounds */
-        false,                                          /* the checksum covers the fill */
     };
     static const icd_place_t erase_request_places[] = {
         {ICD_ROLE_TYPE, 0u, 8u},    /* File Type */
@@ -674,8 +688,8 @@ static inline const icd_link_t *cubeacp_link(void)
     static const icd_erase_form_t erase = {
         {108, -1, 3u, 3u, erase_request_places, NULL},  /* Erase File */
         {-1, 234, 1u, 1u, erase_progress_places, NULL}, /* SD card format/erase progress */
-        200u,                                           /* poll_interval_ms */
-        60000u,                                         /* timeout_ms */
+        200u,                                           /* poll_interval in ms */
+        60000u,                                         /* timeout in ms */
     };
     static const uint8_t format_request_fresh[] = {
         0x5au,
@@ -687,8 +701,8 @@ static inline const icd_link_t *cubeacp_link(void)
     static const icd_erase_form_t format = {
         {33, -1, 1u, 0u, NULL, format_request_fresh},    /* Format SD card */
         {-1, 234, 1u, 1u, format_progress_places, NULL}, /* SD card format/erase progress */
-        200u,                                            /* poll_interval_ms */
-        60000u,                                          /* timeout_ms */
+        200u,                                            /* poll_interval in ms */
+        60000u,                                          /* timeout in ms */
     };
     static const icd_place_t identification_places[] = {
         {ICD_ROLE_NODE_TYPE, 0u, 8u},         /* Node type */

@@ -29,8 +29,8 @@ static inline bool icdgen_can_has_data(icd_can_kind_t kind)
 static inline size_t icd_can_most(const icd_link_t *link, icd_can_kind_t kind)
 {
     const icd_can_form_t *const can = link->can;
-    if (can->extended && can->extended_types[kind] >= 0) {
-        return can->most_bytes;
+    if (can->extended != NULL && can->extended_types[kind] >= 0) {
+        return can->extended->bytes;
     }
     return icdgen_can_has_data(kind) ? can->data_bytes : 0u;
 }
@@ -83,32 +83,34 @@ static inline icd_status_t icd_can_split(
     splitter->can = can;
     splitter->data = data;
     splitter->length = length;
-    splitter->count =
-        splitter->extended ? ICDGEN_U32((length + can->packet_bytes - 1u) / can->packet_bytes) : ICDGEN_U32(1);
+    splitter->count = splitter->extended
+        ? ICDGEN_U32((length + can->extended->data_bytes - 1u) / can->extended->data_bytes)
+        : ICDGEN_U32(1);
     return ICD_OK;
 }
 
 /** The next packet; false after the last. */
 static inline bool icd_can_next(icd_can_splitter_t *splitter, icd_can_packet_t *packet)
 {
-    const icd_can_form_t *const can = splitter->can;
+    const icd_can_extended_t *form;
     size_t at, size;
     if (splitter->next >= splitter->count) {
         return false;
     }
+    form = splitter->can->extended;
     packet->id = splitter->id;
-    at = splitter->extended ? splitter->next * can->packet_bytes : 0u;
+    at = splitter->extended ? splitter->next * form->data_bytes : 0u;
     size = splitter->length - at;
     memset(packet->data, 0, sizeof packet->data);
     if (splitter->extended) {
-        size = size < can->packet_bytes ? size : can->packet_bytes;
-        memset(packet->data, can->fill, can->left_at);
-        packet->data[can->left_at] = ICDGEN_U8(can->left_in_last + splitter->count - 1u - splitter->next);
+        size = size < form->data_bytes ? size : form->data_bytes;
+        memset(packet->data, form->fill, form->left_at);
+        packet->data[form->left_at] = ICDGEN_U8(form->left_in_last + splitter->count - 1u - splitter->next);
     }
     if (size != 0u) {
         memcpy(packet->data, splitter->data + at, size);
     }
-    packet->length = ICDGEN_U8(splitter->extended ? can->left_at + 1u : size);
+    packet->length = ICDGEN_U8(splitter->extended ? form->left_at + 1u : size);
     splitter->next++;
     return true;
 }

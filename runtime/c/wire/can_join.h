@@ -38,9 +38,9 @@ typedef struct {
 /** Bytes that each slot takes of the buffer: NODE_CAN_SLOT_BYTES is the constant for a node. The node is on CAN. */
 static inline size_t icd_can_slot_bytes(const icd_link_t *link)
 {
-    const icd_can_form_t *const can = link->can;
-    const size_t packets = can->extended ? (link->longest_data + can->packet_bytes - 1u) / can->packet_bytes : 0u;
-    return 1u + (packets * can->packet_bytes);
+    const icd_can_extended_t *const form = link->can->extended;
+    return 1u +
+        (form != NULL ? (link->longest_data + form->data_bytes - 1u) / form->data_bytes * form->data_bytes : 0u);
 }
 
 /**
@@ -73,7 +73,7 @@ static inline icd_status_t icd_can_joiner_init(
     joiner->address = address;
     joiner->slots = slots;
     joiner->slot_count = count;
-    joiner->room = link->can->extended ? ICDGEN_U32((each - 1u) / link->can->packet_bytes) : 0u;
+    joiner->room = link->can->extended != NULL ? ICDGEN_U32((each - 1u) / link->can->extended->data_bytes) : 0u;
     return ICD_OK;
 }
 
@@ -143,7 +143,7 @@ static inline void icdgen_can_give_up(icd_can_joiner_t *joiner, size_t index, ic
 static inline void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event_fn *on_event, void *context)
 {
     for (size_t i = 0; i < joiner->used;) {
-        if (icdgen_reached(now, joiner->slots[i].last + joiner->link->can->packet_timeout)) {
+        if (icdgen_reached(now, joiner->slots[i].last + joiner->link->can->extended->packet_timeout)) {
             icdgen_can_give_up(joiner, i, on_event, context);
         } else {
             ++i;
@@ -213,7 +213,8 @@ static inline void icdgen_can_extended(
     const icd_link_t *const link = joiner->link;
     const icd_can_form_t *const can = link->can;
     const uint32_t length = icdgen_can_length(link, kind, icdgen_can_part(can->channel, packet->id));
-    const size_t size = can->packet_bytes;
+    const icd_can_extended_t *const form = can->extended;
+    const size_t size = form->data_bytes;
     size_t index = 0;
     icd_can_slot_t *slot, fresh;
     uint32_t left, count, number;
@@ -221,7 +222,7 @@ static inline void icdgen_can_extended(
         ++index;
     }
     slot = index < joiner->used ? &joiner->slots[index] : NULL;
-    left = packet->data[can->left_at] - ICDGEN_U32(can->left_in_last);
+    left = packet->data[form->left_at] - ICDGEN_U32(form->left_in_last);
     if (length != 0u) {
         count = ICDGEN_U32((length + size - 1u) / size);
     } else if (slot != NULL && !slot->done && left < slot->count) {
@@ -229,7 +230,7 @@ static inline void icdgen_can_extended(
     } else { /* the first packet that comes tells how many there are */
         count = left + 1u;
     }
-    if (packet->length != can->left_at + 1u || left >= count || count > joiner->room) {
+    if (packet->length != form->left_at + 1u || left >= count || count > joiner->room) {
         if (slot != NULL) {
             icdgen_can_give_up(joiner, index, on_event, context);
         }
@@ -302,7 +303,7 @@ static inline void icd_can_feed(
             return;
         }
     }
-    for (unsigned i = 0; can->extended && i < ICD_CAN_KINDS; ++i) {
+    for (unsigned i = 0; can->extended != NULL && i < ICD_CAN_KINDS; ++i) {
         if (can->extended_types[i] >= 0 && ICDGEN_U32(can->extended_types[i]) == type) {
             icdgen_can_extended(joiner, now, ICDGEN_CAST(icd_can_kind_t, i), packet, on_event, context);
             return;

@@ -81,7 +81,7 @@ static inline icd_status_t icd_index_entry_decode(
     if (form == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (length != form->bytes) {
+    if (length != form->entry_bytes) {
         return ICD_ERROR_LENGTH;
     }
     entry->type = icdgen_number(link, bytes + form->type.at, form->type.bytes);
@@ -102,10 +102,10 @@ static inline icd_status_t icd_index_entry_encode(
     if (form == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (capacity < form->bytes) {
+    if (capacity < form->entry_bytes) {
         return ICD_ERROR_LENGTH;
     }
-    memset(bytes, 0, form->bytes);
+    memset(bytes, 0, form->entry_bytes);
     if (icdgen_put_number(link, bytes + form->type.at, form->type.bytes, entry->type) != ICD_OK ||
         icdgen_put_number(link, bytes + form->counter.at, form->counter.bytes, entry->counter) != ICD_OK ||
         icdgen_put_number(link, bytes + form->checksum.at, form->checksum.bytes, entry->checksum) != ICD_OK ||

@@ -23,18 +23,27 @@ typedef struct {
 
 /** How messages are delimited on the UART; the escape byte comes before each of the other three. */
 typedef struct {
+    /** The escape byte. */
     uint8_t escape;
+    /** Follows the escape byte at the beginning of a message. */
     uint8_t start;
+    /** Follows the escape byte at the end of a message. */
     uint8_t end;
-    uint8_t escaped;    /**< After the escape byte: the escape byte itself as data. */
-    bool escapes_id;    /**< Whether the id is escaped like the data. */
-    bool ignores_other; /**< Whether an escape byte before any other byte is skipped, or an error. */
+    /** Follows the escape byte where the escape byte itself is meant as data. */
+    uint8_t escaped;
+    /** Whether the id is escaped like the data. */
+    bool escapes_id;
+    /** Whether an escape byte before any other byte is skipped with it, or an error. */
+    bool ignores_other;
 } icd_framing_t;
 
 /** The acknowledge on the UART: its length, and where the id of the telecommand and the error code stand. */
 typedef struct {
+    /** Bytes of the message. */
     uint16_t length;
+    /** Where the id of the telecommand stands. */
     uint16_t id_at;
+    /** Where the error code stands. */
     uint16_t error_at;
 } icd_acknowledge_t;
 
@@ -56,24 +65,36 @@ typedef struct {
 
 /** Parameters of a CRC in the notation of the usual catalogues. */
 typedef struct {
-    uint8_t width;
-    bool reflect_in;
-    bool reflect_out;
-    bool has_empty; /**< Whether `empty` is the value for no bytes at all. */
+    /** Bits of the checksum. */
+    uint32_t width;
+    /** Generator polynomial, most significant bit first, without the leading term. */
     uint32_t polynomial;
+    /** Value of the register at the beginning. */
     uint32_t init;
+    /** Whether each byte enters least significant bit first. */
+    bool reflect_in;
+    /** Whether the bits of the register are reversed at the end. */
+    bool reflect_out;
+    /** What the register is combined with at the end. */
     uint32_t xor_out;
+    /** Whether `empty` is known. */
+    bool has_empty;
+    /** Checksum of no bytes at all, where it is not what the algorithm gives. */
     uint32_t empty;
     const uint16_t *table; /**< NULL: it is computed without. */
 } icd_crc_form_t;
 
 /** The optional checksum of telecommands and frames. */
 typedef struct {
-    icd_crc_form_t crc;
+    /** Whether the id byte is part of what the checksum covers. */
     bool covers_id;
-    uint8_t telecommand_buses; /**< Bit n: on bus n of icd_bus_t. */
+    /** Where telecommands have it; bit n: on bus n of icd_bus_t. */
+    uint8_t telecommand_buses;
+    /** Where telemetry has it; bit n: on bus n of icd_bus_t. */
     uint8_t telemetry_buses;
-    uint8_t bytes; /**< That it adds to a message. */
+    /** Bytes that it adds to a message. */
+    uint8_t bytes;
+    icd_crc_form_t crc;
 } icd_checksum_form_t;
 
 /** A part of the CAN identifier. */
@@ -94,23 +115,37 @@ typedef enum {
 
 #define ICD_CAN_KINDS 6u
 
+/** CAN messages of several packets. */
+typedef struct {
+    /** Data bytes of a packet. */
+    uint8_t data_bytes;
+    /** Index of the byte that counts the packets still to come. */
+    uint8_t left_at;
+    /** What that byte counts in the last packet. */
+    uint8_t left_in_last;
+    /** Most packets of a message. */
+    uint32_t packets;
+    /** Most bytes of a message. */
+    uint32_t bytes;
+    /** Value of the bytes of the last packet that hold no data. */
+    uint8_t fill;
+    /** Longest time between two packets of a message, in milliseconds. */
+    uint32_t packet_timeout;
+} icd_can_extended_t;
+
 /** CAN. Message types are -1 where the ICD has none; they stand in the order of icd_can_kind_t. */
 typedef struct {
+    /** Address of the node. */
+    uint8_t node_address;
+    /** Most data bytes of one packet, of which CAN 2.0 has up to 8. */
+    uint8_t data_bytes;
     icd_can_part_t type;
     icd_can_part_t channel;
     icd_can_part_t source;
     icd_can_part_t destination;
-    uint8_t node_address;
-    uint8_t data_bytes; /**< Most of a packet. */
     int32_t types[ICD_CAN_KINDS];
     int32_t extended_types[ICD_CAN_KINDS];
-    bool extended;           /**< Whether there are messages of several packets; the rest is about them. */
-    uint8_t packet_bytes;    /**< Data of each of their packets. */
-    uint8_t left_at;         /**< Where the count of packets still to come stands. */
-    uint8_t left_in_last;    /**< That count in the last packet. */
-    uint8_t fill;            /**< Of what is left of the last packet. */
-    uint32_t most_bytes;     /**< Of a message. */
-    uint32_t packet_timeout; /**< Milliseconds from packet to packet. */
+    const icd_can_extended_t *extended; /**< NULL if there are no messages of several packets. */
 } icd_can_form_t;
 
 /** A bit of the log mask: the frame that it selects, id -1 for none, and its bytes. */
@@ -121,10 +156,14 @@ typedef struct {
 
 /** The mask of a log. Frames stand in slots, in the order of rising bits. */
 typedef struct {
-    uint8_t bytes;
+    /** Length of the mask. */
+    uint8_t size;
+    /** Whether bit 0 is the most significant one of a byte. */
     bool msb0;
-    uint8_t fill;
+    /** Length of each frame in a log. */
     uint16_t slot_bytes;
+    /** Value of the bytes after a short frame. */
+    uint8_t fill;
     const icd_log_bit_t *bits; /**< One for every bit of the mask. */
 } icd_log_mask_form_t;
 
@@ -136,17 +175,27 @@ typedef struct {
 
 /** The file form of a log. */
 typedef struct {
+    /** Where the mask stands in the header. */
     uint16_t mask_at;
+    /** Bytes of the header. */
     uint16_t header_bytes;
+    /** Where the Unix time stands in an entry. */
     icd_part_t seconds;
+    /** Where the milliseconds stand in an entry. */
     icd_part_t milliseconds;
+    /** Where in an entry the selected frames begin. */
     uint16_t frames_at;
+    /** Type of such a file; -1 if the ICD does not say. */
+    int16_t file_type;
 } icd_log_file_form_t;
 
 /** The unsolicited form of a log; places are counted from the id. */
 typedef struct {
+    /** Id of such messages. */
     uint8_t id;
+    /** Where the mask stands. */
     uint16_t mask_at;
+    /** Where the selected frames begin, counted from the id. */
     uint16_t frames_at;
 } icd_log_message_form_t;
 
@@ -165,7 +214,10 @@ typedef struct {
 
 /** An entry of the index file. */
 typedef struct {
-    uint16_t bytes;
+    /** Length of an entry. */
+    uint16_t entry_bytes;
+    /** Type of such a file; -1 if the ICD does not say. */
+    int16_t file_type;
     icd_part_t type, counter, checksum, size, time, meta;
 } icd_index_form_t;
 
@@ -222,71 +274,137 @@ typedef struct {
 
 /** A bit for each packet of a block. */
 typedef struct {
+    /** Length of the map. */
     uint16_t bytes;
-    uint16_t message_bytes; /**< In each message. */
+    /** Bytes of the map in each message. */
+    uint16_t message_bytes;
+    /** Whether bit 0 is the most significant one of a byte. */
     bool msb0;
-    bool received;   /**< The bit of a packet that was received. */
-    bool beyond_end; /**< The bits beyond the end of the block. */
+    /** Value of the bit of a received packet. */
+    bool received;
+    /** Value of the bits of packets beyond the end of the block. */
+    bool beyond_end;
     uint8_t message_count;
     const icd_hole_map_message_t *messages;
 } icd_hole_map_form_t;
 
 /** Files and their blocks. An id is -1 where there are no download packets on that bus. */
 typedef struct {
+    /** Bytes of the file in a packet. */
     uint16_t packet_bytes;
+    /** Bytes of the packet counter before them. */
     uint8_t counter_bytes;
+    /** Number of the first packet of a block. */
     uint16_t first_packet;
+    /** Value of the bytes of the last packet beyond the end of the file. */
     uint8_t fill;
+    /** Most packets of a block. */
+    uint32_t block_packets;
+    /** Most bytes of a block. */
     uint32_t block_bytes;
     int16_t packet_ids[3];
 } icd_files_form_t;
 
 /** Listing files. Times are in milliseconds, here and below. */
 typedef struct {
-    icd_step_t reset, advance, information;
+    /** Returns to the first file. */
+    icd_step_t reset;
+    /** Goes on to the next file. */
+    icd_step_t advance;
+    /** Describes a file. */
+    icd_step_t information;
+    /** Time between two polls of the busy flag, in milliseconds. */
     uint32_t poll_interval;
+    /** How long the busy flag may stay set, in milliseconds. */
     uint32_t timeout;
 } icd_list_form_t;
 
 /** Downloading a file. */
 typedef struct {
-    icd_step_t load, ready, burst;
+    /** Loads a block. */
+    icd_step_t load;
+    /** Tells whether the block is loaded. */
+    icd_step_t ready;
+    /** Starts the transfer of the block. */
+    icd_step_t burst;
+    /** What the burst telecommand gives as length. */
     uint32_t message_length;
-    uint32_t poll_interval;
-    uint32_t ready_timeout;
-    uint32_t silence;
-    uint32_t rounds;
+    /** Whether the checksum of a block covers the fill of its last packet. */
     bool checksum_covers_fill;
+    /** Counter that goes with the type of the index file. */
+    uint8_t index_counter;
+    /** Time between two polls of the ready flag, in milliseconds. */
+    uint32_t poll_interval;
+    /** How long a block may take to load, in milliseconds. */
+    uint32_t ready_timeout;
+    /** A burst is over if no packet came for this long, in milliseconds. */
+    uint32_t silence;
+    /** Most bursts for one block. */
+    uint32_t rounds;
 } icd_download_form_t;
 
 /** Uploading a file. */
 typedef struct {
-    icd_step_t initiate, initiated, begin, packet, checksum, finalize, finalized;
+    /** Erases the destination. */
+    icd_step_t initiate;
+    /** Tells whether the destination is erased. */
+    icd_step_t initiated;
+    /** Begins a block. */
+    icd_step_t begin;
+    /** Carries a packet. */
+    icd_step_t packet;
+    /** Tells the checksum of the block received. */
+    icd_step_t checksum;
+    /** Commits a block. */
+    icd_step_t finalize;
+    /** Tells whether the block is committed. */
+    icd_step_t finalized;
+    /** What `initiate` gives as block size. */
     uint32_t block_size;
-    uint32_t poll_interval;
-    uint32_t erase_timeout;
-    uint32_t finalize_timeout;
-    uint32_t rounds;
+    /** Whether the checksum of a block covers the fill of its last packet. */
     bool checksum_covers_fill;
-    uint32_t destination_bytes;  /**< That a destination holds, 0 if the ICD does not say. */
-    const uint8_t *destinations; /**< Those that are supported, NULL for all. */
-    uint16_t destination_count;
+    /** Time between two polls of a busy flag, in milliseconds. */
+    uint32_t poll_interval;
+    /** How long the destination may take to be erased, in milliseconds. */
+    uint32_t erase_timeout;
+    /** How long committing a block may take, in milliseconds. */
+    uint32_t finalize_timeout;
+    /** Most rounds of packets for one block. */
+    uint32_t rounds;
+    /** Bytes that a destination holds: no file may be larger; 0 if the ICD does not say. */
+    uint32_t destination_bytes;
+    /** The destinations that are supported; NULL: all. */
+    const uint8_t *destinations;
+    /** How many they are. */
+    uint16_t destinations_count;
 } icd_upload_form_t;
 
 /** Erasing files, or formatting their medium. */
 typedef struct {
-    icd_step_t request, progress;
+    /** Begins it. */
+    icd_step_t request;
+    /** Tells whether it is done. */
+    icd_step_t progress;
+    /** Time between two polls of the busy flag, in milliseconds. */
     uint32_t poll_interval;
+    /** How long it may take, in milliseconds. */
     uint32_t timeout;
 } icd_erase_form_t;
 
 /** What a telecommand starts for a stored program, and a frame tells the end of. */
 typedef struct {
-    icd_step_t request, progress;
+    /** Starts it. */
+    icd_step_t request;
+    /** Tells when it is done. */
+    icd_step_t progress;
+    /** Time between two polls of that frame, in milliseconds. */
     uint32_t poll_interval;
+    /** How long it may take, in milliseconds. */
     uint32_t timeout;
-    const uint8_t *programs; /**< Those that it may be asked for, NULL for all. */
-    uint16_t program_count;
+    /** The programs that it may be asked for; NULL: all. */
+    const uint8_t *programs;
+    /** How many they are. */
+    uint16_t programs_count;
 } icd_operation_form_t;
 
 #endif /* ICDGEN_WIRE_FORMS_H */

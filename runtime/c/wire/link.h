@@ -6,9 +6,13 @@
 
 /** How a client waits and tries again, in milliseconds. */
 typedef struct {
+    /** How long a reply may take, in milliseconds. */
     uint32_t reply_timeout;
-    uint32_t retries;
+    /** How often a request is sent again. */
+    uint8_t retries;
+    /** Time between two polls for an acknowledge, in milliseconds. */
     uint32_t poll_interval;
+    /** How long a telecommand may take to be processed, in milliseconds. */
     uint32_t poll_timeout;
 } icd_client_settings_t;
 

@@ -33,7 +33,7 @@ typedef struct {
 /** Frames of an entry: as many as the mask selects. The node has logs. */
 static inline size_t icd_log_count(const icd_link_t *link, const uint8_t *mask)
 {
-    return icdgen_log_slots(link, mask, link->log_mask->bytes);
+    return icdgen_log_slots(link, mask, link->log_mask->size);
 }
 
 /** `slots`: where they begin, such as `slots` of icd_log_entry_t. */
@@ -50,7 +50,7 @@ static inline void icd_log_frames(
 static inline bool icd_log_next(icd_log_frames_t *frames, icd_log_frame_t *frame)
 {
     const icd_log_mask_form_t *const form = frames->form;
-    while (frames->bit < form->bytes * 8u) {
+    while (frames->bit < form->size * 8u) {
         const unsigned bit = frames->bit++;
         const unsigned weight = form->msb0 ? 7u - (bit % 8u) : bit % 8u;
         if (((ICDGEN_U32(frames->mask[bit / 8u]) >> weight) & 1u) != 0u) {
@@ -89,7 +89,7 @@ typedef struct {
 static inline size_t icd_log_bytes(const icd_link_t *link)
 {
     const icd_log_mask_form_t *const mask = link->log_mask;
-    const size_t most = mask->bytes + ICDGEN_U32(link->log_file->frames_at) + (mask->bytes * 8u * mask->slot_bytes);
+    const size_t most = mask->size + ICDGEN_U32(link->log_file->frames_at) + (mask->size * 8u * mask->slot_bytes);
     return most > link->log_file->header_bytes ? most : link->log_file->header_bytes;
 }
 
@@ -111,7 +111,7 @@ static inline icd_status_t icd_log_reader_init(
 static inline void icdgen_log_header(icd_log_reader_t *reader)
 {
     const icd_link_t *const link = reader->link;
-    memmove(reader->buffer, reader->buffer + link->log_file->mask_at, link->log_mask->bytes);
+    memmove(reader->buffer, reader->buffer + link->log_file->mask_at, link->log_mask->size);
     reader->entry_bytes =
         link->log_file->frames_at + (icd_log_count(link, reader->buffer) * link->log_mask->slot_bytes);
     reader->has_mask = true;
@@ -121,7 +121,7 @@ static inline void icdgen_log_header(icd_log_reader_t *reader)
 static inline void icdgen_log_tell(icd_log_reader_t *reader, icd_log_entry_fn *on_entry, void *context)
 {
     const icd_log_file_form_t *const form = reader->link->log_file;
-    const uint8_t *const at = reader->buffer + reader->link->log_mask->bytes;
+    const uint8_t *const at = reader->buffer + reader->link->log_mask->size;
     icd_log_entry_t entry;
     entry.seconds = icdgen_number(reader->link, at + form->seconds.at, form->seconds.bytes);
     entry.milliseconds = icdgen_number(reader->link, at + form->milliseconds.at, form->milliseconds.bytes);
@@ -137,7 +137,7 @@ static inline void icd_log_feed(
 {
     while (count != 0u) {
         const size_t whole = reader->has_mask ? reader->entry_bytes : reader->link->log_file->header_bytes;
-        const size_t before = reader->has_mask ? reader->link->log_mask->bytes : 0u;
+        const size_t before = reader->has_mask ? reader->link->log_mask->size : 0u;
         const size_t wanted = whole - reader->length;
         const size_t taken = wanted < count ? wanted : count;
         memcpy(reader->buffer + before + reader->length, bytes, taken);
@@ -162,7 +162,7 @@ static inline icd_status_t icd_log_write_header(
     if (link->log_file == NULL || link->log_mask == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (mask_length != link->log_mask->bytes || capacity < link->log_file->header_bytes) {
+    if (mask_length != link->log_mask->size || capacity < link->log_file->header_bytes) {
         return ICD_ERROR_LENGTH;
     }
     memset(buffer, 0, link->log_file->header_bytes);
@@ -285,7 +285,7 @@ static inline icd_status_t icd_log_message_encode(
     if (form == NULL || link->log_mask == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (mask_length != link->log_mask->bytes || capacity < form->frames_at) {
+    if (mask_length != link->log_mask->size || capacity < form->frames_at) {
         return ICD_ERROR_LENGTH;
     }
     memset(buffer, 0, form->frames_at);

@@ -59,7 +59,7 @@ static inline icd_status_t icdgen_program_init(
     operation->size = 0;
     operation->checksum = 0;
     operation->procedure.program = program;
-    if (status == ICD_OK && !icdgen_allowed(form->programs, form->program_count, program)) {
+    if (status == ICD_OK && !icdgen_allowed(form->programs, form->programs_count, program)) {
         return ICD_ERROR_RANGE;
     }
     return status;

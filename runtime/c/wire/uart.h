@@ -213,7 +213,7 @@ static inline void icd_uart_feed(
 static inline size_t icdgen_log_slots(const icd_link_t *link, const uint8_t *mask, size_t length)
 {
     size_t count = 0;
-    for (size_t i = 0; i < length && i < link->log_mask->bytes; ++i) {
+    for (size_t i = 0; i < length && i < link->log_mask->size; ++i) {
         for (unsigned bits = mask[i]; bits != 0u; bits &= bits - 1u) {
             count++;
         }

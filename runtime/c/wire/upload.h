@@ -274,7 +274,7 @@ static inline icd_status_t icd_upload_init(
     if (icdgen_procedure_init(&upload->procedure, link, known, icdgen_upload_resume) != ICD_OK) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    if (!icdgen_allowed(link->upload->destinations, link->upload->destination_count, destination)) {
+    if (!icdgen_allowed(link->upload->destinations, link->upload->destinations_count, destination)) {
         return ICD_ERROR_RANGE;
     }
     if (link->upload->destination_bytes != 0u && size > link->upload->destination_bytes) {

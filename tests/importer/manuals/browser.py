@@ -70,7 +70,7 @@ def html(manual: Manual, look: Look) -> str:
     @page {{ size: {look.page}; margin: 20mm 18mm; }}
     body {{ font: {look.size}pt/1.25 {look.font}; {"text-align: justify; hyphens: auto;" if look.justify else ""} }}
     table {{ border-collapse: collapse; width: 100%; margin: 0 0 {under[0]}; text-align: {side}; }}
-    td, th {{ padding: 1.2mm 1.6mm; vertical-align: top; text-align: inherit; overflow-wrap: anywhere; }}
+    td, th {{ padding: 1.2mm 1.6mm; vertical-align: top; text-align: inherit; overflow-wrap: normal; }}
     th {{ font-weight: bold; text-align: left; hyphens: manual; overflow-wrap: normal; }}
     thead {{ display: {"table-header-group" if look.repeat else "table-row-group"}; }}
     tr {{ break-inside: {"auto" if look.tear else "avoid"}; }}

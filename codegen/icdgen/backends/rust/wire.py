@@ -215,7 +215,7 @@ def _can_types(types: dict[str, int]) -> Struct:
 
 def _checksum(known: Facts) -> Struct | None:
     form = known.checksum
-    return form and struct(known, form, "crc8", Part("crc", struct(known, form.crc, "crc8")))
+    return struct(known, form, "crc8", Part("crc", struct(known, form.crc, "crc8"))) if form else None
 
 
 def _mask(known: Facts) -> Struct | None:

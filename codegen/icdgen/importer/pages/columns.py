@@ -112,13 +112,13 @@ def _river(
             pieces[-1][1] = b
         else:
             pieces.append([a, b, crossings])
-    for a, b, crossings in pieces:
+    for a, b, count in pieces:
         middle = (a + b) / 2
         empty = not any(before < x < middle for x in middles) or not any(middle < x < beyond for x in middles)
         begin = sum(1 for w in words if abs(w.x0 - b) < 1)  # words that begin together, as a column's do
         headed = abs(b - heading) < 1.5
         narrow = bool(words) and b - a < 0.5 * words[0].size
-        this = (crossings, not headed, empty, narrow, -begin if begin > 2 else 0, -(b - a))
+        this = (count, not headed, empty, narrow, -begin if begin > 2 else 0, -(b - a))
         if key is None or this < key:
             best, key = middle, this
     return best

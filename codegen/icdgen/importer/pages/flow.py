@@ -6,6 +6,7 @@ import itertools
 import re
 from collections import Counter
 from dataclasses import dataclass, field
+from typing import Any
 
 from icdgen.importer import headings, labels
 from icdgen.importer.document import Box
@@ -82,8 +83,8 @@ def items(pages: list[Page], profile: Profile) -> list[Item]:
 
 
 def _body(loose: dict[int, list[Line]]) -> Type:
-    sizes: Counter = Counter()
-    styles: Counter = Counter()
+    sizes: Counter[Any] = Counter()
+    styles: Counter[Any] = Counter()
     for found in loose.values():
         for line in found:
             sizes[round(line.size, 1)] += len(line.text)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter, defaultdict
 from collections.abc import Callable
+from typing import Any
 
 from icdgen.importer.pages.extract import Page
 from icdgen.importer.pages.lines import Line
@@ -60,7 +61,7 @@ def _numbers_the_page(line: Line, page: Page, offset: int | None) -> bool:
 
 def _offset(pages: list[Page], lines: dict[int, list[Line]]) -> int | None:
     """By how much the printed page numbers differ from the count; None where pages are not numbered by bare figures."""
-    found: Counter = Counter()
+    found: Counter[Any] = Counter()
     for page in pages:
         figures = {line.text.strip() for line in lines[page.number] if _in_margin(line, page)}
         found.update({int(text) - page.number for text in figures if text.isdigit() and len(text) < 5})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 from icdgen.importer.pages.extract import SMALL, Word
 from icdgen.importer.words import SUPERSCRIPTS
@@ -36,7 +37,7 @@ class Line:
 
 def lines(words: Iterable[Word]) -> list[Line]:
     """Lines from top to bottom. Words of a line overlap in height by more than half of the lower one."""
-    groups: list[list] = []  # [top, bottom, words] of the tall words first, so that raised marks find their line
+    groups: list[list[Any]] = []  # [top, bottom, words] of the tall words first, so that raised marks find their line
     for word in sorted(words, key=lambda w: (w.top, w.x0)):
         best, most = None, 0.5
         for group in groups[-8:]:

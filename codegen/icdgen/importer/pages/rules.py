@@ -114,13 +114,13 @@ def regions(page: Page) -> list[Region]:
     for i, rule in enumerate([*across, *down]):
         groups.setdefault(root(i), ([], []))[i >= len(across)].append(rule)
     made = []
-    for flat, steep in groups.values():
-        if not steep:
+    for flats, steeps in groups.values():
+        if not steeps:
             continue
-        xs = [r.at for r in steep] + [x for r in flat for x in (r.start, r.end)]
-        ys = [r.at for r in flat] + [y for r in steep for y in (r.start, r.end)]
-        region = Region(min(xs), min(ys), max(xs), max(ys), flat, steep)
-        if len(distinct([*(r.at for r in steep), region.x0, region.x1], 3.0)) >= 3 and region.bottom - region.top > 6:
+        xs = [r.at for r in steeps] + [x for r in flats for x in (r.start, r.end)]
+        ys = [r.at for r in flats] + [y for r in steeps for y in (r.start, r.end)]
+        region = Region(min(xs), min(ys), max(xs), max(ys), flats, steeps)
+        if len(distinct([*(r.at for r in steeps), region.x0, region.x1], 3.0)) >= 3 and region.bottom - region.top > 6:
             made.append(region)
     return _stacked(_outermost(sorted(made, key=lambda r: (r.top, r.x0))))
 

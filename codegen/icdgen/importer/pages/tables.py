@@ -148,7 +148,7 @@ class Builder:
         last, box = draft.table.boxes[-1], piece.box
         return abs((box.x1 - box.x0) - (last.x1 - last.x0)) < 8
 
-    def header_of(self, piece: Piece):
+    def header_of(self, piece: Piece) -> Header | None:
         for band in piece.bands[:3]:
             found = headings.match(band.texts(self.known), self.profile, loose=True)
             if found:
@@ -197,7 +197,7 @@ class Builder:
                 return Band(band.page, found[count].top if words else band.bottom, band.bottom, band.edges, words)
         return None
 
-    def lower_half(self, draft: Draft, texts: list[str]):
+    def lower_half(self, draft: Draft, texts: list[str]) -> Header | None:
         """The headings as a whole where a page break stands between their two lines."""
         header = draft.table.header
         assert header is not None
@@ -313,7 +313,9 @@ class Builder:
         for index, item in enumerate(self.out):
             if isinstance(item, Draft):
                 if index in owner:
-                    self.name(item.table, self.out[owner[index]])
+                    caption = self.out[owner[index]]
+                    assert isinstance(caption, Mark)
+                    self.name(item.table, caption)
                 blocks.append(item.table)
             elif index not in used:
                 page, is_heading = item.box.page, item.kind == "heading" or item.strong
@@ -336,7 +338,7 @@ class Builder:
             position += step
         return None
 
-    def stands_above(self, captions: list[int], after: dict, before: dict) -> bool:
+    def stands_above(self, captions: list[int], after: dict[int, int | None], before: dict[int, int | None]) -> bool:
         """Whether captions stand above their tables in this document: by distance on the page, then by number."""
         nearer = 0
         for i in captions:
@@ -351,6 +353,7 @@ class Builder:
         if table is None:
             return 1000.0
         mark, draft = self.out[caption], self.out[table]
+        assert isinstance(mark, Mark) and isinstance(draft, Draft)
         box = draft.table.boxes[0 if step > 0 else -1]
         if box.page != mark.box.page:
             return 500.0

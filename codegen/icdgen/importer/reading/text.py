@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.importer import headings, labels
-from icdgen.importer.document import Block, Document, Heading, Row, Table, Text
+from icdgen.importer.document import Block, Document, Header, Heading, Row, Table, Text
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import grids
 from icdgen.importer.words import plain
@@ -29,8 +30,8 @@ def read(path: Path, profile: Profile) -> Document:
                                 "save the text as UTF-8")]) from None  # fmt: skip
     document = Document(name)
     reader = _Reader(profile, name)
-    for number, line in enumerate(re.split("\r\n|[\n\r]", text), 1):
-        reader.line(line.rstrip(" "), number)
+    for number, words in enumerate(re.split("\r\n|[\n\r]", text), 1):
+        reader.line(words.rstrip(" "), number)
     document.blocks = reader.done()
     document.pages = reader.page if "\f" in text else None
     return document
@@ -124,6 +125,7 @@ class _Reader:
                 continue
             if isinstance(block, Table) and index in owner:
                 caption = blocks[owner[index]]
+                assert isinstance(caption, _Caption)
                 if made and isinstance(made[-1], Table) and made[-1].number == caption.number:
                     made[-1].rows += block.rows or block.head
                     continue
@@ -139,12 +141,12 @@ class _Caption:
         self.number, self.title, self.page, self.line, self.text = number, title, page, line, text
 
 
-def _table(blocks: list, index: int, step: int) -> int | None:
+def _table(blocks: Sequence[Block | _Caption], index: int, step: int) -> int | None:
     near = index + step
     return near if 0 <= near < len(blocks) and isinstance(blocks[near], Table) else None
 
 
-def _known(header) -> int:
+def _known(header: Header) -> int:
     return sum(len(t.split()) for t, role in zip(header.titles, header.roles, strict=True) if role)
 
 
@@ -159,6 +161,7 @@ def _stacked(upper: list[str], lower: list[str]) -> list[str] | None:
 def _fitted(row: Row, table: Table) -> Row:
     """The row with a cell for each heading: a first empty cell that was lost is put back, surplus ones are cut."""
     header = table.header
+    assert header is not None
     cells = row.cells
     width = len(header.roles)
     if len(cells) == width - 1 and cells[0] and not header.roles[0] and re.match("[0-9]", cells[0]):

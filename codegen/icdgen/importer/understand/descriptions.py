@@ -46,7 +46,7 @@ def names(profile: Profile) -> formulas.Words:
     return formulas.words(tuple(variables["raw"]), tuple(variables["physical"]))
 
 
-def _formula(text: str, profile: Profile, made: Described, spans: list) -> None:
+def _formula(text: str, profile: Profile, made: Described, spans: list[tuple[int, int]]) -> None:
     found = formulas.find(text, names(profile))
     announced = ""
     for what, value in (("gives_physical", "physical"), ("gives_raw", "raw")):
@@ -64,7 +64,7 @@ def _formula(text: str, profile: Profile, made: Described, spans: list) -> None:
         made.formula_for = announced
 
 
-def _unit(text: str, profile: Profile, made: Described, spans: list) -> None:
+def _unit(text: str, profile: Profile, made: Described, spans: list[tuple[int, int]]) -> None:
     units = [made.unit] if made.unit else []
     for what in ("unit", "formula_unit"):
         for pattern in profile.phrases[what]:
@@ -79,7 +79,7 @@ def _unit(text: str, profile: Profile, made: Described, spans: list) -> None:
             made.problems.append("it gives two units: " + " and ".join(f"`{u}`" for u in dict.fromkeys(units)))
 
 
-def _enumeration(text: str, profile: Profile, made: Described, spans: list) -> None:
+def _enumeration(text: str, profile: Profile, made: Described, spans: list[tuple[int, int]]) -> None:
     for pattern in profile.phrases["enumeration"]:
         match = pattern.search(text)
         if not match:

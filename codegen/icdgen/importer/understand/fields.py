@@ -35,7 +35,7 @@ class Line:
     @property
     def extent(self) -> Extent:
         kind = self.type.kind if self.type else ""
-        return Extent(self.at, self.width, self.type.bits * self.type.count if self.type else 0, kind, *self.units)
+        return Extent(self.at, self.width, self.type.bits * self.type.times if self.type else 0, kind, *self.units)
 
 
 class Unreadable(Exception):
@@ -183,7 +183,7 @@ def _within(line: Line, header: Header) -> int:
 
 def _bits(line: Line, units: Units, troubles: list[Trouble]) -> int | None:
     """The width in bits; None, and a finding, where nothing tells it or two things contradict each other."""
-    told = line.type.bits * line.type.count if line.type else 0
+    told = line.type.bits * line.type.times if line.type else 0
     if line.width is None:
         if told:
             return told
@@ -192,12 +192,12 @@ def _bits(line: Line, units: Units, troubles: list[Trouble]) -> int | None:
         return None
     own = line.units[1] or (line.units[0] if _is_range(line) else 0) or units.width
     bits = line.width * own
-    if told and line.type and line.type.count > 1 and bits == line.type.bits:
+    if told and line.type and line.type.times > 1 and bits == line.type.bits:
         return told  # the width is that of one element
-    if told and bits != told and line.type and (line.type.kind != "bool" or line.type.count > 1):
+    if told and bits != told and line.type and (line.type.kind != "bool" or line.type.times > 1):
         troubles.append(Trouble("IMP026", f"{line.where}: its type `{line.entry.get('type')}` has {told} bits, its width is "
                                 f"{bits}", line.entry.spot, "the width is held; look at the page", "error"))  # fmt: skip
-        line.type = line.type._replace(count=1)
+        line.type = line.type._replace(times=1)
     return bits
 
 
@@ -219,7 +219,7 @@ def _fields(
     for problem in described.problems:
         text = entry.get("description")
         troubles.append(Trouble("IMP040", f"{line.where}: {problem}: `{text[-160:]}`", entry.spot, "read the page"))
-    count = line.type.count if line.type else 1
+    count = line.type.times if line.type else 1
     if count > 1 and kind != "bytes":
         troubles.append(Trouble("IMP029", f"{line.where}: its {count} elements are held as {count} fields", entry.spot,
                                 "the ICD format has no arrays", "note"))  # fmt: skip

@@ -31,8 +31,8 @@ class Read(NamedTuple):
 class Words(NamedTuple):
     """How a manual calls raw and physical values."""
 
-    raw: re.Pattern
-    physical: re.Pattern
+    raw: re.Pattern[str]
+    physical: re.Pattern[str]
 
 
 @lru_cache(maxsize=8)
@@ -40,7 +40,7 @@ def words(raw: tuple[str, ...], physical: tuple[str, ...]) -> Words:
     return Words(_names(raw), _names(physical))
 
 
-def _names(names: tuple[str, ...]) -> re.Pattern:
+def _names(names: tuple[str, ...]) -> re.Pattern[str]:
     parts = [re.escape(name).replace(r"\ ", r"\s+") for name in sorted(names, key=len, reverse=True)]
     return re.compile(rf"(?:\(\s*(?:{'|'.join(parts)})\s*\)|(?<![A-Za-z])(?:{'|'.join(parts)})(?![A-Za-z]))", re.I)
 
@@ -121,7 +121,7 @@ def _left(before: str, names: Words) -> tuple[str, str, int] | None:
     return None
 
 
-def _expression(text: str, at: int, variable: re.Pattern, name: str) -> tuple[str, int]:
+def _expression(text: str, at: int, variable: re.Pattern[str], name: str) -> tuple[str, int]:
     """The longest expression that begins at ``at``, in the ICD's spelling, and where it ends."""
     made: list[str] = []
     good, end = 0, at

@@ -91,7 +91,8 @@ def _labelled(table: Table, profile: Profile) -> list[labels.Labelled]:
 
 def _below(label: str, values: list[str], profile: Profile) -> list[labels.Labelled]:
     """Labels in one row, their values in the next."""
-    words, made = label.split(), []
+    words = label.split()
+    made: list[labels.Labelled] = []
     while words and len(made) < len(values):
         for length in range(len(words), 0, -1):
             what = labels.meaning(" ".join(words[:length]), profile)

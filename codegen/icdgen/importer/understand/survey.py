@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 from icdgen.importer.document import Document, Heading, Table, Text, Trouble
 from icdgen.importer.profile import Profile
@@ -11,6 +12,7 @@ from icdgen.importer.understand.around import Around, kind_of
 from icdgen.importer.understand.model import ReadEnum, ReadList, ReadLog, ReadMessage, Thing
 
 BACKGROUND, UNKNOWN = "background", "not understood"
+T = TypeVar("T", ReadEnum, ReadList, ReadLog, ReadMessage)
 NEAR = 4  # lines of prose above a table that may speak of it
 
 
@@ -32,9 +34,9 @@ class Survey:
     found: list[Found] = field(default_factory=list)
     troubles: list[Trouble] = field(default_factory=list)
 
-    def of(self, kind: type) -> list[Found]:
-        """The tables that gave a thing of this class."""
-        return [one for one in self.found if isinstance(one.thing, kind)]
+    def of(self, kind: type[T]) -> list[tuple[Found, T]]:
+        """The tables that gave a thing of this class, each with it."""
+        return [(one, one.thing) for one in self.found if isinstance(one.thing, kind)]
 
 
 def survey(document: Document, profile: Profile) -> Survey:

@@ -16,12 +16,12 @@ _SIGNS = {"unsigned": "uint", "uint": "uint", "signed": "int", "int": "int", "fl
 
 
 class Type(NamedTuple):
-    """``bits`` of one value, 0 where the name does not tell; ``count`` of values; ``is_said``: whether the name says whether
+    """``bits`` of one value, 0 where the name does not tell; ``times`` of them; ``is_said``: whether the name says whether
     the value has a sign."""
 
     kind: str
     bits: int = 0
-    count: int = 1
+    times: int = 1
     is_said: bool = True
 
 
@@ -38,8 +38,8 @@ def read(text: str, profile: Profile) -> Type | None:
         groups = match.groupdict()
         count = int(groups["n"] or groups.get("m") or 1)
         base = read(match["base"], profile)
-        if base is not None and base.bits and base.count == 1 and count:
-            return base._replace(count=count)
+        if base is not None and base.bits and base.times == 1 and count:
+            return base._replace(times=count)
     return _counted(text)
 
 

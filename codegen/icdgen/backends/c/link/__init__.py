@@ -16,6 +16,7 @@ from icdgen.backends.c.text import comment, plain
 from icdgen.describe import MessageDescription
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import PROCEDURES
 
 _REASONS = {"none", "unknown_id", "length", "parameter", "checksum"}
 
@@ -74,7 +75,6 @@ class LinkTables(BusTables, LogTables, FileTables):
     def all(self) -> list[Table]:
         """Those of the parts, then the link itself."""
         known = self.known
-        files = known.files
         parts = [
             (self.owners(), ""),
             (f"{len(known.owners)}u", "how many"),
@@ -94,27 +94,23 @@ class LinkTables(BusTables, LogTables, FileTables):
             (self.client(), ""),
             (self.errors(), ""),
             (f"{len(self.reasons())}u, {known.errors.get('none', 0)}u", "how many; no error"),
-            (self.framing(), ""),
-            (self.acknowledge(), ""),
+            (self.part("framing", known.framing, "uart.framing"), ""),
+            (self.part("acknowledge", known.acknowledge, "uart.acknowledge"), ""),
             (or_none(known.i2c_address), "I2C address"),
             (self.polled(), ""),
             (self.can(), ""),
             (self.checksum(), ""),
             (self.crc16(), ""),
             (self.log_mask(), ""),
-            (self.log_file(), ""),
+            (self.part("log_file", known.log_file, "telemetry_log"), ""),
             (self.log_message(), ""),
             (self.time(), ""),
             (self.index(), ""),
             (self.hole_map(), ""),
             (self.files(), ""),
-            (self.list(files) if files else "NULL", "list"),
-            (self.download(files) if files else "NULL", "download"),
-            (self.upload(files) if files else "NULL", "upload"),
-            (self.erase(files, "erase") if files else "NULL", "erase"),
-            (self.erase(files, "format") if files else "NULL", "format"),
-            (self.operation("program_copy", known.program_copy), "program copy"),
-            (self.operation("program_information", known.program_information), "program information"),
+            *((self.procedure(name), name) for name in PROCEDURES),
+            (self.part("program_copy", known.program_copy, "program_copy"), "program copy"),
+            (self.part("program_information", known.program_information, "program_information"), "program information"),
             (self.identification(), "identification"),
         ]
         self.add("link", "icd_link_t", [row_of(value, text) for value, text in parts], self.section_notes("client"))
@@ -138,8 +134,8 @@ class LinkTables(BusTables, LogTables, FileTables):
         return self.add(f"{name}[]", "icd_message_t", rows) if rows else "NULL"
 
     def client(self) -> str:
-        one = self.known.client
-        return f"{{{one.reply_timeout}u, {one.retries}u, {one.poll_interval}u, {one.poll_timeout}u}}"
+        facts = (row.partition(", /*")[0] for row in self.facts("client", self.known.client))
+        return f"{{{', '.join(facts)}}}"
 
     def reasons(self) -> list[tuple[str, int]]:
         return [(key, code) for key, code in self.known.errors.items() if key in _REASONS]

@@ -146,7 +146,7 @@ void index_decode(talk_t *talk, const icd_link_t *link)
         (void)refuse(talk, "unsupported");
         return;
     }
-    size = link->index->bytes;
+    size = link->index->entry_bytes;
     put_ok(talk);
     json_put_text(&talk->out, ",\"entries\":[");
     for (at = 0; octets.length - at >= size; at += size) {
@@ -201,7 +201,7 @@ void index_encode(talk_t *talk, const icd_link_t *link)
         (void)refuse(talk, "unsupported");
         return;
     }
-    size = link->index->bytes;
+    size = link->index->entry_bytes;
     file = (uint8_t *)memory(count * size);
     for (i = 0; i < count; i++) {
         const icd_status_t status = icd_index_entry_encode(link, &entries[i], file + (i * size), size);

@@ -259,16 +259,21 @@ static bool client_step(talk_t *talk, icd_client_t *client, size_t row, json_out
 static bool ask_settings(talk_t *talk, icd_client_settings_t *settings)
 {
     const size_t index = json_find(&talk->row, 0, "settings");
+    uint32_t retries = 0;
     if (index == 0u) {
         return true;
     }
     if (talk->row.values[index].type != JSON_OBJECT) {
         return refuse_request(talk, "settings is no object");
     }
-    return ask_number(talk, index, "reply_timeout", 1, MOST_NUMBER, settings->reply_timeout, &settings->reply_timeout) &&
-        ask_number(talk, index, "retries", 0, 255, settings->retries, &settings->retries) &&
-        ask_number(talk, index, "poll_interval", 1, MOST_NUMBER, settings->poll_interval, &settings->poll_interval) &&
-        ask_number(talk, index, "poll_timeout", 1, MOST_NUMBER, settings->poll_timeout, &settings->poll_timeout);
+    if (!ask_number(talk, index, "reply_timeout", 1, MOST_NUMBER, settings->reply_timeout, &settings->reply_timeout) ||
+        !ask_number(talk, index, "retries", 0, 255, settings->retries, &retries) ||
+        !ask_number(talk, index, "poll_interval", 1, MOST_NUMBER, settings->poll_interval, &settings->poll_interval) ||
+        !ask_number(talk, index, "poll_timeout", 1, MOST_NUMBER, settings->poll_timeout, &settings->poll_timeout)) {
+        return false;
+    }
+    settings->retries = (uint8_t)retries;
+    return true;
 }
 
 void client_script(talk_t *talk, const icd_link_t *link)

@@ -61,7 +61,7 @@ void log_decode(talk_t *talk, const icd_link_t *link)
     }
     put_ok(talk);
     if (reader.has_mask) {
-        put_key_octets(&talk->out, "mask", reader.buffer, link->log_mask->bytes);
+        put_key_octets(&talk->out, "mask", reader.buffer, link->log_mask->size);
     } else {
         json_put_text(&talk->out, ",\"mask\":null");
     }
@@ -142,7 +142,7 @@ void log_encode(talk_t *talk, const icd_link_t *link)
     buffer = (uint8_t *)memory(size);
     status = icd_log_write_header(link, mask.data, mask.length, buffer, size, &written);
     if (status == ICD_ERROR_LENGTH) {
-        (void)refuse_length(talk, "length", link->log_mask->bytes, mask.length);
+        (void)refuse_length(talk, "length", link->log_mask->size, mask.length);
         return;
     }
     file.length = 0;
@@ -188,7 +188,7 @@ void log_message_decode(talk_t *talk, const icd_link_t *link)
         return;
     }
     put_ok(talk);
-    put_key_octets(&talk->out, "mask", log.mask, link->log_mask->bytes);
+    put_key_octets(&talk->out, "mask", log.mask, link->log_mask->size);
     put_frames(&talk->out, link, log.mask, log.slots);
 }
 
@@ -205,8 +205,8 @@ void log_message_encode(talk_t *talk, const icd_link_t *link)
     size = link->longest;
     buffer = (uint8_t *)memory(size);
     status = icd_log_message_encode(link, mask.data, mask.length, frames, count, buffer, size, &written);
-    if (status == ICD_ERROR_LENGTH && mask.length != link->log_mask->bytes) {
-        (void)refuse_length(talk, "length", link->log_mask->bytes, mask.length);
+    if (status == ICD_ERROR_LENGTH && mask.length != link->log_mask->size) {
+        (void)refuse_length(talk, "length", link->log_mask->size, mask.length);
     } else if (status == ICD_ERROR_LENGTH) {
         refuse_frames(talk, link, mask.data, frames, count);
     } else if (status != ICD_OK) {

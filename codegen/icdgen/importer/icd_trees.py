@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import Any
 
 from icdgen.icd.units import SPELLINGS, STANDARD
 from icdgen.importer.document import Document, Table, Trouble
+from icdgen.importer.parts import NodeParts
 from icdgen.importer.profile import Profile
-from icdgen.importer.understand.model import ReadEnum, ReadField, ReadMessage
+from icdgen.importer.understand.model import Listed, ReadEnum, ReadField, ReadMessage
 from icdgen.importer.words import squeezed
-
-if TYPE_CHECKING:
-    from icdgen.importer.assemble import NodeParts
 
 NOT_STATED = "not stated"
 
@@ -28,9 +26,9 @@ class Spelled(int):
         return made
 
 
-def tree(node: NodeParts, document: Document, profile: Profile, prose: bool, troubles: list[Trouble]) -> dict:
+def tree(node: NodeParts, document: Document, profile: Profile, prose: bool, troubles: list[Trouble]) -> dict[str, Any]:
     """The ICD of a node as plain mappings and lists, in the order of the manual."""
-    made: dict = {"icdgen": 1, "node": _head(node, document, profile)}
+    made: dict[str, Any] = {"icdgen": 1, "node": _head(node, document, profile)}
     if node.include:
         made["include"] = node.include
     if units := _units(node, troubles):
@@ -50,7 +48,7 @@ def tree(node: NodeParts, document: Document, profile: Profile, prose: bool, tro
     return made
 
 
-def _announced(messages: list[dict]) -> dict[str, str]:
+def _announced(messages: list[dict[str, Any]]) -> dict[str, str]:
     """What is announced of every formula of a kind of messages is taken out of the fields, to be said once."""
     made = {}
     for kind in dict.fromkeys(message["kind"] for message in messages):
@@ -63,7 +61,7 @@ def _announced(messages: list[dict]) -> dict[str, str]:
     return made
 
 
-def _head(node: NodeParts, document: Document, profile: Profile) -> dict:
+def _head(node: NodeParts, document: Document, profile: Profile) -> dict[str, Any]:
     head = {"name": node.name, "title": node.title or node.name, **profile.data["node"]}
     title = document.title or re.split(r"[/\\]", document.file)[-1]
     head["source"] = {"document": title}
@@ -72,7 +70,7 @@ def _head(node: NodeParts, document: Document, profile: Profile) -> dict:
     return head
 
 
-def _source(table: Table) -> dict:
+def _source(table: Table) -> dict[str, Any]:
     made = {}
     if table.number is not None:
         made["table"] = table.number
@@ -81,8 +79,8 @@ def _source(table: Table) -> dict:
     return made
 
 
-def _enum(one: ReadEnum, prose: bool) -> dict:
-    made: dict = {"name": one.name}
+def _enum(one: ReadEnum, prose: bool) -> dict[str, Any]:
+    made: dict[str, Any] = {"name": one.name}
     if source := _source(one.table):
         made["source"] = source
     if also := [s for s in (_source(table) for table in one.also) if s]:
@@ -93,13 +91,13 @@ def _enum(one: ReadEnum, prose: bool) -> dict:
     return made
 
 
-def _prose(name: str, text: str, wanted: bool) -> dict:
+def _prose(name: str, text: str, wanted: bool) -> dict[str, Any]:
     """A summary where the description says more than the name."""
     return {"summary": text} if wanted and text and squeezed(text) != squeezed(name) else {}
 
 
-def _message(one: ReadMessage, prose: bool) -> dict:
-    made: dict = {"name": one.name}
+def _message(one: ReadMessage, prose: bool) -> dict[str, Any]:
+    made: dict[str, Any] = {"name": one.name}
     for key in ("id", "set_id", "get_id"):
         if (value := getattr(one, key)) is not None:
             made[key] = value
@@ -116,8 +114,8 @@ def _message(one: ReadMessage, prose: bool) -> dict:
     return made
 
 
-def _field(one: ReadField, prose: bool) -> dict:
-    made: dict = {"at": one.at, "bits": one.bits, "name": one.name, "type": one.type}
+def _field(one: ReadField, prose: bool) -> dict[str, Any]:
+    made: dict[str, Any] = {"at": one.at, "bits": one.bits, "name": one.name, "type": one.type}
     if one.enum:
         made["enum"] = one.enum
     said = one.described
@@ -134,9 +132,9 @@ def _field(one: ReadField, prose: bool) -> dict:
     return made | _prose(one.name, said.rest, prose)
 
 
-def _units(node: NodeParts, troubles: list[Trouble]) -> list[dict]:
+def _units(node: NodeParts, troubles: list[Trouble]) -> list[dict[str, Any]]:
     """Units that are not built in, and no other spelling of one that is."""
-    made: dict[str, dict] = {}
+    made: dict[str, dict[str, Any]] = {}
     taken = {unit.identifier for unit in STANDARD.values()}
     for message in node.messages:
         for field in message.fields:
@@ -155,7 +153,7 @@ def _units(node: NodeParts, troubles: list[Trouble]) -> list[dict]:
     return list(made.values())
 
 
-def _missing(row) -> dict | None:
+def _missing(row: Listed) -> dict[str, Any] | None:
     number = row.id if row.id is not None else row.get_id
     if number is None or not row.kind:
         return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 from icdgen.importer.document import Document, Row, Table, Trouble
 from icdgen.importer.profile import Profile
@@ -25,21 +26,21 @@ def mend(document: Document, profile: Profile) -> None:
                 _group(table, entry, document)
 
 
-def _words(table: Table, pattern: re.Pattern, meant: str, printed: str, document: Document) -> None:
+def _words(table: Table, pattern: re.Pattern[str], meant: str, printed: str, document: Document) -> None:
     count = 0
     for row in (*table.head, *table.rows):
         for index, cell in enumerate(row.cells):
             row.cells[index], times = pattern.subn(lambda _: meant, cell)
             count += times
     if count:
-        times = f" {count} times" if count > 1 else ""
+        how_often = f" {count} times" if count > 1 else ""
         document.troubles.append(
-            Trouble("IMP028", f"{table.title}: `{printed}` is taken for `{meant}`{times}, as the profile says", table.spot,
+            Trouble("IMP028", f"{table.title}: `{printed}` is taken for `{meant}`{how_often}, as the profile says", table.spot,
                     "compare with the page", "note")
         )  # fmt: skip
 
 
-def _group(table: Table, entry: dict, document: Document) -> None:
+def _group(table: Table, entry: dict[str, Any], document: Document) -> None:
     for index, row in enumerate(table.rows):
         if row.cells and number(row.cells[0]) == entry["before"]:
             heading = Row([entry["group"], *[""] * (len(row.cells) - 1)], row.page, row.line)

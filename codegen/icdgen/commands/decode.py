@@ -1,0 +1,154 @@
+"""``icdgen decode``: any frame that a person can copy."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
+
+import click
+
+from icdgen.commands.common import icd_option, load_or_exit, say
+from icdgen.errors import UserError
+
+if TYPE_CHECKING:
+    from icdgen.icd.model import Icd
+    from icdgen.recognize import Reading
+
+_KINDS = click.Choice(["telecommand", "telemetry", "configuration"])
+_MOST = 1_000_000  # bytes that are read for frames
+_CSV = ("frame", "node", "message", "direction", "id", "field", "raw", "value", "unit", "remarks")
+
+
+@click.command()
+@click.argument("arguments", nargs=-1, required=True, metavar="[NODE [MESSAGE]] FRAME...")
+@icd_option
+@click.option("--kind", type=_KINDS, help="Where an id alone is ambiguous.")
+@click.option("--format", "form", type=click.Choice(["text", "json", "csv"]), default="text", show_default=True)
+def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None, form: str) -> None:
+    """Decode frames: hex in any spelling, base64, C arrays, dumps, candump and slcan lines.
+
+    FRAME may have its framing, id and checksum or not; it may be - for standard input, @FILE or the name of a file, text or
+    bytes as they came over the line, with any number of frames. NODE (a name) and MESSAGE (an id or a name) are found where
+    the frame tells them; what is ambiguous is said. JSON is an object, of several frames an array. Exit status: 1 if a field
+    that must hold a constant holds something else.
+    """
+    from icdgen import recognize
+
+    icd = load_or_exit(icds).icd
+    node, message, frame = _taken_apart(icd, list(arguments), kind)
+    found = recognize.recognize(icd, frame, node, message, kind)
+    {"text": _print_text, "json": _print_json, "csv": _print_csv}[form](found)
+    sys.exit(1 if any(one.has_wrong_constant for one in found) else 0)
+
+
+def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | None, str | None, str | bytes]:
+    """Node, message and frame: a word is the node or the message if there is one of that name."""
+    from icdgen.values import NotFound, find_message, find_node
+
+    node = message = None
+    if len(words) == 1 and words[0].lower() in {n.name for n in icd.nodes}:
+        raise UserError(f"there is no frame for {words[0]}", "give it after the node, or - for standard input")
+    if len(words) > 1 and (words[0].lower() in {n.name for n in icd.nodes} or not _is_frame(words)):
+        node = find_node(icd, words.pop(0)).name
+    if node is not None and len(words) > 1:
+        try:
+            find_message(icd, node, words[0], kind)
+        except NotFound:
+            if not _is_frame(words):
+                raise
+        else:
+            message = words.pop(0)
+    return node, message, _content(words)
+
+
+def _is_frame(words: list[str]) -> bool:
+    from icdgen.recognize import read
+    from icdgen.values import BadHex
+
+    if words[0] == "-" or words[0].startswith("@") or _is_file(words[0]):
+        return True
+    try:
+        read(" ".join(words))
+    except BadHex:
+        return False
+    return True
+
+
+def _content(words: list[str]) -> str | bytes:
+    """The frame itself, or what stands in the file that is named."""
+    name = words[0]
+    if len(words) > 1 or (name != "-" and not name.startswith("@") and (_is_bytes(name) or not _is_file(name))):
+        return " ".join(words)
+    if name == "-":
+        if sys.stdin is None:
+            raise UserError("standard input is closed", "pipe the frame in, or give it as an argument")
+        return _frames_in(sys.stdin.buffer, "standard input")
+    path = name.removeprefix("@")
+    try:
+        with open(path, "rb") as file:
+            return _frames_in(file, path)
+    except OSError as error:
+        raise UserError(f"cannot read {path}: {error.strerror}", "check the path after the @") from None
+
+
+def _is_bytes(text: str) -> bool:
+    from icdgen.values import BadHex, parse_hex
+
+    try:
+        return bool(parse_hex(text))
+    except BadHex:
+        return False
+
+
+def _is_file(name: str) -> bool:
+    try:
+        return Path(name).is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def _frames_in(file: BinaryIO, name: str) -> str | bytes:
+    """Text if it is that; a file that is no text holds the bytes themselves."""
+    data = file.read(_MOST + 1)
+    if len(data) > _MOST:
+        raise UserError(f"{name} holds more than {_MOST:,} bytes", "give fewer frames, as text or as they are")
+    if all(byte in b"\t\n\r" or 32 <= byte < 127 for byte in data):
+        return data.decode("ascii")
+    return data
+
+
+def _print_text(found: Sequence[Reading]) -> None:
+    from icdgen import tables, values
+
+    for number, one in enumerate(found):
+        if number:
+            click.echo("")
+        if one.frame is not None:
+            click.echo(values.to_text(one.frame, tables.width_of(sys.stdout)), nl=False)
+        else:
+            say("\n\nnote: ".join((one.title, *one.remarks)))
+
+
+def _print_json(found: Sequence[Reading]) -> None:
+    objects = [one.to_json() for one in found]
+    click.echo(json.dumps(objects if len(objects) > 1 else objects[0], indent=1))
+
+
+def _print_csv(found: Sequence[Reading]) -> None:
+    """A line a field; a frame without fields has one line."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(_CSV)
+    for number, one in enumerate(found):
+        start = (number, one.speaker.node.name, one.message.name, one.what, "" if one.id is None else one.id)
+        if one.frame is None or not one.frame.rows:
+            writer.writerow((*start, "", "", "", "", "; ".join(one.remarks)))
+        for row in one.frame.rows if one.frame else ():
+            unit = row.field.unit.symbol if row.field.unit else ""
+            writer.writerow((*start, row.field.name, row.raw_text, row.text, unit, "; ".join(row.remarks)))
+    click.echo(out.getvalue(), nl=False)

@@ -1,0 +1,49 @@
+"""Hexadecimal dumps with an address before each line: xxd, hexdump, hexdump -C, od and packet analysers."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+from typing import NamedTuple
+
+_LINE = re.compile(
+    r"(?:0x)?(?P<at>[0-9A-Fa-f]{4,8})(?P<mark>:?)(?P<space>\s*)"
+    r"(?P<data>(?:[0-9A-Fa-f]{2}){0,4}(?:\s{1,2}(?:[0-9A-Fa-f]{2}){1,4}(?=\s|$))*)(?P<text>\s*\|.*\|?|\s{2,}.*)?"
+)
+_WORDS = 7  # digits of an address of hexdump and od
+
+
+class _Row(NamedTuple):
+    at: str
+    data: bytes
+    is_sure: bool  # that the first number is an address
+
+
+def dump(text: str) -> bytes | None:
+    """The bytes of a dump; None if it is none, or if its addresses do not follow one another.
+
+    Words of two bytes after an address of seven digits are those of a little-endian machine, as hexdump prints them.
+    """
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    rows = [row for line in lines if (row := _row(line)) is not None]
+    if not rows or len(rows) != len(lines) or not (all(row.is_sure for row in rows) or len(rows) > 1):
+        return None
+    for base in (16, 8):
+        try:
+            places = [int(row.at, base) for row in rows]
+        except ValueError:
+            continue
+        if all(later - at == len(row.data) for (at, later), row in zip(pairwise(places), rows, strict=False)):
+            return b"".join(row.data for row in rows)
+    return None
+
+
+def _row(line: str) -> _Row | None:
+    match = _LINE.fullmatch(line)
+    if match is None or (match["data"] and not match["space"]):
+        return None
+    at, words = match["at"], match["data"].split()
+    swapped = len(at) == _WORDS and not match["mark"] and all(len(word) == 4 for word in words)
+    data = b"".join(bytes.fromhex(word)[:: -1 if swapped else 1] for word in words)
+    is_sure = bool(match["mark"]) or len(at) == _WORDS or len(match["space"]) > 1
+    return _Row(at, data, is_sure or (match["text"] or "").strip().startswith("|"))

@@ -1,0 +1,44 @@
+"""Bytes without framing of a message that is known."""
+
+from __future__ import annotations
+
+import shlex
+
+from icdgen.icd.model import Icd, Message
+from icdgen.protocol import facts
+from icdgen.recognize import match
+from icdgen.recognize.reading import TELECOMMAND, TELEMETRY, Reading, Speaker
+from icdgen.values.errors import BadLength
+
+
+def of_message(icd: Icd, speaker: Speaker, message: Message, data: bytes) -> Reading:
+    """The message, with its id before and a checksum after it if they are there. Raises `BadLength`."""
+    plain = message.telecommand_id if message.telecommand_id is not None else message.telemetry_id
+    assert plain is not None
+    if len(data) == message.length:
+        return _reading(speaker, message, None, data)
+    for id, rest in [(None, data), *([(data[0], data[1:])] if data and data[0] in message.ids else [])]:
+        taken = () if id is None else (f"id {id} removed",)
+        for other in _talking(icd, speaker, message):
+            right = match.checksum(other, plain if id is None else id, message, rest)
+            if right is not None and rest[message.length :] == right:
+                return _reading(speaker, message, id, rest[: message.length], *taken, "CRC is right")
+        if id is not None and len(rest) == message.length:
+            return _reading(speaker, message, id, rest, *taken)
+    right = match.checksum(speaker.facts, plain, message, data)
+    if right is not None:
+        raise match.wrong_checksum(message, right, data)
+    help = f"`icdgen show {speaker.node.name} {shlex.quote(message.name)}` shows what it holds"
+    text = f"{message.name} has {message.length} byte{'' if message.length == 1 else 's'}, {len(data)} given"
+    raise BadLength(text, message.length, len(data), help)
+
+
+def _reading(speaker: Speaker, message: Message, id: int | None, data: bytes, *remarks: str) -> Reading:
+    what = message.kind if id is None else TELECOMMAND if id == message.telecommand_id else TELEMETRY
+    return Reading(speaker, what, message, id, data, remarks=remarks)
+
+
+def _talking(icd: Icd, speaker: Speaker, message: Message) -> list[facts.Facts]:
+    """How all talk that have the message: those that include it may add a checksum."""
+    others = [node for node in icd.nodes if node is not speaker.node and message in icd.messages_of(node)]
+    return [speaker.facts, *(facts.of(icd, node) for node in others)]

@@ -1,0 +1,131 @@
+"""Which message an id and bytes can be, and what is wrong where they can be none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from icdgen.icd.model import Message
+from icdgen.protocol import i2c, uart
+from icdgen.protocol.facts import Facts
+from icdgen.recognize.reading import ACKNOWLEDGE, REQUEST, TELECOMMAND, TELEMETRY, Reading, Speaker
+from icdgen.values.errors import Ambiguous, BadLength, NotFound
+from icdgen.values.find import describe
+
+MOST_LISTED = 8
+HELP = "name the node and the message: `icdgen decode NODE MESSAGE FRAME`"
+
+
+def by_id(speakers: Sequence[Speaker], body: bytes) -> list[Reading]:
+    """What an id and the bytes after it can be, each but once."""
+    return _each_once(found for speaker in speakers for found in _of_speaker(speaker, body))
+
+
+def by_length(speakers: Sequence[Speaker], data: bytes) -> list[Reading]:
+    """What bytes without an id can be, by their number alone, and with a checksum if one is right."""
+    found = []
+    for speaker in speakers:
+        for what, messages in _directions(speaker.facts):
+            for id, message in messages.items():
+                read = _with_checksum(speaker, what, id, message, data)
+                if read:
+                    found.append(read)
+    return _each_once(found)
+
+
+def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
+    id, data, facts = body[0], body[1:], speaker.facts
+    for what, messages in _directions(facts):
+        message = messages.get(id)
+        read = _with_checksum(speaker, what, id, message, data) if message else None
+        if read:
+            yield read
+        if message and what == TELEMETRY and not data and message.length:
+            yield Reading(speaker, REQUEST, message, id)
+    form = facts.acknowledge
+    if form and len(body) == form.length and id not in facts.telemetry:
+        told, error = uart.acknowledged(facts, body)
+        if told in facts.telecommands:
+            yield Reading(speaker, ACKNOWLEDGE, facts.telecommands[told], told, error=error)
+
+
+def _directions(facts: Facts) -> tuple[tuple[str, dict[int, Message]], ...]:
+    return (TELECOMMAND, facts.telecommands), (TELEMETRY, facts.telemetry)
+
+
+def _with_checksum(speaker: Speaker, what: str, id: int, message: Message, data: bytes) -> Reading | None:
+    """The message, if the bytes are as many as it has, or the right checksum follows them."""
+    if len(data) == message.length:
+        return Reading(speaker, what, message, id, data)
+    right = checksum(speaker.facts, id, message, data)
+    if right is not None and data[message.length :] == right:
+        return Reading(speaker, what, message, id, data[: message.length], checked=True, remarks=("CRC is right",))
+    return None
+
+
+def checksum(facts: Facts, id: int, message: Message, data: bytes) -> bytes | None:
+    """The checksum that must follow the message's data; None if there is none, or no room for it."""
+    form = facts.checksum
+    if form is None or len(data) != message.length + form.bytes:
+        return None
+    return facts.bytes_of(i2c.checksum(facts, id, data[: message.length]), form.bytes)
+
+
+def decided(found: Sequence[Reading], of: str) -> Reading:
+    """The most likely one, with a remark about what else it can be. Raises `Ambiguous` if several are as likely.
+
+    A checksum that is right is no accident; and who sends more than an acknowledge rarely looks like one.
+    """
+    likely = [one for one in found if one.checked] or [one for one in found if one.what != ACKNOWLEDGE] or list(found)
+    if len(likely) > 1:
+        raise Ambiguous(f"{of} can be {named(likely)}", HELP)
+    others = [one for one in found if one.key != likely[0].key]
+    return likely[0].noted(f"it can also be {named(others)}") if others else likely[0]
+
+
+def why_none(speakers: Sequence[Speaker], id: int, data: bytes) -> BadLength | NotFound:
+    """What is wrong with an id and bytes that no message has."""
+    known = {
+        (what, message.node, message.name): (speaker, message)
+        for speaker in speakers
+        for what, messages in _directions(speaker.facts)
+        if (message := messages.get(id))
+    }
+    if not known:
+        names = ", ".join(dict.fromkeys(speaker.node.name for speaker in speakers))
+        return NotFound(f"no message of {names} has the id {id} (0x{id:02X})", "`icdgen show NODE` lists what there is")
+    for speaker, message in known.values():
+        right = checksum(speaker.facts, id, message, data)
+        if right is not None:
+            return wrong_checksum(message, right, data)
+    told = " or ".join(f"`{m.name}` ({describe(m)}) has {m.length} bytes" for _, m in known.values())
+    expected = next(iter(known.values()))[1].length
+    return BadLength(
+        f"{told}, {len(data)} given after the id {id}", expected, len(data), "bytes are missing, or too many"
+    )
+
+
+def wrong_checksum(message: Message, right: bytes, data: bytes) -> BadLength:
+    """Data followed by what is no checksum of them."""
+    text = f"`{message.name}` has {message.length} bytes; as CRC after them {right.hex().upper()} would be right, "
+    help = "a byte was damaged, or there are too many"
+    return BadLength(f"{text}not {data[message.length :].hex().upper()}", message.length, len(data), help)
+
+
+def _each_once(found: Iterator[Reading] | list[Reading]) -> list[Reading]:
+    """Of the same reading by several nodes the one with a checksum, else that of the node that declares the message."""
+    best: dict[tuple[str, str, str], Reading] = {}
+    for one in found:
+        known = best.get(one.key)
+        if known is None or (one.checked, one.speaker.node.name == one.message.node) > (
+            known.checked,
+            known.speaker.node.name == known.message.node,
+        ):
+            best[one.key] = one
+    return list(best.values())
+
+
+def named(found: Sequence[Reading]) -> str:
+    """The readings by name, the first few of them."""
+    titles = [one.title for one in found[:MOST_LISTED]]
+    rest = len(found) - len(titles)
+    return ", or ".join(titles) + (f", or one of {rest} others" if rest else "")

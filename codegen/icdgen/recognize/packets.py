@@ -1,0 +1,47 @@
+"""CAN packets as tools print them: candump, its log files, and the lines of slcan adapters."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+_BEFORE = r"(?:\([\d.:\s-]+\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?"  # time, interface, direction
+_ID = r"(?P<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})"
+_FORMS = (
+    re.compile(
+        _BEFORE + _ID + r"\s*\[(?P<size>\d{1,2})\]\s*(?P<data>(?:[0-9A-Fa-f]{2}(?:\s+|$))*|remote request)(?:'.*)?"
+    ),
+    re.compile(_BEFORE + _ID + r"#(?P<data>(?:[0-9A-Fa-f]{2}\.?)*|R[0-8]?)(?:\s+[TR])?"),
+    re.compile(r"T(?P<id>[0-9A-Fa-f]{8})(?P<size>[0-8])(?P<data>(?:[0-9A-Fa-f]{2})*)"),
+    re.compile(r"t(?P<id>[0-9A-Fa-f]{3})(?P<size>[0-8])(?P<data>(?:[0-9A-Fa-f]{2})*)"),
+    re.compile(r"R(?P<id>[0-9A-Fa-f]{8})[0-8](?P<data>)"),
+)
+_STAMP = 2  # bytes of the time that an slcan adapter may append
+
+
+class Printed(NamedTuple):
+    """A packet. ``extended``: the identifier has 29 bits, not 11."""
+
+    id: int
+    data: bytes
+    extended: bool
+
+
+def packets(text: str) -> list[Printed] | None:
+    """The packets, one a line; None if any line is something else, or has not as many bytes as it says."""
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    found = [packet for line in lines for packet in _packet(line)]
+    return found if found and len(found) == len(lines) else None
+
+
+def _packet(line: str) -> Iterator[Printed]:
+    match = next(filter(None, (form.fullmatch(line) for form in _FORMS)), None)
+    if match is None:
+        return
+    text = match["data"]
+    data = b"" if text[:1] in ("R", "r") else bytes.fromhex(text.replace(".", ""))
+    size = int(match.groupdict().get("size") or len(data))
+    if text != "remote request" and len(data) not in (size, size + _STAMP if line[0] in "tT" else size):
+        return
+    yield Printed(int(match["id"], 16), data[:size], len(match["id"]) == 8)

@@ -1,0 +1,113 @@
+"""What a person copied -> bytes or CAN packets: which of the many spellings it is, is decided here."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import re
+from dataclasses import dataclass
+
+from icdgen.recognize.dumps import dump
+from icdgen.recognize.packets import Printed, packets
+from icdgen.values.errors import BadHex
+from icdgen.values.hexadecimal import parse_hex
+
+_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
+_LIST = re.compile(r"[\[{(]([^\[\]{}()]*)[\]})][)\]}\s;]*\Z")
+_NUMBERS = re.compile(
+    r"\s*(?:0[xX][0-9A-Fa-f]+|\d+)(?:[uU](?:8)?)?(?:\s*,\s*(?:0[xX][0-9A-Fa-f]+|\d+)(?:[uU](?:8)?)?)*\s*,?\s*"
+)
+_LITERAL = re.compile(r"""b(["'])((?:\\.|(?!\1)[^\\])*\\(?:\\.|(?!\1)[^\\]|.)*)\1""", re.DOTALL)
+_STRING = re.compile(r"""(["'])([0-9A-Fa-f\s]+)\1""")
+_ESCAPE = re.compile(r"\\(x[0-9A-Fa-f]{2}|.)|([^\\])", re.DOTALL)
+_ESCAPED = {"n": 10, "r": 13, "t": 9, "0": 0, "a": 7, "b": 8, "f": 12, "v": 11, "\\": 92, "'": 39, '"': 34}
+_BASE64 = re.compile(r"(?:[A-Za-z0-9+/_-]{4})*(?:[A-Za-z0-9+/_-]{2}==|[A-Za-z0-9+/_-]{3}=)?")
+_LABEL = re.compile(
+    r"^[ \t]*(?:\[[^\]\n]*\][ \t]*)?(?:\d+:\d\d[\d:.]*[ \t]+)?(?:(?:[rRtT][xX]|recv|sent|send)[ \t]*[:>]?|<+|>+|<-|->)[ \t]+",
+    re.MULTILINE,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Pasted:
+    """Bytes, or packets if it was lines of a CAN tool. ``form`` names the spelling where it was not plain hexadecimal."""
+
+    data: bytes = b""
+    packets: tuple[Printed, ...] = ()
+    form: str = ""
+
+
+def read(text: str) -> Pasted:
+    """What was pasted, in any spelling. Raises `BadHex`, with the place in it, for what is no bytes at all."""
+    if found := packets(text):
+        return Pasted(packets=tuple(found))
+    if (data := dump(text)) is not None:
+        return Pasted(data, form="a dump with addresses")
+    literal = _LITERAL.fullmatch(text.strip())
+    if literal:
+        data = _unescaped(literal[2])
+        if data is not None:
+            return Pasted(data)
+    try:
+        return Pasted(parse_hex(text))
+    except BadHex:
+        other = _of_code(_COMMENT.sub(" ", text)) or _labelled(text) or _base64(text)
+        if other is None:
+            raise
+        return other
+
+
+def _unescaped(text: str) -> bytes | None:
+    found = bytearray()
+    for escape, plain in _ESCAPE.findall(text):
+        if plain:
+            value = ord(plain)
+        elif len(escape) > 1:
+            value = int(escape[1:], 16)
+        else:
+            value = _ESCAPED.get(escape, 256)
+        if value > 255:
+            return None
+        found.append(value)
+    return bytes(found)
+
+
+def _of_code(text: str) -> Pasted | None:
+    """An array or a string of a program: what stands in its brackets or quotes."""
+    text = text.strip().rstrip(";").strip()
+    strings = _STRING.findall(text)
+    if len(strings) == 1:
+        return _hex(strings[0][1], "")
+    listed = _LIST.search(text)
+    if not listed or not _NUMBERS.fullmatch(listed[1]):
+        return None
+    words = [re.sub(r"(?<=[0-9A-Fa-f])[uU]8?$", "", word.strip()) for word in listed[1].split(",") if word.strip()]
+    values = [int(word, 16 if word[:2] in ("0x", "0X") else 10) for word in words]
+    decimal = any(value > 9 and word[:2] not in ("0x", "0X") for word, value in zip(words, values, strict=True))
+    return Pasted(bytes(values), form="decimal numbers" if decimal else "") if max(values) < 256 else None
+
+
+def _labelled(text: str) -> Pasted | None:
+    bare = _LABEL.sub("", text)
+    return _hex(bare, "") if bare != text else None
+
+
+def _base64(text: str) -> Pasted | None:
+    joined = "".join(text.split())
+    is_word = len(joined) < 8 or joined in (
+        joined.lower(),
+        joined.upper(),
+    )  # as many a mistyped one would be base64, too
+    if not _BASE64.fullmatch(joined) or (is_word and not joined.endswith("=")):
+        return None
+    try:
+        return Pasted(base64.b64decode(joined, altchars=b"-_" if set("-_") & set(joined) else b"+/"), form="base64")
+    except binascii.Error:
+        return None
+
+
+def _hex(text: str, form: str) -> Pasted | None:
+    try:
+        return Pasted(parse_hex(text), form=form)
+    except BadHex:
+        return None

@@ -1,0 +1,78 @@
+"""What a frame turned out to be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from icdgen.icd.model import Message, Node
+from icdgen.protocol.facts import Facts
+from icdgen.values.find import KINDS, describe
+from icdgen.values.frame import Frame
+
+TELECOMMAND, TELEMETRY, REQUEST, ACKNOWLEDGE, REFUSAL = "telecommand", "telemetry", "request", "acknowledge", "refusal"
+
+
+@dataclass(frozen=True, slots=True)
+class Speaker:
+    """A node, and how it talks."""
+
+    node: Node
+    facts: Facts
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What a frame is. ``what``: telecommand, telemetry, or a message about ``message``: request, acknowledge, refusal;
+    configuration, where a configuration message came without an id, which would tell its direction.
+
+    ``id`` is the one that the frame was sent with, None where it came without. ``data`` are the bytes of ``frame``,
+    without id, framing and checksum. ``error`` is the code of an acknowledge. ``checked``: a checksum was there, and right.
+    """
+
+    speaker: Speaker
+    what: str
+    message: Message
+    id: int | None = None
+    data: bytes = b""
+    frame: Frame | None = None
+    error: int | None = None
+    checked: bool = False
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """Readings of the same key say the same."""
+        return self.what, self.message.node, self.message.name
+
+    @property
+    def title(self) -> str:
+        """``request for Attitude (telemetry 146)``, for people."""
+        told = f"`{self.message.name}` ({describe(self.message)}) of {self.speaker.node.name}"
+        if self.what in KINDS:
+            return told
+        if self.error is None:
+            return f"{self.what} {'for' if self.what == REQUEST else 'of'} {told}"
+        named = [key.replace("_", " ") for key, code in self.speaker.facts.errors.items() if code == self.error]
+        return f"{self.what} of {told}: error {self.error}" + (f" ({named[0]})" if named else "")
+
+    @property
+    def has_wrong_constant(self) -> bool:
+        """Whether a field that has a constant holds something else."""
+        rows = self.frame.rows if self.frame else ()
+        return any(row.field.const is not None and row.raw != row.field.const for row in rows)
+
+    def noted(self, *remarks: str) -> Reading:
+        """The same, with further remarks."""
+        return replace(self, remarks=(*self.remarks, *remarks))
+
+    def to_json(self) -> dict[str, object]:
+        """The frame as `Frame.to_json` has it, with ``direction``; what has no data of its own as a short form of it."""
+        if self.frame is not None:
+            return {**self.frame.to_json(), "direction": self.what}
+        found: dict[str, object] = {
+            "node": self.speaker.node.name,
+            "message": self.message.name,
+            "direction": self.what,
+        }
+        found |= {"id": self.id} | ({} if self.error is None else {"error": self.error})
+        return found | ({"remarks": list(self.remarks)} if self.remarks else {})

@@ -1,0 +1,68 @@
+"""The facts as members of the structs of the C runtime."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from icdgen.backends.c.link.facts import TYPES, is_told_apart
+from icdgen.backends.c.text import comment
+from icdgen.protocol.declared import BYTE, U16, Fact, Kind, facts_of
+
+_TYPES = {
+    Kind.TIME: "uint32_t ", Kind.FLAG: "bool ", Kind.BUSES: "uint8_t ", Kind.SPAN: "icd_part_t ",
+    Kind.ALLOWED: "const uint8_t *", Kind.STEP: "icd_step_t ",
+}  # fmt: skip
+_MEMBER = re.compile(r"(?:    /\*\*(?:(?!\*/).|\n)*\*/\n)?    [\w ]+[ *](\w+)(?:\[\w+\])?(?:, \w+)*;.*\n")
+
+
+def written(text: str) -> str:
+    """The header with the members of all facts. Members that are no facts stand behind them."""
+    for part, name in TYPES.items():
+        end = f"}} {name};\n"
+        before, found, after = text.partition(end)
+        if found:
+            before, start, body = before.rpartition("typedef struct {\n")
+            facts = facts_of(part)
+            names = {member for fact in facts for member, _ in _members(fact)}
+            others = (one.group() for one in _MEMBER.finditer(body) if one.group(1) not in names)
+            made = (
+                comment([f"{about[0].upper()}{about[1:]}."], "    ") + f"\n    {text};\n"
+                for fact in facts
+                for text, about in _declared(fact)
+            )
+            text = before + start + "".join([*made, *others]) + end + after
+    return text
+
+
+def _members(fact: Fact) -> Iterator[tuple[str, str]]:
+    """Names and types of the members of a fact, each type with the space behind it."""
+    if is_told_apart(fact):
+        yield f"has_{fact.name}", "bool "
+    yield fact.name, _type(fact)
+    if fact.kind is Kind.ALLOWED:
+        yield f"{fact.name}_count", "uint16_t "
+
+
+def _declared(fact: Fact) -> Iterator[tuple[str, str]]:
+    for name, type in _members(fact):
+        about = fact.meaning
+        if name.startswith("has_"):
+            about = f"whether `{fact.name}` is known"
+        elif name.endswith("_count") and name != fact.name:
+            about = "how many they are"
+        elif fact.kind is Kind.ALLOWED:
+            about = about.replace("none: all", "NULL: all")
+        elif fact.kind is Kind.BUSES:
+            about += "; bit n: on bus n of icd_bus_t"
+        elif fact.is_optional and not is_told_apart(fact):
+            about += "; -1 if the ICD does not say" if fact.least == 0 else "; 0 if the ICD does not say"
+        yield f"{type}{name}", about
+
+
+def _type(fact: Fact) -> str:
+    if fact.kind in _TYPES:
+        return _TYPES[fact.kind]
+    if fact.is_optional and fact.least == 0 and not is_told_apart(fact):
+        return "int16_t " if fact.holds <= U16 // 2 else "int32_t "
+    return "uint8_t " if fact.holds <= BYTE else "uint16_t " if fact.holds <= U16 else "uint32_t "
