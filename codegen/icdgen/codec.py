@@ -84,7 +84,9 @@ def raw_from_physical(field: Field, value: Fraction | int | float) -> int:
 
 def float_value(field: Field, bits: int) -> float:
     """The number that the bits of a float field stand for."""
-    return struct.unpack("<f" if field.bits == 32 else "<d", bits.to_bytes(field.bits // 8, "little"))[0]
+    packed = bits.to_bytes(field.bits // 8, "little")
+    value: float = struct.unpack("<f" if field.bits == 32 else "<d", packed)[0]
+    return value
 
 
 def float_bits(field: Field, value: float) -> int:

@@ -228,13 +228,28 @@
       return;
     }
     try {
-      const { data, remarks } = frames.unwrap(wire, plan.length, frames.parseHex(bytes.value));
+      const { data, remarks } = icdgenPasted.messageIn(wire, plan.length, bytes.value);
       raw = codec.decode(plan, data);
       show(data, remarks);
     } catch (error) {
+      empty();
       say(error.message, true);
       bytes.setAttribute("aria-invalid", "true");
     }
+  }
+
+  /** Nothing is left from before beside a frame that is not this message. */
+  function empty() {
+    raw = codec.fresh(plan);
+    rows.forEach(({ box, value, note }) => {
+      box.value = "";
+      note.textContent = "";
+      if (value?.type === "checkbox") value.checked = false;
+      else if (value) value.value = "";
+    });
+    strip.replaceChildren();
+    sent.replaceChildren();
+    document.querySelector("svg.layout .lit")?.replaceChildren();
   }
 
   function fromAddress() {

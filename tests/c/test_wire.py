@@ -12,7 +12,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from icdgen.protocol import crc, facts, ops
-from icdgen.protocol.sections import PROCEDURES
 from tests.c import harness, odd_protocol
 from tests.conformance import wire, wire_changed, wire_random
 from tests.conformance.build import build
@@ -141,10 +140,7 @@ def test_every_assumption_stands_with_its_reason_where_its_value_is(headers):
         text = re.sub(r"\s+(?:\* )?", " ", (headers / node.name / "link.h").read_text())
         # What switches logs on is a message like any other: the layer has no part in it.
         elsewhere = ("message ", "unsolicited_log.configured_by")
-        known = facts.of(icd, node)
-        others = () if known.files is None else PROCEDURES.keys() - known.files.procedures.keys()
-        elsewhere += tuple(f"file_transfer.{name}" for name in others)
-        assumed = [a for a in known.assumptions if not a.section.startswith(elsewhere)]
+        assumed = [a for a in facts.of(icd, node).assumptions if not a.section.startswith(elsewhere)]
         assert assumed
         for assumption in assumed:
             assert f"Assumed {assumption.key}: {' '.join(assumption.why.split())}" in text, assumption

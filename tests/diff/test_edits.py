@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from icdgen.diff.change import LAYERS, Change
+from icdgen.diff.change import Change
 from icdgen.diff.compare import compare
+from icdgen.diff.layers import LAYERS
 from icdgen.icd.model import Icd
 from tests.conformance.icds import icd_of
 from tests.diff.edits import BEYOND, EDITS, TEXT
@@ -75,7 +76,7 @@ def as_it_is(change: Change) -> tuple:
 
 def subject(change: Change) -> tuple:
     """Old and new thing, by identity. An id that means another message is about neither of the two."""
-    return (None, None) if change.code == "DIF104" else (id(change.pair.old), id(change.pair.new))
+    return (None, None) if change.code == "DIF104" else (id(change.pair.before), id(change.pair.after))
 
 
 @settings(deadline=None, max_examples=150)

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from icdgen.diff import rule
-from icdgen.diff.change import LAYERS
 from icdgen.diff.compare import RULES
+from icdgen.diff.layers import LAYERS
 from icdgen.diff.report import make
 from icdgen.loading import load
 from tests.diff.cases import CASES, compared, printed

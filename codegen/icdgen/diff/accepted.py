@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from icdgen.diagnostics import Finding, Findings, Place
-from icdgen.diff.change import Change, Where
+from icdgen.diff.change import Change
 from icdgen.diff.compare import RULES
+from icdgen.diff.where import Where
 from icdgen.icd import schema, source
 from icdgen.icd.located import Map
 from icdgen.icd.rules.wording import close_to, quote
@@ -80,7 +81,8 @@ def _unknown(entry: Acceptance) -> Finding:
 
 def sort(changes: list[Change], entries: list[Acceptance]) -> Sorted:
     """Each change goes to the first entry that covers it."""
-    result, used = Sorted([], [], []), set()
+    result = Sorted([], [], [])
+    used: set[int] = set()
     for change in changes:
         found = [(number, entry) for number, entry in enumerate(entries) if entry.covers(change)]
         used.update(number for number, _ in found)

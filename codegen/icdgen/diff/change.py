@@ -3,54 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
 
 from icdgen.diagnostics import Place
+from icdgen.diff.pairs import Pair
+from icdgen.diff.rule import Rule
+from icdgen.diff.where import Where
 
-if TYPE_CHECKING:
-    from icdgen.diff.pairs import Pair
-    from icdgen.diff.rule import Rule
-
-WIRE, MEANING, SOURCE, TEXT = "wire", "meaning", "source", "text"
-LAYERS = (WIRE, MEANING, SOURCE, TEXT)  # the worst first
-ABOUT = {
-    WIRE: "bytes mean something else",
-    MEANING: "same bytes, another sense",
-    SOURCE: "generated names and types change",
-    TEXT: "words only",
-}
 CERTAIN, LIKELY = 0.95, 0.7  # from here on a match is called certain, likely; else uncertain
-
-
-class Where(NamedTuple):
-    """What a change is about, by the names that the new ICD has for it, else the old."""
-
-    node: str = ""
-    message: str = ""
-    field: str = ""
-    enum: str = ""
-    member: str = ""
-    section: str = ""  # "protocol.uart.framing.escape"
-    erratum: str = ""
-
-    def __str__(self) -> str:
-        owner, part = self.message or self.enum, self.field or self.member
-        words = [self.node, *(f"`{name}`" for name in (owner, part) if name)]
-        return " ".join([*words, *(word for word in (self.section, self.erratum) if word)])
-
-
-class Found(NamedTuple):
-    """What a rule has to say about a pair. ``keys`` are those of the ICD that differ, the most telling first."""
-
-    message: str
-    keys: tuple[str, ...] = ()
-    was: str = ""
-    now: str = ""
-    details: tuple[str, ...] = ()
-    severity: str | None = None  # where it differs from the rule's
-    addition: bool | None = None
-    where: Where | None = None  # where it is not the pair's
-    places: tuple[Place | None, Place | None] | None = None  # where they are not those of the keys
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from icdgen.diff.change import LAYERS, Change, Found
+from icdgen.diff.change import Change
 from icdgen.diff.changes import (  # noqa: F401  (importing a theme registers its rules)
     enumerations,
     errata,
@@ -18,9 +18,10 @@ from icdgen.diff.changes import (  # noqa: F401  (importing a theme registers it
     text,
 )
 from icdgen.diff.context import Context
+from icdgen.diff.layers import LAYERS
 from icdgen.diff.match import match
-from icdgen.diff.pairs import Match, Pair
-from icdgen.diff.rule import REGISTERED, Rule
+from icdgen.diff.pairs import Match, MessagePair, NodePair, Pair
+from icdgen.diff.rule import REGISTERED, Found, Rule
 from icdgen.icd.model import Erratum, Icd
 
 RULES: dict[str, Rule] = dict(sorted(REGISTERED.items()))
@@ -55,14 +56,14 @@ def _all(context: Context) -> Iterator[Change]:
             yield _change(one, _pair(context, found), found)
     for node in context.match.nodes:
         yield from _run("node", node, context)
-        for owners, of, parts in ((node.messages, "message", "field"), (node.enums, "enum", "member")):
-            for owner in owners:
-                if not owner.changed or (not node.both and not owner.both):
-                    continue  # what comes or goes with its node is not said again
-                yield from _run(of, owner, context)
-                for part in getattr(owner, f"{parts}s") if owner.both else ():
-                    if part.changed:
-                        yield from _run(parts, part, context)
+        for owner in node.declared:
+            if not owner.changed or (not node.both and not owner.both):
+                continue  # what comes or goes with its node is not said again
+            of, parts = ("message", "field") if isinstance(owner, MessagePair) else ("enum", "member")
+            yield from _run(of, owner, context)
+            for part in owner.parts if owner.both else ():
+                if part.changed:
+                    yield from _run(parts, part, context)
 
 
 def _pair(context: Context, found: Found) -> Pair:
@@ -72,7 +73,7 @@ def _pair(context: Context, found: Found) -> Pair:
 
 
 def _run(of: str, pair: Pair, context: Context) -> Iterator[Change]:
-    when = "both" if pair.both else "gone" if pair.new is None else "come"
+    when = "both" if pair.both else "gone" if pair.after is None else "come"
     for one in _OF.get((of, when), ()):
         for found in one.check(pair, context):
             yield _change(one, pair, found)
@@ -86,8 +87,8 @@ def _change(rule: Rule, pair: Pair, found: Found) -> Change:
         where=found.where or pair.where(),
         was=found.was,
         now=found.now,
-        old=None if pair.old is None and not found.places else old,
-        new=None if pair.new is None and not found.places else new,
+        old=None if pair.before is None and not found.places else old,
+        new=None if pair.after is None and not found.places else new,
         details=found.details,
         severity=found.severity or rule.severity,
         addition=rule.addition if found.addition is None else found.addition,
@@ -99,13 +100,9 @@ def _change(rule: Rule, pair: Pair, found: Found) -> Change:
 
 def _decisions(pair: Pair, keys: tuple[str, ...]) -> tuple[str, ...]:
     """Errata that came, went or changed, and that hold something else for one of these keys of the pair."""
-    old, new = ({e.id: e for e in getattr(side, "errata", ())} for side in (pair.old, pair.new))
-    if (
-        old == new
-        or not hasattr(pair.any, "source")
-        or (not hasattr(pair, "owner") and not hasattr(pair, "is_of_another_node"))
-    ):
+    if isinstance(pair, NodePair):
         return ()
+    old, new = ({e.id: e for e in side.errata} if side is not None else {} for side in (pair.before, pair.after))
     said = []
     for key in sorted(old.keys() | new.keys()):
         before, after = old.get(key), new.get(key)

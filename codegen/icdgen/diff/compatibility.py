@@ -10,7 +10,7 @@ from icdgen.diff.compare import Comparison
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind
 from icdgen.diff.similar import same_sense
 from icdgen.diff.wording import some
-from icdgen.icd.formula import Scale
+from icdgen.icd.formula import RAW
 from icdgen.icd.model import Field, Message
 from icdgen.icd.rules.wording import quote
 
@@ -65,7 +65,8 @@ def _answer(key: str, question: str, frames: list[Frame | None], general: tuple[
 
 def _facts(comparison: Comparison) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Changed facts of the protocol that concern every frame on the wire, and every frame in a log."""
-    wires, logs = [], []
+    wires: list[str] = []
+    logs: list[str] = []
     for change in comparison.changes:
         if change.code in ("DIF120", "DIF121") and change.breaks:
             steps = change.where.section.split(".")
@@ -79,7 +80,7 @@ def _frames(comparison: Comparison, key: str, judge: Judge, logged: bool = False
     """One entry a frame of the old ICD, None where it is simply understood. A frame of a shared ICD counts once."""
     match, seen, found = comparison.match, set(), []
     for node in match.nodes:
-        if node.old is None:
+        if node.before is None:
             continue
         old = {getattr(m, key): m for m in match.old.messages_of(node.old) if getattr(m, key) is not None}
         new = {getattr(m, key): m for m in match.new.messages_of(node.new)} if node.both else {}
@@ -103,11 +104,11 @@ def _loggable(node: NodePair) -> set[int] | None:
 def _verdict(
     comparison: Comparison, key: str, old: Message, new: Message | None, judge: Judge
 ) -> tuple[str, tuple[str, ...]]:
-    pair = comparison.match.pair_of[id(old)]
+    pair = comparison.match.messages[id(old)]
     if new is None:
-        after = getattr(pair.new, key, None) if pair.new is not None else None
+        after = getattr(pair.after, key, None)
         return NO, (f"its id is {after} now" if after is not None else "it is gone",)
-    if comparison.match.pair_of.get(id(new)) is not pair:
+    if comparison.match.messages.get(id(new)) is not pair:
         return NO, (f"the id means {quote(new.name)} now",)
     if not pair.changed:
         return YES, ()
@@ -126,7 +127,7 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     """How much of what is sent the reader understands."""
     if sent.length != reader.length:
         return NO, (f"{sent.length} bytes come, {reader.length} are expected",)
-    absent = [p.any for p in pair.fields if not p.both and (p.old if reader is pair.old else p.new) is not None]
+    absent = [p.any for p in pair.fields if not p.both and (p.before if reader is pair.old else p.after) is not None]
     wrong = [(p, why) for p in pair.kept if (why := _misread(p))]
     if not absent and not wrong:
         return YES, ()
@@ -152,7 +153,7 @@ def _misread(pair: FieldPair) -> str:
         return "other bits"
     if kind(old) != kind(new):
         return f"read as {new.type}, or as {old.type}"
-    if (old.scale or Scale(1)) != (new.scale or Scale(1)):
+    if (old.scale or RAW) != (new.scale or RAW):
         return "another formula"
     if (old.unit.symbol if old.unit else "") != (new.unit.symbol if new.unit else ""):
         return "another unit"
@@ -162,7 +163,7 @@ def _misread(pair: FieldPair) -> str:
 def _senses_differ(old: Field, new: Field) -> bool:
     if old.enum is None or new.enum is None or old.enum is new.enum:
         return False
-    before, after = ({m.value: m.name for m in field.enum.members} for field in (old, new))
+    before, after = ({m.value: m.name for m in enum.members} for enum in (old.enum, new.enum))
     return any(not same_sense(before[value], after[value]) for value in before.keys() & after.keys())
 
 
@@ -177,7 +178,7 @@ def _new_obeys_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
 
 def _disobeyed(pair: FieldPair) -> tuple[str, bool]:
     """What goes wrong with a field of a telecommand, and whether the whole telecommand is refused for it."""
-    old, new = pair.old, pair.new
+    old, new = pair.before, pair.after
     if new is None:
         return "ignored", False
     if old is None:

@@ -6,7 +6,7 @@ from functools import cached_property
 
 from icdgen.diff.generated import Generated
 from icdgen.diff.moves import Moves, moves
-from icdgen.diff.pairs import FieldPair, Match, MessagePair, NodePair, Pair, position
+from icdgen.diff.pairs import DeclaredPair, FieldPair, Match, MessagePair, NodePair, Position, position
 from icdgen.icd.model import Icd, Message, Node
 
 
@@ -23,9 +23,9 @@ class Context:
         return Generated(self.match, self.changed)
 
     @cached_property
-    def changed(self) -> list[Pair]:
+    def changed(self) -> list[DeclaredPair]:
         """Messages and enumerations in which anything differs."""
-        return [p for node in self.match.nodes for p in (*node.messages, *node.enums) if p.changed]
+        return [p for node in self.match.nodes for p in node.declared if p.changed]
 
     @cached_property
     def users(self) -> dict[int, list[str]]:
@@ -40,9 +40,9 @@ class Context:
     def sides(self, node: NodePair) -> tuple[tuple[Icd, Node], tuple[Icd, Node]]:
         return (self.match.old, node.old), (self.match.new, node.new)
 
-    def pair(self, thing: object) -> Pair:
-        """The pair of a message or an enumeration."""
-        return self.match.pair_of[id(thing)]
+    def pair(self, message: Message) -> MessagePair:
+        """The pair that a message is a side of."""
+        return self.match.messages[id(message)]
 
     def moves(self, pair: MessagePair) -> Moves:
         """What moved within the message."""
@@ -56,13 +56,13 @@ class Context:
         if pair.old.length == pair.new.length:
             return []
         end = min(pair.old.length, pair.new.length) * 8
-        told = self.moves(pair).told
+        causes = self.moves(pair).causes
         rows = pair.gained if pair.new.length > pair.old.length else pair.lost
-        return [p for p in rows if p.any.at >= end and id(p) not in told]
+        return [p for p in rows if p.any.at >= end and id(p) not in causes]
 
-    def told(self, pair: FieldPair) -> bool:
+    def is_said_of_the_message(self, pair: FieldPair) -> bool:
         """Whether another change already says that the field came or went."""
-        return id(pair) in self.moves(pair.owner).told or any(p is pair for p in self.at_the_end(pair.owner))
+        return id(pair) in self.moves(pair.owner).causes or any(p is pair for p in self.at_the_end(pair.owner))
 
     def is_touched_before(self, pair: MessagePair, bit: int) -> bool:
         """Whether any field of the first ``bit`` bits came, went or lies elsewhere."""
@@ -86,7 +86,7 @@ def free_before(pair: FieldPair) -> bool:
     return not any(mine & _bits(position(message.old_node, f)) for f in message.old.fields)
 
 
-def _bits(position: tuple) -> set[tuple[int, int]]:
+def _bits(position: Position) -> set[tuple[int, int]]:
     found = set()
     for one in position:
         if isinstance(one, range):

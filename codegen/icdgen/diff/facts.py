@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from icdgen.diagnostics import Place
+from icdgen.diff.where import Places
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
 
@@ -19,17 +20,23 @@ class Fact(NamedTuple):
     path: str  # "protocol.uart.framing.escape"
     old: object
     new: object
-    places: tuple[Place | None, Place | None]
+    places: Places
     is_word: bool
 
 
 def facts(old: Node, new: Node) -> Iterator[Fact]:
     """All facts that differ, in the order of the old node, then of the new one."""
-    trees = tuple(node.source.get("protocol") if isinstance(node.source, Map) else None for node in (old, new))
-    yield from _compare("protocol", (old.protocol, new.protocol), trees, (None, None), False)
+    yield from _compare("protocol", (old.protocol, new.protocol), (_tree(old), _tree(new)), (None, None), False)
 
 
-def _compare(path: str, values: tuple, trees: tuple, places: tuple, is_word: bool) -> Iterator[Fact]:
+def _tree(node: Node) -> object:
+    return node.source.get("protocol") if isinstance(node.source, Map) else None
+
+
+Two = tuple[Any, Any]  # old and new
+
+
+def _compare(path: str, values: Two, trees: Two, places: Places, is_word: bool) -> Iterator[Fact]:
     old, new = values
     if old == new and type(old) is type(new):
         return
@@ -39,13 +46,13 @@ def _compare(path: str, values: tuple, trees: tuple, places: tuple, is_word: boo
     elif isinstance(old, list) and isinstance(new, list) and any(isinstance(v, dict) for v in (*old, *new)):
         names = [_row_names(side) for side in values]
         for name in (*names[0], *(name for name in names[1] if name not in names[0])):
-            steps = tuple(side.get(name) for side in names)
+            steps = names[0].get(name), names[1].get(name)
             yield from _step(f"{path}.{name}", values, trees, places, steps, is_word)
     else:
         yield Fact(path, old, new, places, is_word)
 
 
-def _row_names(rows: list) -> dict[str, int]:
+def _row_names(rows: list[Any]) -> dict[str, int]:
     found: dict[str, int] = {}
     for index, row in enumerate(rows):
         key = next((str(row[k]) for k in NAMES if k in row), str(index)) if isinstance(row, dict) else str(index)
@@ -53,18 +60,20 @@ def _row_names(rows: list) -> dict[str, int]:
     return found
 
 
-def _step(path: str, values: tuple, trees: tuple, places: tuple, steps: tuple, is_word: bool) -> Iterator[Fact]:
-    inner, below, where = [], [], []
-    for value, tree, place, step in zip(values, trees, places, steps, strict=True):
-        there = step is not None and (step in value if isinstance(value, dict) else step < len(value))
-        inner.append(value[step] if there else None)
-        down, found = _down(tree, step) if there else (None, None)
-        below.append(down)
-        where.append(found or (place if there else None))
-    yield from _compare(path, tuple(inner), tuple(below), tuple(where), is_word)
+def _step(path: str, values: Two, trees: Two, places: Places, steps: Two, is_word: bool) -> Iterator[Fact]:
+    old, new = map(_inside, values, trees, places, steps)
+    yield from _compare(path, (old[0], new[0]), (old[1], new[1]), (old[2], new[2]), is_word)
 
 
-def _down(tree: object, step: object) -> tuple[object, Place | None]:
+def _inside(value: Any, tree: object, place: Place | None, step: Any) -> tuple[Any, object, Place | None]:
+    """One side, a step further down: the value, what was read for it, and where that stands."""
+    if step is None or not (step in value if isinstance(value, dict) else step < len(value)):
+        return None, None, None
+    below, found = _down(tree, step)
+    return value[step], below, found or place
+
+
+def _down(tree: object, step: Any) -> tuple[object, Place | None]:
     if isinstance(tree, Map) and step in tree:
         return tree[step], tree.values_at.get(step, tree.place)
     if isinstance(tree, Seq) and isinstance(step, int) and step < len(tree):

@@ -5,11 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from icdgen import backends
 from icdgen.diagnostics import Place
-from icdgen.diff.pairs import EnumPair, FieldPair, Match, MemberPair, MessagePair, Pair
+from icdgen.diff.pairs import (
+    DeclaredPair,
+    EnumPair,
+    FieldPair,
+    IdentifiedPair,
+    Match,
+    MemberPair,
+    MessagePair,
+    NodePair,
+    SideBySide,
+    Thing,
+)
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Field, Icd, Message, Node
 
@@ -36,7 +47,7 @@ class Generated:
     their old names: a field's names are not said to change only because its message has another name.
     """
 
-    def __init__(self, match: Match, changed: Iterable[Pair]) -> None:
+    def __init__(self, match: Match, changed: Iterable[DeclaredPair]) -> None:
         self._match, self._changed = match, list(changed)
 
     def _cut(self, side: int, old_names: int = NOTHING) -> _Cut:
@@ -47,7 +58,7 @@ class Generated:
         """Everything whose names may have changed, with what it is part of: id(pair)."""
         kept: set[int] = set()
         for pair in self._changed:
-            parts = [id(part) for part in _parts(pair) if may_rename(part)] if pair.both else []
+            parts = [id(part) for part in pair.parts if may_rename(part)] if pair.both else []
             if parts or may_rename(pair):
                 kept.update((id(pair), *parts))
         return kept
@@ -55,7 +66,7 @@ class Generated:
     @cached_property
     def everything(self) -> Names:
         """Old names of everything in messages and enumerations in which anything differs."""
-        kept = {id(one) for pair in self._changed for one in (pair, *_parts(pair))}
+        kept = {id(one) for pair in self._changed for one in (pair, *pair.parts)}
         cut = _Cut(self._match, 0, kept)
         return cut.names(cut.icd)
 
@@ -85,8 +96,8 @@ class Generated:
 
     @cached_property
     def under_old_owners(self) -> Names:
-        owners = [(pair.old, pair.new) for pair in self._match.pair_of.values() if pair.both]
-        if self._nodes_keep_names and all((a.name, a.identifier) == (b.name, b.identifier) for a, b in owners):
+        owners: list[DeclaredPair] = [*self._match.messages.values(), *self._match.enums.values()]
+        if self._nodes_keep_names and not any(is_called_otherwise(pair) for pair in owners if pair.both):
             return self.new
         return self._under_old_owners.names(self._under_old_owners.icd)
 
@@ -98,7 +109,7 @@ class Generated:
     def _types(self) -> tuple[Types, Types]:
         return _types(self._before.icd), _types(self._under_old_owners.icd)
 
-    def renamed(self, pair: Pair) -> list[tuple[Name | None, Name | None]]:
+    def renamed(self, pair: IdentifiedPair) -> list[tuple[Name | None, Name | None]]:
         """Old and new name of everything that is generated for the pair, where they differ. Its parts are left out."""
         after = self._at_home if isinstance(pair, MessagePair | EnumPair) else self.under_old_owners
         old, new = self.old.get(id(pair), ()), after.get(id(pair), ())
@@ -128,9 +139,14 @@ class Generated:
         return found
 
 
-def may_rename(pair: Pair) -> bool:
+def is_called_otherwise(pair: IdentifiedPair) -> bool:
+    """Whether the name or the identifier of what is on both sides differs."""
+    return (pair.old.name, pair.old.identifier) != (pair.new.name, pair.new.identifier)
+
+
+def may_rename(pair: IdentifiedPair) -> bool:
     """Whether anything differs that names or types of the pair itself are made from."""
-    if not pair.both or (pair.old.name, pair.old.identifier) != (pair.new.name, pair.new.identifier):
+    if not pair.both or is_called_otherwise(pair):
         return True
     if isinstance(pair, FieldPair):
         return pair.owner.has_another_vocabulary or _decisive(pair.old) != _decisive(pair.new)
@@ -139,7 +155,7 @@ def may_rename(pair: Pair) -> bool:
     return pair.is_of_another_node or pair.has_another_vocabulary
 
 
-def _decisive(field: Field) -> tuple:
+def _decisive(field: Field) -> object:
     enum = field.enum.name if field.enum is not None else None
     return field.type, field.bits, enum, field.unit, field.scale, field.special, field.limits, field.const
 
@@ -152,22 +168,18 @@ def _is_sound(field: Field) -> bool:
     return field.bits <= 64 and wanted.get(field.type, True)
 
 
-def _parts(pair: Pair) -> list[Pair]:
-    return pair.fields if isinstance(pair, MessagePair) else pair.members
-
-
 class _Cut:
     """One of both ICDs, with what is to be kept of it; every part has a mark of its own, by which its names are found."""
 
     def __init__(self, match: Match, side: int, kept: set[int], old_names: int = NOTHING) -> None:
         self.match, self.side, self.kept, self.old_names = match, side, kept, old_names
-        self.marks: dict[int, Pair] = {}
+        self.marks: dict[int, IdentifiedPair] = {}
         self.alive: list[Map] = []  # marks go by identity
         self.enums: dict[int, Enum] = {}
         self.messages: dict[int, Message] = {}
         self.fields: dict[int, Field] = {}
         icd = match.new if side else match.old
-        names = {self.side_of(pair).name: self.name_of(pair) for pair in match.nodes if self.side_of(pair) is not None}
+        names = {one.name: self.name_of(pair) for pair in match.nodes if (one := self.side_of(pair)) is not None}
         nodes = []
         for node in icd.nodes:
             enums = tuple(self.enum(enum, names) for enum in node.enums)
@@ -180,33 +192,35 @@ class _Cut:
                     includes=tuple(names.get(name, name) for name in node.includes),
                     enums=enums,
                     messages=tuple(
-                        self.message(m, names) for m in node.messages if id(match.pair_of.get(id(m))) in kept
+                        self.message(m, names) for m in node.messages if id(match.messages.get(id(m))) in kept
                     ),
                 )
                 for node, enums in nodes
             )
         )
 
-    def side_of(self, pair: Pair):
-        return pair.new if self.side else pair.old
+    def side_of(self, pair: SideBySide[Thing]) -> Thing | None:
+        return pair.after if self.side else pair.before
 
-    def name_of(self, pair: Pair) -> str:
-        return pair.old.name if self.old_names and pair.old is not None else self.side_of(pair).name
+    def name_of(self, pair: NodePair) -> str:
+        """The name of a node that is on this side."""
+        keeps_its_old_name = not self.side or (self.old_names and pair.before is not None)
+        return pair.old.name if keeps_its_old_name else pair.new.name
 
-    def marked(self, one, pair: Pair | None, **more: object):
+    def marked(self, one: Thing, pair: IdentifiedPair | None, **more: Any) -> Thing:
         """The thing with a mark, and under its old name where that is asked for."""
         if pair is not None:
             mark = Map(Place(""))
             self.marks[id(mark)] = pair
             self.alive.append(mark)
             more["source"] = mark
-            if self.old_names == OWNERS and pair.old is not None and isinstance(pair, MessagePair | EnumPair):
+            if self.old_names == OWNERS and pair.before is not None and isinstance(pair, MessagePair | EnumPair):
                 more.update(name=pair.old.name, identifier=pair.old.identifier)
         return replace(one, **more)
 
     def enum(self, enum: Enum, names: dict[str, str]) -> Enum:
-        pair = self.match.pair_of.get(id(enum))
-        members = {id(self.side_of(p)): p for p in getattr(pair, "members", ())}
+        pair = self.match.enums.get(id(enum))
+        members = {id(self.side_of(p)): p for p in pair.members} if pair is not None else {}
         kept = [m for m in enum.members if id(m) in members and id(members[id(m)]) in self.kept]
         own = tuple(self.marked(m, members[id(m)]) for m in kept)
         made = self.marked(enum, pair, members=own, node=names.get(enum.node, enum.node))
@@ -214,16 +228,16 @@ class _Cut:
         return made
 
     def message(self, message: Message, names: dict[str, str]) -> Message:
-        pair = self.match.pair_of[id(message)]
+        pair = self.match.messages[id(message)]
         fields = {id(self.side_of(p)): p for p in pair.fields}
         own = []
         for one in message.fields:
             if id(fields[id(one)]) not in self.kept or not _is_sound(one):
                 continue
             enum = self.enums.get(id(one.enum), one.enum)
-            made = self.marked(one, fields.get(id(one)), enum=enum)
-            self.fields[id(fields.get(id(one)))] = made
-            own.append(made)
+            field = self.marked(one, fields[id(one)], enum=enum)
+            self.fields[id(fields[id(one)])] = field
+            own.append(field)
         made = self.marked(message, pair, fields=tuple(own), node=names.get(message.node, message.node))
         self.messages[id(pair)] = made
         return made
@@ -242,7 +256,7 @@ class _Cut:
                 pair = self.marks.get(id(one.source)) if one.source is not None else None
                 if pair is None or not one.text.isidentifier() or one.scope.startswith(("modules of", "files of")):
                     continue
-                owner = getattr(pair, "owner", None)
+                owner = pair.owner if isinstance(pair, FieldPair | MemberPair) else None
                 if owner is None and language == "c" and one.text.endswith("_H"):
                     continue  # an include guard
                 if language == "rust" and owner is None:

@@ -9,18 +9,40 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, Generic, Protocol, TypeVar
 
-from icdgen.diff.pairs import EnumPair, FieldPair, Match, MemberPair, MessagePair, NodePair, kind, position
+from icdgen.diff.pairs import (
+    DeclaredPair,
+    EnumPair,
+    FieldPair,
+    Match,
+    MemberPair,
+    MessagePair,
+    NodePair,
+    kind,
+    position,
+)
 from icdgen.diff.similar import letters, likeness, overlap
-from icdgen.icd.model import CONFIGURATION, Enum, Field, Icd, Message, Node
+from icdgen.icd.model import CONFIGURATION, Enum, Field, Icd, Member, Message, Node
 
 SAME_NODE = 0.4  # from here on, nodes of different names are one
 SAME_MESSAGE = 0.55
 SAME_ENUM = 0.5
 SAME_FIELD = 0.6
 
-Score = Callable[[object, object], float]
-Keys = Callable[[object], Iterable[object]]
+
+class _Named(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
+Thing = TypeVar("Thing")
+Named = TypeVar("Named", bound=_Named)
+Declared = TypeVar("Declared", Enum, Message)
+Two = tuple[Thing, Thing, float]  # old, new, and how sure it is that they are the same
+Sides = tuple[list[Thing], list[Thing]]  # of old and new
+Score = Callable[[Thing, Thing], float]
+Keys = Callable[[Thing], Iterable[object]]
 
 
 def match(old: Icd, new: Icd) -> Match:
@@ -37,16 +59,17 @@ def match(old: Icd, new: Icd) -> Match:
     return found
 
 
-def _taken(pairs: Iterable[tuple], side: int, one: object) -> bool:
+def _taken(pairs: Iterable[Two[Node]], side: int, one: Node) -> bool:
     return any(pair[side] is one for pair in pairs)
 
 
-def _by_name(old: Iterable, new: Iterable) -> tuple[list[tuple], tuple[list, list]]:
+def _by_name(old: Iterable[Named], new: Iterable[Named]) -> tuple[list[Two[Named]], Sides[Named]]:
     """Pairs of equal names, and what is left on either side. The first of several equal names counts."""
-    by_name: dict[str, list] = {}
+    by_name: dict[str, list[Named]] = {}
     for one in new:
         by_name.setdefault(one.name, []).append(one)
-    pairs, left = [], []
+    pairs: list[Two[Named]] = []
+    left: list[Named] = []
     for one in old:
         same = by_name.get(one.name)
         if same:
@@ -56,7 +79,9 @@ def _by_name(old: Iterable, new: Iterable) -> tuple[list[tuple], tuple[list, lis
     return pairs, (left, [one for rest in by_name.values() for one in rest])
 
 
-def _alike(old: Sequence, new: Sequence, score: Score, least: float, keys: Keys) -> list[tuple]:
+def _alike(
+    old: Sequence[Thing], new: Sequence[Thing], score: Score[Thing], least: float, keys: Keys[Thing]
+) -> list[Two[Thing]]:
     """The best pairs of what is left, greedily; ties go to those that stand at like places.
 
     Only pairs that have one of their ``keys`` in common are looked at: no others may have a score of ``least`` or more.
@@ -72,7 +97,9 @@ def _alike(old: Sequence, new: Sequence, score: Score, least: float, keys: Keys)
             if value >= least:
                 found.append((-value, abs(i - j), i + j, i, j))
     found.sort()
-    pairs, taken_old, taken_new = [], set(), set()
+    pairs: list[Two[Thing]] = []
+    taken_old: set[int] = set()
+    taken_new: set[int] = set()
     for value, _, _, i, j in found:
         if i not in taken_old and j not in taken_new:
             taken_old.add(i)
@@ -81,7 +108,7 @@ def _alike(old: Sequence, new: Sequence, score: Score, least: float, keys: Keys)
     return pairs
 
 
-def _node_keys(node: Node) -> frozenset:
+def _node_keys(node: Node) -> frozenset[object]:
     return frozenset((m.name, m.kind, m.ids) for m in node.messages)
 
 
@@ -91,23 +118,23 @@ def _node_score(one: Node, other: Node) -> float:
 
 
 @dataclass(eq=False)
-class _Left:
+class _Left(Generic[Declared]):
     """A message or an enumeration that has no counterpart of its name, with what is compared more than once."""
 
     home: NodePair
-    one: Enum | Message
+    one: Declared
 
     @cached_property
-    def shape(self) -> frozenset[tuple[int, int, str]]:
+    def shape(self: _Left[Message]) -> frozenset[tuple[int, int, str]]:
         """Of a message: where its fields lie, and how they are read."""
         return frozenset((f.at, f.bits, kind(f)) for f in self.one.fields)
 
     @cached_property
-    def field_names(self) -> frozenset[str]:
+    def field_names(self: _Left[Message]) -> frozenset[str]:
         return frozenset(f.name for f in self.one.fields)
 
     @cached_property
-    def members(self) -> frozenset[tuple[int, str]]:
+    def members(self: _Left[Enum]) -> frozenset[tuple[int, str]]:
         """Of an enumeration."""
         return frozenset((m.value, m.name) for m in self.one.members)
 
@@ -116,33 +143,33 @@ class _Left:
 
 
 def _enums(found: Match) -> None:
-    _pair_up(
-        found,
-        "enums",
-        lambda enum: enum.name,
-        ((_moved_enum, _name), (_renamed_enum, _member_keys)),
-        SAME_ENUM,
-        _add_enum,
-    )
+    scores = [(_moved_enum, _name), (_renamed_enum, _member_keys)]
+    _pair_up(found, lambda node: node.enums, lambda enum: enum.name, scores, SAME_ENUM, _add_enum)
 
 
 def _pair_up(
-    found: Match, what: str, rank: Callable, scores: Iterable[tuple[Score, Keys]], least: float, add: Callable
+    found: Match,
+    declared: Callable[[Node], Sequence[Declared]],
+    rank: Callable[[Declared], Any],
+    scores: Iterable[tuple[Score[_Left[Declared]], Keys[_Left[Declared]]]],
+    least: float,
+    add: Callable[[Match, NodePair, NodePair, Declared | None, Declared | None, float], None],
 ) -> None:
     """Pairs what nodes declare: by name within a node, then by each of the scores."""
-    left_old: list[_Left] = []
-    left_new: list[_Left] = []
+    left_old: list[_Left[Declared]] = []
+    left_new: list[_Left[Declared]] = []
     for node in found.nodes:
-        pairs, (old, new) = _by_name(getattr(node.old, what, ()), getattr(node.new, what, ()))
+        sides = [declared(side) if side is not None else () for side in (node.before, node.after)]
+        pairs, (old, new) = _by_name(*sides)
         for one, other, sure in pairs:
             add(found, node, node, one, other, sure)
         left_old += [_Left(node, one) for one in sorted(old, key=rank)]
         left_new += [_Left(node, one) for one in sorted(new, key=rank)]
     for score, keys in scores:
-        taken = set()
-        for one, other, sure in _alike(left_old, left_new, score, least, keys):
-            add(found, one.home, other.home, one.one, other.one, sure)
-            taken |= {one, other}
+        taken: set[_Left[Declared]] = set()
+        for mine, theirs, sure in _alike(left_old, left_new, score, least, keys):
+            add(found, mine.home, theirs.home, mine.one, theirs.one, sure)
+            taken |= {mine, theirs}
         left_old = [left for left in left_old if left not in taken]
         left_new = [left for left in left_new if left not in taken]
     for left in left_old:
@@ -151,78 +178,78 @@ def _pair_up(
         add(found, left.home, left.home, None, left.one, 1.0)
 
 
-def _name(left: _Left) -> Iterable[str]:
+def _name(left: _Left[Any]) -> Iterable[object]:
     return (left.one.name,)
 
 
-def _moved_enum(one: _Left, other: _Left) -> float:
+def _moved_enum(one: _Left[Enum], other: _Left[Enum]) -> float:
     return 1.0 if one.one.name == other.one.name and overlap(one.members, other.members) >= 0.3 else 0.0
 
 
-def _member_keys(left: _Left) -> Iterable[tuple]:
+def _member_keys(left: _Left[Enum]) -> Iterable[object]:
     return [(left.home, *member) for member in left.members] or [(left.home,)]
 
 
-def _renamed_enum(one: _Left, other: _Left) -> float:
+def _renamed_enum(one: _Left[Enum], other: _Left[Enum]) -> float:
     if one.home is not other.home:
         return 0.0
     return 0.85 * overlap(one.members, other.members) + 0.15 * likeness(one.one.name, other.one.name)
 
 
 def _add_enum(found: Match, home: NodePair, node: NodePair, old: Enum | None, new: Enum | None, sure: float) -> None:
-    pair = EnumPair(old, new, sure, home.old or home.new, node.new or node.old, home is not node)
+    pair = EnumPair(old, new, sure, old_node=_old_home(home), new_node=node.any, is_of_another_node=home is not node)
     if old is None or new is None or pair.changed:
         pair.members = list(_members(pair))
     node.enums.append(pair)
-    found.pair_of.update((id(enum), pair) for enum in (old, new) if enum is not None)
+    found.enums.update((id(enum), pair) for enum in (old, new) if enum is not None)
+
+
+def _old_home(node: NodePair) -> Node:
+    """The node as it was, or as it is if it came."""
+    return node.any if node.before is None else node.before
 
 
 def _members(pair: EnumPair) -> Iterable[MemberPair]:
-    old = list(pair.old.members) if pair.old else []
-    new = list(pair.new.members) if pair.new else []
-    for key in (lambda m: (m.value, m.name), lambda m: m.name, lambda m: m.value):
+    old = list(pair.before.members) if pair.before else []
+    new = list(pair.after.members) if pair.after else []
+    keys: tuple[Callable[[Member], object], ...] = (lambda m: (m.value, m.name), lambda m: m.name, lambda m: m.value)
+    for key in keys:
         for one in list(old):
             twins = [m for m in old if key(m) == key(one)]
             others = [m for m in new if key(m) == key(one)]
             if len(others) == 1 and len(twins) == 1:
-                yield MemberPair(one, others[0], 1.0, pair)
+                yield MemberPair(one, others[0], owner=pair)
                 old.remove(one)
                 new.remove(others[0])
-    yield from (MemberPair(one, None, 1.0, pair) for one in old)
-    yield from (MemberPair(None, one, 1.0, pair) for one in new)
+    yield from (MemberPair(one, None, owner=pair) for one in old)
+    yield from (MemberPair(None, one, owner=pair) for one in new)
 
 
 # Messages
 
 
 def _messages(found: Match) -> None:
-    _pair_up(
-        found,
-        "messages",
-        _rank,
-        ((_moved_message, _name), (_renamed_message, _message_keys)),
-        SAME_MESSAGE,
-        _add_message,
-    )
+    scores = [(_moved_message, _name), (_renamed_message, _message_keys)]
+    _pair_up(found, lambda node: node.messages, _rank, scores, SAME_MESSAGE, _add_message)
 
 
-def _rank(message: Message) -> tuple:
+def _rank(message: Message) -> object:
     return message.kind, message.ids, message.name
 
 
-def _moved_message(one: _Left, other: _Left) -> float:
+def _moved_message(one: _Left[Message], other: _Left[Message]) -> float:
     same = one.one.name == other.one.name and one.one.kind == other.one.kind
     return 1.0 if same and (one.one.ids == other.one.ids or _layouts_alike(one, other) > 0.5) else 0.0
 
 
-def _message_keys(left: _Left) -> Iterable[tuple]:
+def _message_keys(left: _Left[Message]) -> Iterable[object]:
     """An id, the name of a field (or that there is none), or the whole layout together with the letters of the name."""
     yield from ((left.home, place, id) for place, id in enumerate(_ids(left.one)) if id is not None)
     yield from ((left.home, name) for name in left.field_names or (None,))
     yield left.home, left.shape, letters(left.one.name)
 
 
-def _renamed_message(one: _Left, other: _Left) -> float:
+def _renamed_message(one: _Left[Message], other: _Left[Message]) -> float:
     """The same layout under another name, or name and id."""
     old, new = one.one, other.one
     if one.home is not other.home or not _same_direction(old, new):
@@ -246,7 +273,7 @@ def _ids(message: Message) -> tuple[int | None, int | None]:
     return message.telecommand_id, message.telemetry_id
 
 
-def _layouts_alike(one: _Left, other: _Left) -> float:
+def _layouts_alike(one: _Left[Message], other: _Left[Message]) -> float:
     if one.shape or other.shape:
         return overlap(one.shape, other.shape)
     return 0.75 if one.one.length == other.one.length else 0.0
@@ -255,40 +282,40 @@ def _layouts_alike(one: _Left, other: _Left) -> float:
 def _add_message(
     found: Match, home: NodePair, node: NodePair, old: Message | None, new: Message | None, sure: float
 ) -> None:
-    pair = MessagePair(old, new, sure, home.old or home.new, node.new or node.old, home is not node)
+    pair = MessagePair(old, new, sure, old_node=_old_home(home), new_node=node.any, is_of_another_node=home is not node)
     if old is None or new is None or pair.changed:
         pair.fields = _fields(pair)
     node.messages.append(pair)
-    found.pair_of.update((id(message), pair) for message in (old, new) if message is not None)
+    found.messages.update((id(message), pair) for message in (old, new) if message is not None)
 
 
 # Fields
 
 
 def _fields(pair: MessagePair) -> list[FieldPair]:
-    rows_old = sorted(pair.old.fields, key=_place) if pair.old else []
-    rows_new = sorted(pair.new.fields, key=_place) if pair.new else []
+    rows_old = sorted(pair.before.fields, key=_place) if pair.before else []
+    rows_new = sorted(pair.after.fields, key=_place) if pair.after else []
     pairs, (old, new) = _by_name(rows_old, rows_new)
     if old and new:
         pairs += _renamed_fields(pair, pairs, old, new)
-    found = [FieldPair(one, other, sure, pair) for one, other, sure in pairs]
-    taken = {id(one) for two in pairs for one in two[:2]}
-    found += [FieldPair(one, None, 1.0, pair) for one in old if id(one) not in taken]
-    found += [FieldPair(None, one, 1.0, pair) for one in new if id(one) not in taken]
-    return sorted(found, key=lambda p: _place(p.old or p.new))
+    found = [FieldPair(one, other, sure, owner=pair) for one, other, sure in pairs]
+    taken = {id(one) for old_one, new_one, _ in pairs for one in (old_one, new_one)}
+    found += [FieldPair(one, None, owner=pair) for one in old if id(one) not in taken]
+    found += [FieldPair(None, one, owner=pair) for one in new if id(one) not in taken]
+    return sorted(found, key=lambda p: _place(p.old if p.before is not None else p.new))
 
 
-def _place(field: Field) -> tuple:
+def _place(field: Field) -> tuple[int, str]:
     return field.at, field.name
 
 
-def _renamed_fields(pair: MessagePair, known: list[tuple], old: list[Field], new: list[Field]) -> list[tuple]:
+def _renamed_fields(pair: MessagePair, known: list[Two[Field]], old: list[Field], new: list[Field]) -> list[Two[Field]]:
     spans_old, spans_new = ([position(node, f) for f in rows] for node, rows in
                             ((pair.old_node, old), (pair.new_node, new)))  # fmt: skip
     spans = {id(f): span for f, span in zip((*old, *new), (*spans_old, *spans_new), strict=True)}
     shifts = _Shifts(known)
 
-    def sense(one: Field) -> tuple:
+    def sense(one: Field) -> object:
         return one.type, one.scale, one.unit, one.limits
 
     def keys(one: Field) -> Iterable[object]:
@@ -317,7 +344,7 @@ def _renamed_fields(pair: MessagePair, known: list[tuple], old: list[Field], new
 class _Shifts:
     """By how much the nearest known field before a place has moved, as seen in the old frame and in the new one."""
 
-    def __init__(self, known: list[tuple]) -> None:
+    def __init__(self, known: list[Two[Field]]) -> None:
         self.old = sorted((one.at, other.at - one.at) for one, other, _ in known)
         self.new = sorted((other.at, other.at - one.at) for one, other, _ in known)
 
@@ -333,7 +360,17 @@ class _Shifts:
 def _in_order(found: Match) -> None:
     """As the ICDs have them: what is new or there still as in the new one, what is gone at its end."""
     for node in found.nodes:
-        for rows, names in ((node.messages, "messages"), (node.enums, "enums")):
-            order = {id(one): number for number, one in enumerate(getattr(node.new, names, ()))}
-            late = {id(one): number for number, one in enumerate(getattr(node.old, names, ()))}
-            rows.sort(key=lambda p: (p.new is None, order.get(id(p.new), 0), late.get(id(p.old), 0)))
+        late, order = (_ranks(side) for side in (node.before, node.after))
+
+        def rank(pair: DeclaredPair, late: dict[int, int] = late, order: dict[int, int] = order) -> Any:
+            return pair.after is None, order.get(id(pair.after), 0), late.get(id(pair.before), 0)
+
+        node.messages.sort(key=rank)
+        node.enums.sort(key=rank)
+
+
+def _ranks(node: Node | None) -> dict[int, int]:
+    """The place of each message and enumeration among those of the node, by identity."""
+    if node is None:
+        return {}
+    return {id(one): number for rows in (node.messages, node.enums) for number, one in enumerate(rows)}

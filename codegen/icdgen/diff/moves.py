@@ -26,10 +26,10 @@ class Move:
 
 @dataclass
 class Moves:
-    """All moves of a message. ``told`` are fields that came or went and are the cause of one of them."""
+    """All moves of a message. ``causes`` are fields that came or went and made others move."""
 
     moves: list[Move] = field(default_factory=list)
-    told: set[int] = field(default_factory=set)  # id(pair)
+    causes: set[int] = field(default_factory=set)  # id(pair)
 
 
 def moves(message: MessagePair) -> Moves:
@@ -54,7 +54,7 @@ def moves(message: MessagePair) -> Moves:
             found.moves.append(move)
     found.moves.sort(key=lambda move: (move.fields[0].old.at, move.fields[0].new.at))
     for move in found.moves:
-        found.told.update(id(pair) for pair in (*move.gained, *move.lost))
+        found.causes.update(id(pair) for pair in (*move.gained, *move.lost))
     return found
 
 
@@ -70,7 +70,14 @@ def _runs(rows: list[FieldPair], rank_old: dict[int, int], rank_new: dict[int, i
     return runs
 
 
-def _causes(message, move, by_old, by_new, rank_old, rank_new) -> None:
+def _causes(
+    message: MessagePair,
+    move: Move,
+    by_old: list[FieldPair],
+    by_new: list[FieldPair],
+    rank_old: dict[int, int],
+    rank_new: dict[int, int],
+) -> None:
     first = move.fields[0]
     before_old = by_old[rank_old[id(first)] - 1] if rank_old[id(first)] else None
     before_new = by_new[rank_new[id(first)] - 1] if rank_new[id(first)] else None

@@ -2,71 +2,103 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Generic, TypeVar
 
 from icdgen.diagnostics import Place
-from icdgen.diff.change import Where
+from icdgen.diff.where import Places, Where
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Field, Icd, Member, Message, Node
-from icdgen.layout import byte_range, pieces
+from icdgen.layout import Piece, byte_range, pieces
 
 # What a key of an ICD is called in the output of ``show``.
 _SHOWN = {"at": ("offset",), "formula": ("scale",), "table": ("source",), "source": ("table",), "min": ("limits",)}
 
 
+Thing = TypeVar("Thing", bound=Node | Message | Field | Enum | Member)
+
+
 @dataclass(eq=False)
-class Pair:
+class SideBySide(Generic[Thing]):
     """Two things that are the same thing in both ICDs. ``sure`` is 1 where they have the same name."""
 
-    old: object | None
-    new: object | None
+    before: Thing | None
+    after: Thing | None
     sure: float = 1.0
+
+    @property
+    def old(self) -> Thing:
+        """What it was, for those who know that it was there."""
+        assert self.before is not None, "asked for the old side of what came"
+        return self.before
+
+    @property
+    def new(self) -> Thing:
+        """What it is, for those who know that it is there."""
+        assert self.after is not None, "asked for the new side of what went"
+        return self.after
 
     @property
     def changed(self) -> bool:
         """Whether anything at all differs."""
-        return self.old != self.new
+        return self.before != self.after
 
     @property
     def both(self) -> bool:
-        return self.old is not None and self.new is not None
+        return self.before is not None and self.after is not None
 
     @property
-    def any(self):
+    def any(self) -> Thing:
         """The new one, or the old one where there is no new one."""
-        return self.old if self.new is None else self.new
+        return self.old if self.after is None else self.after
 
     def where(self) -> Where:
         raise NotImplementedError
 
-    def places(self, keys: tuple[str, ...]) -> tuple[Place | None, Place | None]:
+    def places(self, keys: tuple[str, ...]) -> Places:
         """Where the first of the keys that is there stands, in old and new."""
-        return place_of(self.old, keys), place_of(self.new, keys)
+        return place_of(self.before, keys), place_of(self.after, keys)
 
 
 @dataclass(eq=False)
-class MemberPair(Pair):
-    owner: EnumPair | None = None
-    old: Member | None
-    new: Member | None
+class _DeclaredPair(SideBySide[Thing]):
+    """What a node declares: ``old_node`` and ``new_node`` are where; the same where it is only on one side."""
+
+    old_node: Node = field(kw_only=True)
+    new_node: Node = field(kw_only=True)
+    is_of_another_node: bool = field(kw_only=True)  # another node declares it now
+
+    @property
+    def node(self) -> Node:
+        """The node that declares it."""
+        return self.old_node if self.after is None else self.new_node
+
+    @property
+    def has_another_vocabulary(self) -> bool:
+        """Whether words are split in another way, so that its names may differ."""
+        return self.old_node.vocabulary != self.new_node.vocabulary
+
+
+@dataclass(eq=False)
+class MemberPair(SideBySide[Member]):
+    owner: EnumPair = field(kw_only=True)
 
     def where(self) -> Where:
         return self.owner.where()._replace(member=self.any.name)
 
 
 @dataclass(eq=False)
-class FieldPair(Pair):
-    owner: MessagePair | None = None
-    old: Field | None
-    new: Field | None
+class FieldPair(SideBySide[Field]):
+    owner: MessagePair = field(kw_only=True)
 
     def where(self) -> Where:
         return self.owner.where()._replace(field=self.any.name)
 
     @property
     def changed(self) -> bool:
-        return self.old != self.new or self.owner.has_another_vocabulary
+        return self.before != self.after or self.owner.has_another_vocabulary
 
     @cached_property
     def same_bits(self) -> bool:
@@ -80,57 +112,35 @@ class FieldPair(Pair):
 
 
 @dataclass(eq=False)
-class EnumPair(Pair):
-    old_node: Node | None = None
-    new_node: Node | None = None
-    is_of_another_node: bool = False  # another node declares it now
+class EnumPair(_DeclaredPair[Enum]):
     members: list[MemberPair] = field(default_factory=list)
-    old: Enum | None
-    new: Enum | None
 
     @cached_property
     def changed(self) -> bool:
-        return self.old != self.new or self.has_another_vocabulary
+        return self.before != self.after or self.has_another_vocabulary
 
     @property
-    def has_another_vocabulary(self) -> bool:
-        """Whether words are split in another way, so that its names may differ."""
-        return self.old_node.vocabulary != self.new_node.vocabulary
+    def parts(self) -> Sequence[MemberPair]:
+        return self.members
 
     def where(self) -> Where:
         return Where(self.node.name, enum=self.any.name)
 
-    @property
-    def node(self) -> Node:
-        """The node that declares it."""
-        return self.old_node if self.new is None else self.new_node
-
 
 @dataclass(eq=False)
-class MessagePair(Pair):
-    old_node: Node | None = None
-    new_node: Node | None = None
-    is_of_another_node: bool = False  # another node declares it now
+class MessagePair(_DeclaredPair[Message]):
     fields: list[FieldPair] = field(default_factory=list)
-    old: Message | None
-    new: Message | None
-
-    def where(self) -> Where:
-        return Where(self.node.name, message=self.any.name)
-
-    @property
-    def node(self) -> Node:
-        """The node that declares it."""
-        return self.old_node if self.new is None else self.new_node
 
     @cached_property
     def changed(self) -> bool:
-        return self.old != self.new or self.reordered or self.has_another_vocabulary
+        return self.before != self.after or self.reordered or self.has_another_vocabulary
 
     @property
-    def has_another_vocabulary(self) -> bool:
-        """Whether words are split in another way, so that its names may differ."""
-        return self.old_node.vocabulary != self.new_node.vocabulary
+    def parts(self) -> Sequence[FieldPair]:
+        return self.fields
+
+    def where(self) -> Where:
+        return Where(self.node.name, message=self.any.name)
 
     @property
     def kept(self) -> list[FieldPair]:
@@ -139,11 +149,11 @@ class MessagePair(Pair):
 
     @property
     def lost(self) -> list[FieldPair]:
-        return [pair for pair in self.fields if pair.new is None]
+        return [pair for pair in self.fields if pair.after is None]
 
     @property
     def gained(self) -> list[FieldPair]:
-        return [pair for pair in self.fields if pair.old is None]
+        return [pair for pair in self.fields if pair.before is None]
 
     @property
     def reordered(self) -> bool:
@@ -152,20 +162,28 @@ class MessagePair(Pair):
 
 
 @dataclass(eq=False)
-class NodePair(Pair):
+class NodePair(SideBySide[Node]):
     """``messages`` and ``enums`` are those that the node declares now, or declared."""
 
     messages: list[MessagePair] = field(default_factory=list)
     enums: list[EnumPair] = field(default_factory=list)
-    old: Node | None
-    new: Node | None
+
+    @property
+    def declared(self) -> Sequence[DeclaredPair]:
+        """Its messages, then its enumerations."""
+        return [*self.messages, *self.enums]
 
     def where(self) -> Where:
         return Where(self.any.name)
 
-    def places(self, keys: tuple[str, ...]) -> tuple[Place | None, Place | None]:
-        heads = (_head(self.old), _head(self.new))
-        return tuple(at(head, keys) if head is not None else None for head in heads)
+    def places(self, keys: tuple[str, ...]) -> Places:
+        old, new = _head(self.before), _head(self.after)
+        return at(old, keys) if old is not None else None, at(new, keys) if new is not None else None
+
+
+DeclaredPair = MessagePair | EnumPair
+IdentifiedPair = MessagePair | FieldPair | EnumPair | MemberPair  # what has names in generated code
+Pair = NodePair | MessagePair | FieldPair | EnumPair | MemberPair
 
 
 @dataclass(eq=False)
@@ -175,20 +193,29 @@ class Match:
     old: Icd
     new: Icd
     nodes: list[NodePair] = field(default_factory=list)
-    pair_of: dict[int, Pair] = field(default_factory=dict)
+    messages: dict[int, MessagePair] = field(default_factory=dict)
+    enums: dict[int, EnumPair] = field(default_factory=dict)
 
     def same_enum(self, old: Enum | None, new: Enum | None) -> bool:
         """Whether both are the same enumeration, renamed or not."""
         if old is None or new is None:
             return old is new
-        return self.pair_of.get(id(old)) is not None and self.pair_of.get(id(old)) is self.pair_of.get(id(new))
+        return id(old) in self.enums and self.enums[id(old)] is self.enums.get(id(new))
+
+
+Position = tuple[range | Piece, ...]
+
+
+def is_of_another_node(pair: Pair) -> bool:
+    """Whether it is a message or an enumeration that another node declares now."""
+    return isinstance(pair, MessagePair | EnumPair) and pair.is_of_another_node
 
 
 def orders(node: Node) -> tuple[str, str]:
     return node.byte_order, node.bit_order
 
 
-def position(node: Node, one: Field) -> tuple:
+def position(node: Node, one: Field) -> Position:
     """The bits that the field lies on, comparable between nodes of different byte and bit order."""
     return (byte_range(one),) if one.type == "bytes" else pieces(one, node)
 

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from icdgen.diff.accepted import Acceptance, sort
-from icdgen.diff.change import LAYERS, Change
+from icdgen.diff.change import Change
 from icdgen.diff.compare import Comparison, compare
 from icdgen.diff.compatibility import Direction, directions
 from icdgen.diff.inputs.side import Side
+from icdgen.diff.layers import LAYERS
 from icdgen.diff.uses import Use
 from icdgen.diff.version import Step, step
 
@@ -54,7 +55,7 @@ def _placed(change: Change, old: Side, new: Side) -> Change:
     return replace(change, old=places[0], new=places[1])
 
 
-def make(old: Side, new: Side, acceptances: list[Acceptance] = ()) -> Report:
+def make(old: Side, new: Side, acceptances: Sequence[Acceptance] = ()) -> Report:
     """Compares two sides."""
     comparison = compare(old.icd, new.icd)
     comparison.changes = [_placed(change, old, new) for change in comparison.changes]

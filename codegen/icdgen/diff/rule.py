@@ -5,9 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
-from icdgen.diff.change import LAYERS, Found
+from icdgen.diff.layers import LAYERS
+from icdgen.diff.where import Places, Where
 from icdgen.icd.rules import pages
+
+
+class Found(NamedTuple):
+    """What a rule has to say about a pair. ``keys`` are those of the ICD that differ, the most telling first."""
+
+    message: str
+    keys: tuple[str, ...] = ()
+    was: str = ""
+    now: str = ""
+    details: tuple[str, ...] = ()
+    severity: str | None = None  # where it differs from the rule's
+    addition: bool | None = None
+    where: Where | None = None  # where it is not the pair's
+    places: Places | None = None  # where they are not those of the keys
+
 
 Check = Callable[..., Iterator[Found]]
 PAGES = Path(__file__).parent / "changes"
@@ -43,13 +60,16 @@ class Rule:
 REGISTERED: dict[str, Rule] = {}
 
 
-def rule(code: str, *of: str, **properties: object) -> Callable[[Check], Check]:
+def rule(
+    code: str, *of: str, severity: str = "error", addition: bool = False, when: str = "both"
+) -> Callable[[Check], Check]:
     """Registers the decorated function, which looks at one pair of things; its module's name is the theme."""
 
     def register(check: Check) -> Check:
         if code in REGISTERED:
             raise ValueError(f"two rules are called {code}")
-        REGISTERED[code] = Rule(code, of, check.__module__.rpartition(".")[2], check, **properties)
+        theme = check.__module__.rpartition(".")[2]
+        REGISTERED[code] = Rule(code, of, theme, check, severity, addition, when)
         return check
 
     return register

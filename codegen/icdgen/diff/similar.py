@@ -22,7 +22,7 @@ def letters(name: str) -> frozenset[str]:
     return frozenset(text[i : i + 2] for i in range(len(text) - 1)) if text.strip() else frozenset()
 
 
-def overlap(one: frozenset, other: frozenset) -> float:
+def overlap(one: frozenset[object], other: frozenset[object]) -> float:
     """Share of what both have in what either has; a half where there is nothing to compare."""
     return len(one & other) / len(one | other) if one or other else 0.5
 

@@ -83,7 +83,7 @@ def _names(change: Change, old: dict[int, tuple[Name, ...]]) -> Iterator[Name]:
     pair: Pair = change.pair
     yield from old.get(id(pair), ())
     if isinstance(pair, EnumPair | MessagePair) and change.code in ("DIF101", "DIF301", "DIF303", "DIF306", "DIF310"):
-        for part in (*getattr(pair, "fields", ()), *getattr(pair, "members", ())):
+        for part in pair.parts:
             yield from (name for name in old.get(id(part), ()) if not name.stem)
 
 
@@ -120,7 +120,7 @@ def _in_file(path: Path, language: str, wanted: dict[str, list[_Wanted]]) -> Ite
             yield Use(str(path), number, start - starts[number - 1] + 1, name, line, changes)
 
 
-def _tokens(text: str, lexer: re.Pattern) -> Iterator[tuple[str, int]]:
+def _tokens(text: str, lexer: re.Pattern[str]) -> Iterator[tuple[str, int]]:
     """Every name of the code and where it begins."""
     for match in lexer.finditer(text):
         if match["name"]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from icdgen.diff.change import LAYERS, Change
+from icdgen.diff.change import Change
+from icdgen.diff.layers import LAYERS
 from icdgen.icd.rules.wording import count, listing
 
 MAJOR, MINOR, PATCH, NONE = "major", "minor", "patch", "none"

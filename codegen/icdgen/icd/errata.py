@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Set
 
 from icdgen.diagnostics import Finding, Place
-from icdgen.icd.located import Map, Seq
+from icdgen.icd.located import Map, Seq, unread
 from icdgen.icd.model import Erratum
 
 _AGAIN = "look at the manual again, then update or remove the entry"
@@ -59,7 +59,8 @@ def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> App
 
 
 def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> None:
-    printed, held = entry.get("printed") or {}, entry.get("held") or {}
+    printed: Map = entry.get("printed") or unread()
+    held: Map = entry.get("held") or unread()
     erratum = _erratum(entry)
     (applied.notes if erratum.is_note else applied.entries).append(erratum)
     where = entry.get("where")
@@ -181,7 +182,7 @@ def _section(tree: Map, path: str) -> Iterator[Map]:
         yield node
 
 
-def _matches(target: Map, printed: Map | dict) -> bool:
+def _matches(target: Map, printed: Map) -> bool:
     return all(_plain(target.get(key)) == _plain(value) for key, value in printed.items())
 
 
@@ -189,7 +190,7 @@ def _plain(value: object) -> object:
     return ("bool", value) if isinstance(value, bool) else value
 
 
-def _change(target: Map, held: Map | dict, entry: Map) -> None:
+def _change(target: Map, held: Map, entry: Map) -> None:
     for key, value in held.items():
         if value is None:
             target.pop(key, None)

@@ -34,6 +34,9 @@ class Scale(NamedTuple):
         return (physical - self.offset) / self.factor
 
 
+RAW = Scale(Fraction(1))  # the raw value is the physical one
+
+
 class _Linear(NamedTuple):
     slope: Fraction
     constant: Fraction

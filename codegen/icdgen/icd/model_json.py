@@ -7,7 +7,6 @@ An object is ``{"is": class, attribute: value ...}`` without what it has by defa
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import MISSING, fields, is_dataclass
 from fractions import Fraction
 from functools import cache
@@ -18,8 +17,10 @@ from icdgen.icd import model
 from icdgen.icd.formula import Scale
 from icdgen.icd.units import Unit
 
-_CLASSES: dict[str, Callable[..., Any]] = {
-    kind.__name__: kind for kind in (Scale, Unit, *filter(is_dataclass, vars(model).values()))
+_CLASSES: dict[str, type[Any]] = {
+    kind.__name__: kind
+    for kind in (Scale, Unit, *vars(model).values())
+    if isinstance(kind, type) and (is_dataclass(kind) or kind in (Scale, Unit))
 }
 
 
@@ -67,7 +68,8 @@ class _Writer:
 def _attributes(value: Any) -> list[tuple[str, Any]]:
     """What differs from the default, without positions."""
     found = []
-    for name, default in _defaults(type(value)):
+    kind: Any = type(value)
+    for name, default in _defaults(kind):
         item = getattr(value, name)
         if item is not default and (default is MISSING or item != default or type(item) is not type(default)):
             found.append((name, item))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import random
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from icdgen import __version__
 from icdgen.icd.model import Icd, Node
@@ -20,8 +20,8 @@ class Case(NamedTuple):
     """One question, and the answer that is demanded."""
 
     why: str
-    request: dict
-    answer: dict
+    request: dict[str, Any]
+    answer: dict[str, Any]
 
 
 def nodes(icd: Icd) -> list[Node]:
@@ -53,7 +53,7 @@ def text(icd: Icd) -> str | None:
     return "{\n" + head + ",\n".join(parts) + "\n]\n}\n"
 
 
-def _requests(known: Facts) -> Iterator[tuple[str, dict]]:
+def _requests(known: Facts) -> Iterator[tuple[str, dict[str, Any]]]:
     source = random.Random(known.node.name)
     yield from streams.checksums(known, source)
     if known.framing:

@@ -23,7 +23,7 @@ def altogether(data: dict) -> Iterator[Case]:
 
 def on_the_wire(data: dict, comparison: Comparison, others: tuple[int, ...]) -> Iterator[Case]:
     """The cases that concern bytes and raw values only, in the names of the new ICD. ``others``: ids of the new ICD."""
-    pairs = {p.old.name: p for node in comparison.match.nodes for p in node.messages if p.old is not None}
+    pairs = {p.old.name: p for node in comparison.match.nodes for p in node.messages if p.before is not None}
     enums = member_names({data["node"]: data})
     for message in data["messages"]:
         pair = pairs[message["name"]]

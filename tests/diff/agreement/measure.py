@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from icdgen import vectors
-from icdgen.diff.change import MEANING, SOURCE, WIRE
 from icdgen.diff.compare import compare
+from icdgen.diff.layers import MEANING, SOURCE, WIRE
 from icdgen.icd.model import Icd
 from tests.conformance.build import build
 from tests.conformance.cases import Case as Demand

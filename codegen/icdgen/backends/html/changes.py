@@ -6,8 +6,9 @@ import re
 
 from icdgen.backends.html.relations import Relations
 from icdgen.diff import report
-from icdgen.diff.change import ABOUT, LAYERS, Change
+from icdgen.diff.change import Change
 from icdgen.diff.inputs.side import Side
+from icdgen.diff.layers import ABOUT, LAYERS
 from icdgen.diff.reports.groups import Group, groups, notes
 from icdgen.icd.model import Enum, Message, Node
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from icdgen.render import Renderer
 
 # Written by hand; the pages load them.
-_LOADED = ("style.css", "print.css", "theme.js", "site.js", "codec.js", "frames.js", "try.js", "icon.svg")
+_LOADED = ("style.css", "print.css", "theme.js", "site.js", "codec.js", "frames.js", "pasted.js", "try.js", "icon.svg")
 
 
 def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[tuple[PurePosixPath, str]]:

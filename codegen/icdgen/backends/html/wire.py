@@ -15,7 +15,7 @@ from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.backends.html.texts import count
 from icdgen.icd.model import Message
-from icdgen.protocol.facts import Facts
+from icdgen.protocol.facts import Can, Facts
 
 _SHOWN = 24  # data bytes that are written out
 
@@ -78,7 +78,18 @@ def page_facts(message: Message, wire: Wire) -> dict[str, object]:
         facts["framing"] = [framing.escape, framing.start, framing.end, framing.escaped]
         if not framing.escapes_id:
             facts["plain_id"] = True
+    if wire.facts.can:
+        facts["can"] = _can_facts(wire.facts.can)
     return facts
+
+
+def _can_facts(form: Can) -> dict[str, object]:
+    """Where an identifier has type and id, which types carry data, and where packets of long messages have what."""
+    found: dict[str, object] = {role: [form.parts[role].shift, form.parts[role].bits] for role in ("type", "channel")}
+    for name in ("types", "extended_types"):
+        types = getattr(form, name)
+        found[name] = [types[kind] for kind in can.WITH_DATA if kind in types]
+    return found | ({"extended": [form.extended.data_bytes, form.extended.left_at]} if form.extended else {})
 
 
 def _crc_facts(facts: Facts) -> dict[str, object]:

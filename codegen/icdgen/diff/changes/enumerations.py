@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.diff.change import Found
 from icdgen.diff.context import Context
 from icdgen.diff.pairs import EnumPair, FieldPair, MemberPair
-from icdgen.diff.rule import rule
+from icdgen.diff.rule import Found, rule
 from icdgen.diff.similar import same_sense
 from icdgen.diff.wording import some
 from icdgen.icd.rules.wording import quote

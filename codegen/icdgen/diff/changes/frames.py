@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.diff.change import Found
 from icdgen.diff.context import Context
 from icdgen.diff.pairs import MessagePair, NodePair
-from icdgen.diff.rule import rule
+from icdgen.diff.rule import Found, rule
 from icdgen.diff.wording import ids, some
 from icdgen.icd.model import Message
 from icdgen.icd.rules.wording import count, quote
@@ -15,19 +14,19 @@ from icdgen.icd.rules.wording import count, quote
 DIRECTIONS = {"telecommand": "telecommand_id", "telemetry": "telemetry_id"}
 
 
-def _said(message: Message) -> str:
+def _summary(message: Message) -> str:
     return f"{message.kind} {ids(message.ids)}, {count(message.length, 'byte')}"
 
 
 @rule("DIF101", "message", when="gone")
 def removed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     text = f"{quote(pair.old.name)} is gone: {pair.old.kind} {ids(pair.old.ids)} is no longer spoken"
-    yield Found(text, ("name",), _said(pair.old), "")
+    yield Found(text, ("name",), _summary(pair.old), "")
 
 
 @rule("DIF102", "message", when="come", severity="note", addition=True)
 def added(pair: MessagePair, ctx: Context) -> Iterator[Found]:
-    yield Found(f"{quote(pair.new.name)} is new: {_said(pair.new)}", ("name",), "", _said(pair.new))
+    yield Found(f"{quote(pair.new.name)} is new: {_summary(pair.new)}", ("name",), "", _summary(pair.new))
 
 
 @rule("DIF103", "message")
@@ -36,9 +35,8 @@ def id_changed(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     for kind, key in DIRECTIONS.items():
         before, after = getattr(old, key), getattr(new, key)
         if before is not None and after is not None and before != after:
-            keys = ("id", "set_id") if kind == "telecommand" else ("id", "get_id")
-            if new.kind == old.kind == "configuration":
-                keys = keys[1:]
+            own = "set_id" if kind == "telecommand" else "get_id"
+            keys = (own,) if new.kind == old.kind == "configuration" else ("id", own)
             text = f"the {kind} id of {quote(new.name)} is {after}, was {before}"
             yield Found(text, keys, str(before), str(after))
 

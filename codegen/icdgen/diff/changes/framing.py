@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.diff.change import Found
 from icdgen.diff.context import Context
 from icdgen.diff.facts import Fact, facts, shown
 from icdgen.diff.pairs import NodePair, place_of
-from icdgen.diff.rule import rule
+from icdgen.diff.rule import Found, rule
 from icdgen.icd.model import Loggable
 from icdgen.icd.rules.wording import quote
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.diff.change import Found
 from icdgen.diff.context import Context, free_before
 from icdgen.diff.moves import Move
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind, orders
-from icdgen.diff.rule import rule
+from icdgen.diff.rule import Found, rule
 from icdgen.diff.wording import bits, some, span, type_of
 from icdgen.icd.rules.wording import count, listing, quote
 
@@ -45,7 +44,7 @@ def _moved(pair: MessagePair, move: Move, text: str, causes: list[FieldPair]) ->
     old, new = first.places(("at",))
     for cause in causes:
         one, other = cause.places(("at", "bits"))
-        old, new = (one if cause.old is not None else old), (other if cause.new is not None else new)
+        old, new = (one if cause.before is not None else old), (other if cause.after is not None else new)
     names = [p.new.name for p in move.fields]
     details = (f"From {quote(names[0])} to {quote(names[-1])}.",) if len(names) > 1 else ()
     where = causes[0].where() if causes else first.where() if len(names) == 1 else pair.where()
@@ -89,7 +88,7 @@ def read_otherwise(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
     if kind(old) == kind(new):
         return
-    details = ()
+    details: tuple[str, ...] = ()
     if {kind(old), kind(new)} == {"unsigned", "int"} and old.bits == new.bits:
         half = 1 << (new.bits - 1)
         first, last = (str(half), str(-half)) if new.type == "int" else (str(-half), str(half))
@@ -118,14 +117,14 @@ def order_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
 
 @rule("DIF113", "field", when="gone")
 def field_removed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    if not ctx.told(pair):
+    if not ctx.is_said_of_the_message(pair):
         text = f"{quote(pair.old.name)} is gone: {span(pair.old)} no longer carry it"
         yield Found(text, ("at",), f"{span(pair.old)}, {type_of(pair.old)}", "")
 
 
 @rule("DIF114", "field", when="come", severity="note", addition=True)
 def field_added(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    if not ctx.told(pair):
+    if not ctx.is_said_of_the_message(pair):
         where = "bits that were reserved" if free_before(pair) else "bits that carried something else"
         text = f"{quote(pair.new.name)} is new, in {where}: {span(pair.new)}"
         yield Found(text, ("at",), "", f"{span(pair.new)}, {type_of(pair.new)}")

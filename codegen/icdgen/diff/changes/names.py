@@ -4,11 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.diff.change import Found
 from icdgen.diff.context import Context
-from icdgen.diff.generated import Name, may_rename
-from icdgen.diff.pairs import EnumPair, FieldPair, MemberPair, MessagePair, NodePair, Pair
-from icdgen.diff.rule import rule
+from icdgen.diff.generated import Name, is_called_otherwise, may_rename
+from icdgen.diff.pairs import (
+    EnumPair,
+    FieldPair,
+    IdentifiedPair,
+    MemberPair,
+    MessagePair,
+    NodePair,
+    Pair,
+    is_of_another_node,
+)
+from icdgen.diff.rule import Found, rule
+from icdgen.diff.where import Places
 from icdgen.icd.rules.wording import count, listing, quote
 
 MOST = 2  # names that are shown of one language
@@ -17,17 +26,24 @@ _WHAT = {MessagePair: "message", FieldPair: "field", EnumPair: "enumeration", Me
 Renamed = list[tuple[Name | None, Name | None]]
 
 
+def _either(old: Name | None, new: Name | None) -> Name:
+    """The old name, or the new one where there was none."""
+    name = old or new
+    assert name is not None, "neither was nor is"
+    return name
+
+
 def lines(renamed: Renamed) -> tuple[str, ...]:
     """``C: `a` -> `b` and 3 more``, a line a language. Where all came, or all went, just the names."""
     found: dict[str, list[str]] = {}
     one_way = not all(old and new for old, new in renamed) and any(
         all(pair[side] is None for pair in renamed) for side in (0, 1)
     )
-    for old, new in sorted(renamed, key=lambda names: not (names[0] or names[1]).text.endswith("_t")):  # types first
+    for old, new in sorted(renamed, key=lambda names: not _either(*names).text.endswith("_t")):  # types first
         said = f"{f'`{old.text}`' if old else '(new)'} -> {f'`{new.text}`' if new else '(gone)'}"
         if one_way:
-            said = f"`{(old or new).text}`"
-        rows = found.setdefault((old or new).language, [])
+            said = f"`{_either(old, new).text}`"
+        rows = found.setdefault(_either(old, new).language, [])
         if said not in rows:
             rows.append(said)
     result = []
@@ -40,12 +56,8 @@ def lines(renamed: Renamed) -> tuple[str, ...]:
 TITLES = {"c": "C", "python": "Python", "rust": "Rust"}
 
 
-def _is_called_otherwise(pair: Pair) -> bool:
-    return (pair.old.name, pair.old.identifier) != (pair.new.name, pair.new.identifier)
-
-
-def _renamed(pair: Pair, ctx: Context) -> Iterator[Found]:
-    if not _is_called_otherwise(pair) or getattr(pair, "is_of_another_node", False):
+def _renamed(pair: IdentifiedPair, ctx: Context) -> Iterator[Found]:
+    if not is_called_otherwise(pair) or is_of_another_node(pair):
         return
     renamed = ctx.generated.renamed(pair)
     if renamed:
@@ -96,7 +108,7 @@ def retyped(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 @rule("DIF308", "field")
 def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     if (
-        _is_called_otherwise(pair)
+        is_called_otherwise(pair)
         or pair.owner.is_of_another_node
         or pair.owner.has_another_vocabulary
         or not may_rename(pair)
@@ -104,7 +116,7 @@ def accessors_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
         return
     renamed = ctx.generated.renamed(pair)
     if renamed:
-        was, now = (next((names[side].text for names in renamed if names[side]), "") for side in (0, 1))
+        was, now = (next((name.text for name in side if name), "") for side in zip(*renamed, strict=True))
         text = f"accessors or constants of {quote(pair.new.name)} {'change' if was else 'are new'}"
         keys = ("unit", "formula", "special", "min", "max", "above", "below")
         severity, addition = (None, None) if was else ("note", True)
@@ -117,9 +129,9 @@ def words_split_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
     if frozenset(old) == frozenset(new):
         return
     renamed: Renamed = []
-    for owner in (*pair.messages, *pair.enums):
-        for one in (owner, *getattr(owner, "fields", ()), *getattr(owner, "members", ())):
-            if one.both and not _is_called_otherwise(one) and not owner.is_of_another_node:
+    for owner in pair.declared:
+        for one in (owner, *owner.parts):
+            if one.both and not is_called_otherwise(one) and not owner.is_of_another_node:
                 renamed += ctx.generated.renamed(one)
     if renamed:
         text = f"words are split in another way: {count(len(renamed), 'generated name')} of `{pair.new.name}` change"
@@ -127,10 +139,9 @@ def words_split_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
         yield Found(text, ("vocabulary",), was, now, lines(renamed), places=_vocabulary(pair))
 
 
-def _vocabulary(pair: NodePair):
-    return tuple(
-        None if side is None or side.source is None else side.source.at("vocabulary") for side in (pair.old, pair.new)
-    )
+def _vocabulary(pair: NodePair) -> Places:
+    old, new = pair.old.source, pair.new.source
+    return None if old is None else old.at("vocabulary"), None if new is None else new.at("vocabulary")
 
 
 @rule("DIF310", "message", "enum")

@@ -5,21 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.describe.bounds import KEYS, bounds
-from icdgen.diff.change import Found
 from icdgen.diff.context import Context
 from icdgen.diff.pairs import FieldPair
-from icdgen.diff.rule import rule
+from icdgen.diff.rule import Found, rule
 from icdgen.diff.similar import same_sense
 from icdgen.diff.wording import formula, number
-from icdgen.icd.formula import Scale
+from icdgen.icd.formula import RAW, Scale
 from icdgen.icd.model import Field, Limits
 from icdgen.icd.rules.wording import quote
 
-_RAW = Scale(1)
-
 
 def _scales(pair: FieldPair) -> tuple[Scale, Scale]:
-    return tuple(field.scale or _RAW for field in (pair.old, pair.new))
+    return pair.old.scale or RAW, pair.new.scale or RAW
 
 
 def _is_turned(old: Scale, new: Scale) -> bool:

@@ -4,12 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.diff.change import Found
+from icdgen.diagnostics import Place
 from icdgen.diff.context import Context
 from icdgen.diff.facts import facts, shown
-from icdgen.diff.pairs import EnumPair, FieldPair, MessagePair, NodePair, Pair, orders, place_of
-from icdgen.diff.rule import rule
+from icdgen.diff.pairs import (
+    EnumPair,
+    FieldPair,
+    IdentifiedPair,
+    MessagePair,
+    NodePair,
+    Pair,
+    is_of_another_node,
+    orders,
+    place_of,
+)
+from icdgen.diff.rule import Found, rule
 from icdgen.diff.similar import same_sense
+from icdgen.icd.model import Node
 from icdgen.icd.rules.wording import quote
 
 
@@ -39,11 +50,11 @@ def _reference(side: object) -> str:
 
 
 @rule("DIF406", "message", "field", "enum", "member", severity="note")
-def respelled(pair: Pair, ctx: Context) -> Iterator[Found]:
+def respelled(pair: IdentifiedPair, ctx: Context) -> Iterator[Found]:
     old, new = pair.old, pair.new
     if (old.name, old.identifier) == (new.name, new.identifier):
         return
-    if getattr(pair, "is_of_another_node", False) or not ctx.generated.renamed(pair):
+    if is_of_another_node(pair) or not ctx.generated.renamed(pair):
         was, now = (f"{side.name} ({side.identifier})" if side.identifier else side.name for side in (old, new))
         text = f"{quote(new.name)} is spelled otherwise, its generated names are the same"
         yield Found(text, ("name", "identifier"), was, now)
@@ -70,16 +81,17 @@ def missing_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
     old, new = ({(m.kind, m.id): m for m in side.missing} for side in (pair.old, pair.new))
     for key in sorted(old.keys() | new.keys()):
         was, now = old.get(key), new.get(key)
-        if was != now:
-            what = f"{key[0]} {key[1]} {quote((now or was).name)}"
+        either = now or was
+        if was != now and either is not None:
+            what = f"{key[0]} {key[1]} {quote(either.name)}"
             verb = "is missing from the manual" if was is None else "is no longer missing" if now is None else ""
             text = f"{what} {verb or 'is missing for another reason'}"
-            places = tuple(_section(side, "missing") for side in (pair.old, pair.new))
+            places = _section(pair.old, "missing"), _section(pair.new, "missing")
             yield Found(text, (), was.why if was else "", now.why if now else "", places=places)
 
 
-def _section(side, key: str):
-    return side.source.at(key) if side is not None and side.source is not None else None
+def _section(side: Node, key: str) -> Place | None:
+    return side.source.at(key) if side.source is not None else None
 
 
 @rule("DIF411", "node", severity="note")
@@ -126,9 +138,9 @@ def unit_described_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
                 if was is None
                 else "is no longer declared" if now is None else "is described otherwise"
             )
-            said = tuple(" ".join(filter(None, u[1:])) if u else "" for u in (was, now))
-            places = tuple(_section(side, "units") for side in (pair.old, pair.new))
-            yield Found(f"the unit {quote(symbol)} {verb}", (), *said, places=places)
+            said = [" ".join(filter(None, u[1:])) if u else "" for u in (was, now)]
+            places = _section(pair.old, "units"), _section(pair.new, "units")
+            yield Found(f"the unit {quote(symbol)} {verb}", (), said[0], said[1], places=places)
 
 
 @rule("DIF415", "node", severity="note")

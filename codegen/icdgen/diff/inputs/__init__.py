@@ -10,6 +10,7 @@ from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError
 
 STDIN = "-"
+Input = Spec | list[Path] | str  # a git revision, paths, or `STDIN`
 
 
 def sides(arguments: list[str], usual: list[Path], unchecked: bool = False) -> tuple[Side, Side]:
@@ -23,29 +24,33 @@ def one_side(word: str, usual: list[Path]) -> Side:
     return _load(_one(Git(), word, usual), unchecked=False)
 
 
-def _resolve(arguments: list[str], usual: list[Path]) -> tuple[object, object]:
-    """Two of: paths, a git spec, ``-``."""
+def _resolve(arguments: list[str], usual: list[Path]) -> tuple[Input, Input]:
     git = Git()
     first = arguments[0] if arguments else ""
     span = None if not first or os.path.exists(first) else git.span(first)
     if span is not None:
         paths = git.inside(map(Path, arguments[1:])) if arguments[1:] else git.usual(usual)
-        return tuple(Spec(revision, paths, revision, top=git.top) for revision in span)
+        old, new = (Spec(revision, paths, revision, top=git.top) for revision in span)
+        return old, new
     if len(arguments) == 1:
-        old = _one(git, first, usual)
-        if isinstance(old, Spec):
-            return old, [git.outside(path) for path in old.paths]
+        one = _one(git, first, usual)
+        if isinstance(one, Spec):
+            return one, [git.outside(path) for path in one.paths]
         raise UserError("name what to compare with", "`icdgen diff OLD NEW`, or a git revision such as HEAD~1")
     if len(arguments) > 2:
         raise UserError(
             f"{len(arguments)} arguments are given, OLD and NEW are enough", "name folders for several files"
         )
-    old, new = arguments
-    paths = [[Path(word)] if os.path.exists(word) else None for word in (new, old)]
-    return tuple(_one(git, word, other or usual) for word, other in zip((old, new), paths, strict=True))
+    first, second = arguments
+    return _one(git, first, _beside(second, usual)), _one(git, second, _beside(first, usual))
 
 
-def _one(git: Git, word: str, usual: list[Path]) -> object:
+def _beside(other: str, usual: list[Path]) -> list[Path]:
+    """The ICDs that a revision is asked for: those of the other side, if these are paths."""
+    return [Path(other)] if os.path.exists(other) else usual
+
+
+def _one(git: Git, word: str, usual: list[Path]) -> Input:
     if word == STDIN:
         return word
     if os.path.exists(word):
@@ -57,14 +62,13 @@ def _one(git: Git, word: str, usual: list[Path]) -> object:
     raise UserError(f"there is no {word}, neither as a file nor as a git revision", help)
 
 
-def _load(what: object, unchecked: bool) -> Side:
+def _load(what: Input, unchecked: bool) -> Side:
     from icdgen.diff.inputs import shown, side
 
     if isinstance(what, Spec):
         return side.from_git(what, unchecked)
-    if what == STDIN:
+    if isinstance(what, str):
         return shown.from_stdin()
-    paths = what
-    if len(paths) == 1 and shown.is_shown(paths[0]):
-        return shown.from_file(paths[0])
-    return side.from_paths(paths, unchecked)
+    if len(what) == 1 and shown.is_shown(what[0]):
+        return shown.from_file(what[0])
+    return side.from_paths(what, unchecked)

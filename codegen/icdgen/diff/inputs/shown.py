@@ -6,6 +6,7 @@ import json
 import sys
 from fractions import Fraction
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.inputs.side import Side
@@ -14,6 +15,9 @@ from icdgen.icd import model, source
 from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.units import STANDARD, Unit
+
+if TYPE_CHECKING:
+    from jsonschema_rs import ValidationError
 
 _MOST = 64_000_000  # bytes
 
@@ -72,13 +76,14 @@ def _tree(data: bytes, name: str) -> Map:
         at = (getattr(error, "lineno", 1), getattr(error, "colno", 1))
         finding = Finding("ICD001", f"not JSON: {getattr(error, 'msg', error)}", Place(name, *at), _HELP)
         raise Findings([finding]) from None
-    return _placed(tree, Place(name))
+    placed: Map = _placed(tree, Place(name))
+    return placed
 
 
 _HELP = "this should be what `icdgen show --format json` prints"
 
 
-def _placed(value: object, place: Place) -> object:
+def _placed(value: Any, place: Place) -> Any:
     """The tree without places, for what only a JSON reader reads."""
     if isinstance(value, dict):
         made = Map(place)
@@ -108,15 +113,15 @@ def _check(tree: object, name: str) -> None:
         raise Findings([finding])
 
 
-def _path(error) -> str:
+def _path(error: ValidationError) -> str:
     path = ".".join(str(step) for step in error.instance_path)
     return f"`{path}`: " if path else ""
 
 
-def _where(tree: object, error, name: str) -> Place:
-    place = getattr(tree, "place", Place(name))
+def _where(tree: Any, error: ValidationError, name: str) -> Place:
+    place: Place = getattr(tree, "place", Place(name))
     for step in error.instance_path:
-        place = tree.items_at[step] if isinstance(tree, Seq) else tree.at(step)
+        place = tree.items_at[int(step)] if isinstance(tree, Seq) else tree.at(step)
         tree = tree[step]
     return place
 
@@ -191,7 +196,7 @@ class _Reader:
         get = item.get
         return model.Field(
             name=item["name"], at=item["offset"], bits=item["bits"], type=item["type"], identifier=get("identifier"),
-            enum=self.enums.get(get("enum")), unit=self.units.get(get("unit")), formula=get("formula", ""),
+            enum=self.enums.get(get("enum", "")), unit=self.units.get(get("unit", "")), formula=get("formula", ""),
             scale=_scale(item),
             const=get("const"), special=tuple(model.Special(s["value"], s["meaning"]) for s in get("special", ())),
             limits=model.Limits(**{key: Fraction(value) for key, value in item["limits"].items()})
@@ -218,7 +223,7 @@ def _erratum(item: Map) -> model.Erratum:
     )  # fmt: skip
 
 
-def _plain(value: object) -> object:
+def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
     return [_plain(item) for item in value] if isinstance(value, list) else value

@@ -81,7 +81,7 @@ def from_git(spec: Spec, unchecked: bool = False) -> Side:
         loaded = load(paths, check=not unchecked)
     side = _side(spec.label, loaded)
     side.folder, side.prefix = folder + os.sep, f"{spec.revision}:"
-    side.findings = [_told(side, finding) for finding in side.findings]
+    side.findings = [_as_a_user_knows_it(side, finding) for finding in side.findings]
     side.texts = {side.name(file): text for file, text in side.texts.items()}
     return side
 
@@ -90,7 +90,6 @@ def _side(label: str, loaded: Loaded) -> Side:
     return Side(label, loaded.icd, loaded.findings, loaded.texts)
 
 
-def _told(side: Side, finding: Finding) -> Finding:
-    words = (text.replace(side.folder, side.prefix) for text in (finding.message, finding.help))
-    message, help = words
-    return finding._replace(place=side.place(finding.place), message=message, help=help)
+def _as_a_user_knows_it(side: Side, finding: Finding) -> Finding:
+    message, help = (text.replace(side.folder, side.prefix) for text in (finding.message, finding.help))
+    return finding._replace(place=side.place(finding.place) or finding.place, message=message, help=help)

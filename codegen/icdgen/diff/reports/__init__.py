@@ -17,4 +17,5 @@ FORMATS = {
 
 def get(name: str) -> Callable[..., str]:
     """The function ``report`` of a format. Raises `KeyError` for a name that is not in `FORMATS`."""
-    return import_module(FORMATS[name]).report
+    report: Callable[..., str] = import_module(FORMATS[name]).report
+    return report

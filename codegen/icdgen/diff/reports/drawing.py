@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from icdgen.diff.change import MEANING, SOURCE, Change
+from icdgen.diff.change import Change
+from icdgen.diff.layers import MEANING, SOURCE
 from icdgen.diff.pairs import FieldPair, MessagePair, kind
 from icdgen.diff.wording import formula, span, type_of
 from icdgen.icd.model import Field
@@ -85,16 +86,16 @@ class Drawing(NamedTuple):
 def draw(pair: MessagePair, changes: list[Change]) -> Drawing:
     """The layouts of a message; one strip is empty where it is only in one ICD."""
     kinds = {id(one): _kind(one, changes) for one in pair.fields}
-    sides = tuple(message.length * 8 if message is not None else 0 for message in (pair.old, pair.new))
+    sides = tuple(message.length * 8 if message is not None else 0 for message in (pair.before, pair.after))
     rows = [Row() for _ in range((max(*sides, 1) + BITS - 1) // BITS)]
     for size, y in zip(sides, (OLD_Y, NEW_Y), strict=True):
         _frame(rows, size, y)
     for number, one in enumerate(sorted(pair.fields, key=lambda p: p.any.at)):
-        before = _boxes(rows, one.old, OLD_Y, kinds[id(one)], f"f{number}") if one.old is not None else {}
-        after = _boxes(rows, one.new, NEW_Y, kinds[id(one)], f"f{number}") if one.new is not None else {}
-        for row in before.keys() & after.keys():
-            if kinds[id(one)] != "same" or before[row].x != after[row].x:
-                rows[row].links.append(_link(before[row], after[row], kinds[id(one)], f"f{number}"))
+        before = _boxes(rows, one.old, OLD_Y, kinds[id(one)], f"f{number}") if one.before is not None else {}
+        after = _boxes(rows, one.new, NEW_Y, kinds[id(one)], f"f{number}") if one.after is not None else {}
+        for index in before.keys() & after.keys():
+            if kinds[id(one)] != "same" or before[index].x != after[index].x:
+                rows[index].links.append(_link(before[index], after[index], kinds[id(one)], f"f{number}"))
     for number, row in enumerate(rows):
         row.ticks = [Tick(LEFT + byte * 8 * CELL, str(number * BITS // 8 + byte)) for byte in range(BITS // 8)]
     title = f"Bit layouts of {pair.any.name}, old above new"
@@ -103,7 +104,7 @@ def draw(pair: MessagePair, changes: list[Change]) -> Drawing:
 
 def _kind(one: FieldPair, changes: list[Change]) -> str:
     if not one.both:
-        return "gone" if one.new is None else "come"
+        return "gone" if one.after is None else "come"
     if kind(one.old) != kind(one.new) or one.old.bits != one.new.bits:
         return "wire"
     if not one.same_bits:

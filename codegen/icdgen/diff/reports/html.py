@@ -7,11 +7,14 @@ from typing import NamedTuple
 
 from icdgen import __version__, shipped
 from icdgen.diff.accepted import about_stale
-from icdgen.diff.change import ABOUT, LAYERS, TEXT, Change
+from icdgen.diff.change import Change
+from icdgen.diff.compatibility import Direction
+from icdgen.diff.layers import ABOUT, LAYERS, TEXT
 from icdgen.diff.pairs import FieldPair, MessagePair
 from icdgen.diff.report import Report
 from icdgen.diff.reports.drawing import Drawing, Row, draw
 from icdgen.diff.reports.groups import Group, groups, notes
+from icdgen.diff.uses import Use
 from icdgen.reports.excerpt import printable
 
 _CODE = re.compile(r"`([^`]*)`")
@@ -88,7 +91,7 @@ def coded(text: str) -> list[tuple[str, bool]]:
     return [(part, bool(number % 2)) for number, part in enumerate(_CODE.split(text)) if part]
 
 
-def _frames(one) -> list[tuple]:
+def _frames(one: Direction) -> list[tuple[object, ...]]:
     rank = {"no": 0, "partly": 1}
     frames = sorted(one.frames, key=lambda frame: rank[frame.verdict])
     return [(f.verdict, f.node, f.message, f.id, coded("; ".join(f.reasons))) for f in frames]
@@ -118,7 +121,7 @@ def _line(change: Change) -> Line:
     return Line(change.code, change.layer, kind, coded(change.message), said, " → ".join(where))
 
 
-def _use(use) -> tuple:
+def _use(use: Use) -> tuple[object, ...]:
     codes = ", ".join(dict.fromkeys(change.code for change in use.changes))
     said = [coded(message) for message in dict.fromkeys(change.message for change in use.changes)]
     return f"{use.file}:{use.line}:{use.column}", use.text.strip(), use.name, codes, said

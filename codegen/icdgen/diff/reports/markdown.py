@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterator
 
 from icdgen.diff.accepted import about_stale
-from icdgen.diff.change import ABOUT, LAYERS, TEXT, Change
+from icdgen.diff.change import Change
 from icdgen.diff.compatibility import Direction
+from icdgen.diff.layers import ABOUT, LAYERS, TEXT
 from icdgen.diff.report import Report
 from icdgen.diff.reports.groups import groups, notes
 from icdgen.icd.rules.wording import count

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 from icdgen.diff import rule
 from icdgen.diff.change import Change
@@ -26,14 +27,14 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
     return json.dumps(document, indent=2) + "\n"
 
 
-def _rule(code: str) -> dict:
+def _rule(code: str) -> dict[str, Any]:
     one = RULES.get(code)
     if one is None:
         return {"id": code, "shortDescription": {"text": "an accepted change that does not happen"}}
     return sarif.described(code, one, rule.explain(code))
 
 
-def _beside(result: dict, change: Change) -> None:
+def _beside(result: dict[str, Any], change: Change) -> None:
     result["properties"] = {"layer": change.layer, "addition": change.addition, "sure": round(change.sure, 3)}
     if change.old is not None and change.new is not None:
         where = {"id": 1, "physicalLocation": sarif.physical(change.old), "message": {"text": "as it was"}}

@@ -6,8 +6,9 @@ import textwrap
 from collections.abc import Callable, Iterator
 
 from icdgen.diff.accepted import about_stale
-from icdgen.diff.change import ABOUT, LAYERS, TEXT, Change
+from icdgen.diff.change import Change
 from icdgen.diff.compatibility import NO, Direction
+from icdgen.diff.layers import ABOUT, LAYERS, TEXT
 from icdgen.diff.report import Report
 from icdgen.diff.reports.groups import groups, notes
 from icdgen.icd.rules.wording import count
@@ -116,14 +117,14 @@ def _uses(report: Report, paint: Paint) -> Iterator[str]:
         return
     yield ""
     yield paint("head", "uses in your sources") + (": none" if not report.uses else "")
-    told: set[str] = set()
+    shown_before: set[str] = set()
     for use in report.uses:
         codes = ", ".join(dict.fromkeys(change.code for change in use.changes))
         yield f"  {paint('place', printable(f'{use.file}:{use.line}:{use.column}'))}: {use.name} ({codes})"
         yield f"{_INDENT}{shown(use.text.strip())}"
         for message in dict.fromkeys(change.message for change in use.changes):
-            if message not in told:  # once is enough
-                told.add(message)
+            if message not in shown_before:  # once is enough
+                shown_before.add(message)
                 yield f"{_INDENT}  {shown(message)}"
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from random import Random
+from typing import Any
 
 from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, Message
@@ -11,7 +12,7 @@ from icdgen.protocol import can, i2c, uart
 from icdgen.protocol import logs as log_files
 from icdgen.protocol.facts import CAN, I2C, UART, Facts
 
-Requests = Iterator[tuple[str, dict]]
+Requests = Iterator[tuple[str, dict[str, Any]]]
 
 SETTINGS = {"reply_timeout": 100, "retries": 2, "poll_interval": 10, "poll_timeout": 50}
 OURS = 0x42
@@ -33,7 +34,7 @@ class Sample:
         self.wide: Message = max(known.telemetry.values(), key=lambda m: m.length)
         self.source = source
 
-    def ask(self, at: int, message: Message, **more: object) -> dict:
+    def ask(self, at: int, message: Message, **more: object) -> dict[str, Any]:
         return {
             "at": at,
             "telecommand": message.telecommand_id,
@@ -41,7 +42,7 @@ class Sample:
             **more,
         }
 
-    def request(self, at: int, message: Message) -> dict:
+    def request(self, at: int, message: Message) -> dict[str, Any]:
         return {"at": at, "telemetry": message.telemetry_id}
 
 
@@ -65,7 +66,7 @@ def scripts(known: Facts) -> Requests:
             yield f"CAN: {why}", _op(CAN, rows, address=OURS)
 
 
-def _op(bus: str, script: list[dict], **more: object) -> dict:
+def _op(bus: str, script: list[dict[str, Any]], **more: object) -> dict[str, Any]:
     return {"op": "client", "bus": bus, **more, "settings": SETTINGS, "script": script}
 
 
@@ -82,11 +83,11 @@ def _acknowledge(known: Facts, message: Message, code: int = 0) -> str:
     return _line(known, bytes(data))
 
 
-def _uart(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict]]]:
-    def ack(at: int, message: Message, code: int = 0) -> dict:
+def _uart(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+    def ack(at: int, message: Message, code: int = 0) -> dict[str, Any]:
         return {"at": at, "receive": _acknowledge(known, message, code)}
 
-    def reply(at: int, message: Message, more: int = 0) -> dict:
+    def reply(at: int, message: Message, more: int = 0) -> dict[str, Any]:
         data = s.source.randbytes(message.length + more)
         return {"at": at, "receive": _line(known, bytes([message.telemetry_id or 0]) + data)}
 
@@ -160,7 +161,7 @@ def _uart(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict]]]:
         ]  # fmt: skip
 
 
-def _checked(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict]]]:
+def _checked(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     code = known.errors.get("checksum")
     if code is None:
         return
@@ -170,7 +171,7 @@ def _checked(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict]]]:
     yield "always a wrong checksum", [s.ask(0, s.plain), *({"at": at, **bad} for at in range(1, 5))]
 
 
-def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dict]]]:
+def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     polled = known.polled
     assert polled
     checked_frames = bool(checked and known.checksum and I2C in known.checksum.telemetry_buses)
@@ -178,8 +179,8 @@ def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dic
     def frame(message: Message, data: bytes) -> str:
         return i2c.telecommand(known, message.telemetry_id or 0, data, checked_frames)[1:].hex()
 
-    def state(at: int, message: Message, processed: int, code: int = 0) -> dict:
-        raw: dict = {field.name: 0 for field in polled.message.fields}
+    def state(at: int, message: Message, processed: int, code: int = 0) -> dict[str, Any]:
+        raw: dict[str, Any] = {field.name: 0 for field in polled.message.fields}
         raw[polled.id], raw[polled.processed] = message.telecommand_id, processed
         raw[polled.error], raw[polled.parameter] = code, 7 if code else 0
         return {"at": at, "receive": frame(polled.message, codec.encode(known.node, polled.message, raw))}
@@ -263,11 +264,11 @@ def _i2c(known: Facts, s: Sample, checked: bool) -> Iterator[tuple[str, list[dic
     ]  # fmt: skip
 
 
-def _can(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict]]]:
+def _can(known: Facts, s: Sample) -> Iterator[tuple[str, list[dict[str, Any]]]]:
     assert known.can
     node = known.can.node_address
 
-    def come(at: int, kind: str, id: int | None, data: bytes = b"", source: int = node) -> list[dict]:
+    def come(at: int, kind: str, id: int | None, data: bytes = b"", source: int = node) -> list[dict[str, Any]]:
         packets = can.split(known, can.Message(kind, id or 0, source, OURS, data))
         return [{"at": at, "receive": {"id": p.id, "bytes": p.data.hex()}} for p in packets]
 

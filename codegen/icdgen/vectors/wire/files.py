@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from random import Random
+from typing import Any
 
 from icdgen.protocol import files as reference
 from icdgen.protocol.facts import Facts
 
-Requests = Iterator[tuple[str, dict]]
+Requests = Iterator[tuple[str, dict[str, Any]]]
 
 
 def requests(known: Facts, source: Random) -> Requests:
@@ -48,7 +49,7 @@ def requests(known: Facts, source: Random) -> Requests:
         yield "a map that is too short", {"op": "hole_map", "packets": 1, "bytes": "00"}
     if known.index:
         index = known.index
-        entries: list[dict] = []
+        entries: list[dict[str, Any]] = []
         for _ in range(3):
             sizes = {role: place.bytes for role, place in index.fields.items()}
             entries.append(

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from random import Random
+from typing import Any
 
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.i2c import telecommand
 
-Requests = Iterator[tuple[str, dict]]
+Requests = Iterator[tuple[str, dict[str, Any]]]
 
 
 def requests(known: Facts, source: Random) -> Requests:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from random import Random
+from typing import Any
 
 from icdgen.protocol import logs as log_files
 from icdgen.protocol.facts import Facts
 
-Requests = Iterator[tuple[str, dict]]
+Requests = Iterator[tuple[str, dict[str, Any]]]
 
 
 def masks(known: Facts) -> list[bytes]:

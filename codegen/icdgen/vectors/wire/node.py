@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from random import Random
+from typing import Any
 
 from icdgen import codec
 from icdgen.protocol import crc, files
@@ -31,7 +32,7 @@ class FileNode:
     def lost(self) -> bool:
         return self.source.random() < self.loss
 
-    def answer(self, request: Request) -> list[dict]:
+    def answer(self, request: Request) -> list[dict[str, Any]]:
         """The events that a client would give: packets, and at last the outcome."""
         if request.kind == TELECOMMAND:
             acknowledged = self.known.telecommands[request.id].acknowledge
@@ -42,11 +43,11 @@ class FileNode:
             return [*self._telecommand(request), {"event": "done", "bytes": ""}]
         return [{"event": "done", "bytes": self._telemetry(request.id).hex()}]
 
-    def _raw(self, step: Step, data: bytes) -> dict:
+    def _raw(self, step: Step, data: bytes) -> dict[str, Any]:
         raw = codec.decode(self.known.node, step.message, data)
         return {role: raw[name] for role, name in step.fields.items()}
 
-    def _telecommand(self, request: Request) -> list[dict]:
+    def _telecommand(self, request: Request) -> list[dict[str, Any]]:
         if request.id in self.holes:
             size = len(request.data)
             at = self.holes[request.id] * size
@@ -80,7 +81,7 @@ class FileNode:
         data = self.block[position * size : (position + 1) * size].ljust(size, b"\xee")
         return self.known.bytes_of(self.form.first_packet + position, self.form.counter_bytes) + data
 
-    def _burst(self, everything: bool) -> list[dict]:
+    def _burst(self, everything: bool) -> list[dict[str, Any]]:
         count = self.known.packets_of(len(self.block))
         first = self.form.first_packet
         lost = range(count) if everything else [n - first for n in files.missing(self.known, count, self.map)]
@@ -106,7 +107,7 @@ class FileNode:
         busy, self.polls = int(self.polls > 0), max(0, self.polls - 1)
         return self._frame(step, getattr(self, "_" + name.replace(".", "_"))(busy) if "." in name else {})
 
-    def _frame(self, step: Step, values: dict) -> bytes:
+    def _frame(self, step: Step, values: dict[str, Any]) -> bytes:
         raw = {f.name: bytes(f.bits // 8) if f.type == "bytes" else 0 for f in step.message.fields}
         raw.update({step.fields[role]: value for role, value in values.items()})
         return codec.encode(self.known.node, step.message, raw)
@@ -115,7 +116,7 @@ class FileNode:
         assert self.known.crc16
         return crc.compute(self.known.crc16, data)
 
-    def _list_information(self, busy: int) -> dict:
+    def _list_information(self, busy: int) -> dict[str, Any]:
         if busy:
             return {"busy": 1}
         if self.pointer >= len(self.files):
@@ -129,20 +130,20 @@ class FileNode:
             "checksum": self._sum(content),
         }
 
-    def _download_ready(self, busy: int) -> dict:
+    def _download_ready(self, busy: int) -> dict[str, Any]:
         return {} if busy else {"ready": 1, "checksum": self._sum(self.block), "length": len(self.block)}
 
-    def _upload_initiated(self, busy: int) -> dict:
+    def _upload_initiated(self, busy: int) -> dict[str, Any]:
         return {"busy": busy}
 
-    def _upload_checksum(self, busy: int) -> dict:
+    def _upload_checksum(self, busy: int) -> dict[str, Any]:
         return {"checksum": self._sum(b"".join(self.uploaded[n] for n in sorted(self.uploaded)))}
 
-    def _upload_finalized(self, busy: int) -> dict:
+    def _upload_finalized(self, busy: int) -> dict[str, Any]:
         return {"busy": busy}
 
-    def _erase_progress(self, busy: int) -> dict:
+    def _erase_progress(self, busy: int) -> dict[str, Any]:
         return {"busy": busy}
 
-    def _format_progress(self, busy: int) -> dict:
+    def _format_progress(self, busy: int) -> dict[str, Any]:
         return {"busy": busy}

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from icdgen import codec
 from icdgen.protocol.facts import Facts, Operation
 
-Requests = Iterator[tuple[str, dict]]
+Requests = Iterator[tuple[str, dict[str, Any]]]
 
 ACKNOWLEDGED = {"event": "done", "bytes": ""}
 LARGEST = 255  # id of a program
@@ -24,7 +25,7 @@ def scripts(known: Facts) -> Requests:
             yield "there is no such operation", _asked(name, 1, [{"at": 0}])
 
 
-def _asked(name: str, program: int, script: list[dict]) -> dict:
+def _asked(name: str, program: int, script: list[dict[str, Any]]) -> dict[str, Any]:
     return {"op": "file", "do": name, "program": program, "script": script}
 
 
@@ -48,7 +49,7 @@ class _Frames:
         self.known, self.form = known, form
         self.program = form.programs[0] if form.programs else 1
 
-    def row(self, at: int, done: bool, **values: int) -> dict:
+    def row(self, at: int, done: bool, **values: int) -> dict[str, Any]:
         step = self.form.progress
         bits = {field.name: field.bits for field in step.message.fields}
         told = {"busy": int(not done), "ready": int(done), "program": self.program, **values}
@@ -63,11 +64,11 @@ class _Frames:
 
 def _ends(known: Facts, name: str, form: Operation) -> Requests:
     frames, pause = _Frames(known, form), form.poll_interval
-    begin = [{"at": 0}, {"at": 1, "event": ACKNOWLEDGED}]
+    begin: list[dict[str, Any]] = [{"at": 0}, {"at": 1, "event": ACKNOWLEDGED}]
     found = {"size": 0x12345678, "checksum": 0x9ABCDEF0}
     program, end = frames.program, 1 + form.timeout
 
-    def case(why: str, *rows: dict) -> tuple[str, dict]:
+    def case(why: str, *rows: dict[str, Any]) -> tuple[str, dict[str, Any]]:
         return why, _asked(name, program, [*begin, *rows])
 
     yield case("done at once", frames.row(2, True, **found))

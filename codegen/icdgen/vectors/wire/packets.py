@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from random import Random
+from typing import Any
 
 from icdgen.protocol import can
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import CAN_KINDS
 
-Requests = Iterator[tuple[str, dict]]
+Requests = Iterator[tuple[str, dict[str, Any]]]
 
 
 def requests(known: Facts, source: Random) -> Requests:
@@ -43,7 +44,7 @@ def requests(known: Facts, source: Random) -> Requests:
         yield from _joins(known, source, other, third)
 
 
-def _row(packet: can.Packet, at: int = 0) -> dict:
+def _row(packet: can.Packet, at: int = 0) -> dict[str, Any]:
     return (
         {"at": at, "id": packet.id, "bytes": packet.data.hex()} if at else {"id": packet.id, "bytes": packet.data.hex()}
     )

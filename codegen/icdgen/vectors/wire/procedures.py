@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from random import Random
+from typing import Any
 
 from icdgen.protocol import transfer
 from icdgen.protocol.facts import UART, Facts
@@ -11,15 +12,17 @@ from icdgen.protocol.scripts import LONGEST, procedure_of
 from icdgen.vectors.wire.node import FileNode
 from icdgen.vectors.wire.operations import neighbours
 
-Requests = Iterator[tuple[str, dict]]
+Requests = Iterator[tuple[str, dict[str, Any]]]
 
 STEPS = 100_000  # more than any procedure takes
 
 
-def record(known: Facts, request: dict, node: FileNode, again: int = 8) -> tuple[list[dict], transfer.Procedure]:
+def record(
+    known: Facts, request: dict[str, Any], node: FileNode, again: int = 8
+) -> tuple[list[dict[str, Any]], transfer.Procedure]:
     """The script of a procedure against the node; a client would send what may be repeated again."""
     procedure, now = procedure_of(known, request), 0
-    script: list[dict] = [{"at": 0}]
+    script: list[dict[str, Any]] = [{"at": 0}]
     asked = procedure.next(now)
     while procedure.result is None and len(script) < STEPS:
         if asked is None:
@@ -75,7 +78,7 @@ def _node(known: Facts, bus: str, loss: float, why: str) -> FileNode:
     return node
 
 
-def _recorded(known: Facts, why: str, request: dict, loss: float, bus: str = UART) -> Requests:
+def _recorded(known: Facts, why: str, request: dict[str, Any], loss: float, bus: str = UART) -> Requests:
     script, _ = record(known, request, _node(known, bus, loss, why))
     yield f"{why}, {loss:.0%} lost", {"op": "file", **request, "script": script}
 

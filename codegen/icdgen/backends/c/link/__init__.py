@@ -113,7 +113,7 @@ class LinkTables(BusTables, LogTables, FileTables):
             (self.part("program_information", known.program_information, "program_information"), "program information"),
             (self.identification(), "identification"),
         ]
-        self.add("link", "icd_link_t", [row_of(value, text) for value, text in parts], self.section_notes("client"))
+        self.add("link", "icd_link_t", [row_of(value, text) for value, text in parts], self.other_notes())
         return self.tables
 
     def owners(self) -> str:

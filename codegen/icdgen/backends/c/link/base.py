@@ -35,6 +35,7 @@ class Tables:
         self.known = known
         self.tables: list[Table] = []
         self.why = {(a.section, a.key): a.why for a in known.assumptions}
+        self.told: set[str] = set()  # sections whose assumptions stand above a table
 
     def add(self, name: str, type: str, rows: Sequence[str], about: str = "") -> str:
         """Declares a table; the expression that leads to it."""
@@ -44,8 +45,14 @@ class Tables:
 
     def section_notes(self, section: str) -> str:
         """What is assumed in a section, and why."""
+        self.told.add(section)
         found = [f"{key}: {why}" for (where, key), why in self.why.items() if where == section]
         return " ".join(f"Assumed {plain(text)}" for text in found)
+
+    def other_notes(self) -> str:
+        """What is assumed in sections of which no table was told, but for messages."""
+        others = dict.fromkeys(where for where, _ in self.why if where not in self.told and " " not in where)
+        return " ".join(filter(None, map(self.section_notes, others)))
 
     def step(self, name: str, step: Step, braces: bool = True) -> str:
         """The initialiser of a step; its places and its fresh frame are tables of their own."""

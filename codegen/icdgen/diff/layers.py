@@ -1,0 +1,12 @@
+"""The layers that changes are sorted into."""
+
+from __future__ import annotations
+
+WIRE, MEANING, SOURCE, TEXT = "wire", "meaning", "source", "text"
+LAYERS = (WIRE, MEANING, SOURCE, TEXT)  # the worst first
+ABOUT = {
+    WIRE: "bytes mean something else",
+    MEANING: "same bytes, another sense",
+    SOURCE: "generated names and types change",
+    TEXT: "words only",
+}

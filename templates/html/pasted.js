@@ -1,0 +1,160 @@
+"use strict";
+/* What a person copied -> bytes or CAN packets: the same spellings as `icdgen decode` takes. */
+const icdgenPasted = ((frames) => {
+  const BEFORE = /^(?:\([\d.:\s-]+\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?/.source;
+  const ID = "(?<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})";
+  const PACKETS = [
+    new RegExp(`${BEFORE}${ID}\\s*\\[(?<size>\\d{1,2})\\]\\s*(?<data>(?:[0-9A-Fa-f]{2}(?:\\s+|$))*|remote request)(?:'.*)?$`),
+    new RegExp(`${BEFORE}${ID}#(?<data>(?:[0-9A-Fa-f]{2}\\.?)*|R[0-8]?)(?:\\s+[TR])?$`),
+    /^T(?<id>[0-9A-Fa-f]{8})(?<size>[0-8])(?<data>(?:[0-9A-Fa-f]{2})*)$/,
+    /^t(?<id>[0-9A-Fa-f]{3})(?<size>[0-8])(?<data>(?:[0-9A-Fa-f]{2})*)$/,
+    /^R(?<id>[0-9A-Fa-f]{8})[0-8](?<data>)$/,
+  ];
+  const STAMP = 2; // bytes of the time that an slcan adapter may append
+  const DUMPED =
+    /^(?:0x)?(?<at>[0-9A-Fa-f]{4,8})(?<mark>:?)(?<space>\s*)(?<data>(?:[0-9A-Fa-f]{2}){0,4}(?:\s{1,2}(?:[0-9A-Fa-f]{2}){1,4}(?=\s|$))*)(?<text>\s*\|.*\|?|\s{2,}.*)?$/;
+  const WORDS = 7; // digits of an address of hexdump and od
+  const COMMENT = /\/\*[^]*?\*\/|\/\/[^\n]*/g;
+  const LIST = /[[{(]([^[\]{}()]*)[\]})][)\]}\s;]*$/;
+  const NUMBER = /^(0[xX][0-9A-Fa-f]+|\d+)(?:[uU]8?)?$/;
+  const LITERAL = /^b(["'])((?:\\[^]|(?!\1)[^\\])*\\(?:\\[^]|(?!\1)[^\\]|[^])*)\1$/;
+  const STRING = /(["'])([0-9A-Fa-f\s]+)\1/g;
+  const ESCAPED = { n: 10, r: 13, t: 9, 0: 0, a: 7, b: 8, f: 12, v: 11, "\\": 92, "'": 39, '"': 34 };
+  const BASE64 = /^(?:[A-Za-z0-9+/_-]{4})*(?:[A-Za-z0-9+/_-]{2}==|[A-Za-z0-9+/_-]{3}=)?$/;
+  const LABEL = /^[ \t]*(?:\[[^\]\n]*\][ \t]*)?(?:\d+:\d\d[\d:.]*[ \t]+)?(?:(?:[rRtT][xX]|recv|sent|send)[ \t]*[:>]?|<+|>+|<-|->)[ \t]+/gm;
+
+  const digits = (text) => Uint8Array.from(text.match(/[0-9A-Fa-f]{2}/g) ?? [], (pair) => parseInt(pair, 16));
+  const linesOf = (text) => text.split(/\r\n|\r|\n/).map((line) => line.trim()).filter(Boolean);
+
+  /** What was pasted: `{ data, form }`, or `{ packets }`. Throws an Error for what is no bytes at all. */
+  function read(text) {
+    const packets = packetsOf(text);
+    if (packets) return { packets };
+    const dumped = dump(text);
+    if (dumped) return { data: dumped, form: "a dump with addresses" };
+    const literal = LITERAL.exec(text.trim());
+    const unescaped = literal && unescape(literal[2]);
+    if (unescaped) return { data: unescaped, form: "" };
+    try {
+      return { data: frames.parseHex(text), form: "" };
+    } catch (error) {
+      const other = ofCode(text.replace(COMMENT, " ")) ?? labelled(text) ?? base64(text);
+      if (!other) throw error;
+      return other;
+    }
+  }
+
+  function packetsOf(text) {
+    const lines = linesOf(text);
+    const found = lines.map(packet).filter(Boolean);
+    return found.length && found.length === lines.length ? found : null;
+  }
+
+  function packet(line) {
+    const groups = PACKETS.map((form) => form.exec(line)).find(Boolean)?.groups;
+    if (!groups) return null;
+    const data = /^r/i.test(groups.data) ? new Uint8Array() : digits(groups.data.replaceAll(".", ""));
+    const size = Number(groups.size ?? data.length);
+    const fits = data.length === size || (/^t/i.test(line) && data.length === size + STAMP);
+    if (groups.data !== "remote request" && !fits) return null;
+    return { id: parseInt(groups.id, 16), data: data.slice(0, size), extended: groups.id.length === 8 };
+  }
+
+  function dump(text) {
+    const lines = linesOf(text);
+    const rows = lines.map(row).filter(Boolean);
+    if (!rows.length || rows.length !== lines.length || !(rows.length > 1 || rows.every((one) => one.sure))) return null;
+    const counts = [16, 8].some((base) =>
+      rows.every((one, number) => {
+        if (base === 8 && /[89A-Fa-f]/.test(one.at)) return false;
+        const next = rows[number + 1];
+        return !next || parseInt(next.at, base) - parseInt(one.at, base) === one.data.length;
+      }),
+    );
+    return counts ? Uint8Array.from(rows.flatMap((one) => [...one.data])) : null;
+  }
+
+  function row(line) {
+    const groups = DUMPED.exec(line)?.groups;
+    if (!groups || (groups.data && !groups.space)) return null;
+    const words = groups.data.split(/\s+/).filter(Boolean);
+    const swapped = groups.at.length === WORDS && !groups.mark && words.every((word) => word.length === 4);
+    const data = words.flatMap((word) => (swapped ? [...digits(word)].reverse() : [...digits(word)]));
+    const sure = Boolean(groups.mark) || groups.at.length === WORDS || groups.space.length > 1;
+    return { at: groups.at, data, sure: sure || (groups.text ?? "").trim().startsWith("|") };
+  }
+
+  function unescape(text) {
+    const found = Array.from(text.matchAll(/\\(x[0-9A-Fa-f]{2}|[^])|([^\\])/gu), ([, escape, plain]) => {
+      if (plain) return plain.codePointAt(0);
+      return escape.length > 1 && escape[0] === "x" ? parseInt(escape.slice(1), 16) : (ESCAPED[escape] ?? 256);
+    });
+    return found.every((value) => value < 256) ? Uint8Array.from(found) : null;
+  }
+
+  /** An array or a string of a program: what stands in its brackets or quotes. */
+  function ofCode(text) {
+    const strings = [...text.matchAll(STRING)];
+    if (strings.length === 1) return hexadecimal(strings[0][2]);
+    const listed = LIST.exec(text.trim());
+    if (!listed) return null;
+    const words = listed[1].replace(/,\s*$/, "").split(",").map((word) => NUMBER.exec(word.trim())?.[1]);
+    if (!words.every(Boolean)) return null;
+    const values = words.map((word) => (/^0x/i.test(word) ? parseInt(word, 16) : parseInt(word, 10)));
+    if (values.some((value) => value > 255)) return null;
+    const decimal = values.some((value, number) => value > 9 && !/^0x/i.test(words[number]));
+    return { data: Uint8Array.from(values), form: decimal ? "decimal numbers" : "" };
+  }
+
+  function labelled(text) {
+    const bare = text.replace(LABEL, "");
+    return bare === text ? null : hexadecimal(bare);
+  }
+
+  function base64(text) {
+    const joined = text.replace(/\s+/g, "");
+    const word = joined.length < 8 || joined === joined.toLowerCase() || joined === joined.toUpperCase();
+    if (!BASE64.test(joined) || (word && !joined.endsWith("="))) return null;
+    const plain = /[-_]/.test(joined) ? joined.replaceAll("-", "+").replaceAll("_", "/") : joined;
+    return { data: Uint8Array.from(atob(plain), (character) => character.charCodeAt(0)), form: "base64" };
+  }
+
+  function hexadecimal(text) {
+    try {
+      return { data: frames.parseHex(text), form: "" };
+    } catch {
+      return null;
+    }
+  }
+
+  /** The data of the message that CAN packets carry, and remarks. Throws an Error where they are of another one. */
+  function joined(wire, length, packets) {
+    const { can } = wire;
+    if (!can) return { data: Uint8Array.from(packets.flatMap((one) => [...one.data])), remarks: ["data of CAN packets"] };
+    const part = (name, id) => Math.floor(id / 2 ** can[name][0]) % 2 ** can[name][1];
+    const mine = packets.filter((one) => one.extended && wire.ids.includes(part("channel", one.id)));
+    if (!mine.length) throw new Error(`CAN packets of id ${part("channel", packets[0].id)}, which is another message's`);
+    const id = part("channel", mine[0].id);
+    const remarks = [`data of CAN packets with id ${id}`];
+    const single = mine.find((one) => can.types.includes(part("type", one.id)));
+    if (single) return { data: single.data, remarks };
+    const [bytes, left] = can.extended ?? [0, 0];
+    const pieces = mine.filter((one) => can.extended_types.includes(part("type", one.id)) && one.data.length === left + 1);
+    if (!pieces.length) throw new Error(`CAN packets with id ${id} that carry no data`);
+    pieces.sort((a, b) => b.data[left] - a.data[left]);
+    const count = Math.ceil(length / bytes);
+    if (pieces.length < count) throw new Error(`${count - pieces.length} of ${count} packets are missing`);
+    return { data: Uint8Array.from(pieces.flatMap((one) => [...one.data.slice(0, bytes)])).slice(0, length), remarks };
+  }
+
+  /** Data of the message in whatever was pasted, and remarks. Throws an Error where it cannot be this message. */
+  function messageIn(wire, length, text) {
+    const { data, form, packets } = read(text);
+    if (packets) return joined(wire, length, packets);
+    const found = frames.unwrap(wire, length, data);
+    return { data: found.data, remarks: form ? [...found.remarks, `read as ${form}`] : found.remarks };
+  }
+
+  return { read, messageIn };
+})(typeof icdgenFrames === "undefined" ? require("./frames.js") : icdgenFrames);
+if (typeof module !== "undefined") module.exports = icdgenPasted;

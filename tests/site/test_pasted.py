@@ -1,0 +1,92 @@
+"""The page takes what the command line takes, and makes the same of it."""
+
+from __future__ import annotations
+
+import json
+import random
+import subprocess
+
+from icdgen.backends.html import wire
+from icdgen.protocol.facts import of
+from icdgen.recognize import read
+from icdgen.values.errors import BadHex
+from tests.conftest import ROOT
+from tests.recognize.ways import BARE, DATA, WHOLE
+from tests.site.conftest import program
+
+PASTED = ROOT / "templates" / "html" / "pasted.js"
+
+
+def node(script: str, argument: object) -> object:
+    """What a script gives that is called with the module and the argument."""
+    code = f"""
+        const pasted = require({json.dumps(str(PASTED))});
+        const argument = JSON.parse(require("node:fs").readFileSync(0, "utf8"));
+        const attempt = (call) => {{ try {{ return call(); }} catch (error) {{ return {{ error: error.message }}; }} }};
+        process.stdout.write(JSON.stringify(({script})(argument)));
+    """
+    done = subprocess.run([program("node"), "-e", code], input=json.dumps(argument), capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def test_every_way_to_paste_a_frame_is_read_as_on_the_command_line():
+    texts = [*BARE.values(), *WHOLE.values()]
+    source = random.Random(1)
+    for text in list(texts):  # and what a slip of the hand makes of them
+        for _ in range(30):
+            at = source.randrange(len(text))
+            texts.append(text[:at] + source.choice(["", " ", "x", "0", "=", "\n", "[", "#"]) + text[at + 1 :])
+
+    def expected(text: str) -> object:
+        try:
+            found = read(text)
+        except BadHex:
+            return None
+        return [list(found.data), [[p.id, list(p.data), p.extended] for p in found.packets], found.form]
+
+    found = node(
+        """(texts) => texts.map((text) => attempt(() => {
+            const { data, form, packets } = pasted.read(text);
+            return [[...(data ?? [])], (packets ?? []).map((p) => [p.id, [...p.data], p.extended]), form ?? ""];
+        })).map((one) => (one.error ? null : one))""",
+        texts,
+    )
+    assert [(t, f, expected(t)) for t, f in zip(texts, found, strict=True) if f != expected(t)] == []
+    assert sum(f is None for f in found) > 100
+
+
+def facts(icd, id: int) -> tuple[dict, int]:
+    owner = icd.node("cubeacp")
+    known = of(icd, owner)
+    message = known.telemetry[id]
+    section = {"crc8": owner.protocol["crc8"]}
+    return wire.page_facts(message, wire.Wire(known, section, [wire.Speaker(known, section)])), message.length
+
+
+def test_the_page_of_the_message_takes_every_way(shipped):
+    texts = [text for name, text in {**BARE, **WHOLE}.items() if name != "UART, after noise"]
+    found = node(
+        "([[wire, length], texts]) => texts.map((t) => attempt(() => [...pasted.messageIn(wire, length, t).data]))",
+        [facts(shipped, 146), texts],
+    )
+    assert [(t, f) for t, f in zip(texts, found, strict=True) if f != list(DATA)] == []
+
+
+def test_packets_of_a_long_message_are_joined_whatever_their_order(shipped):
+    known = of(shipped, shipped.node("cubeacp"))
+    id, message = next((i, m) for i, m in known.telemetry.items() if m.length > 21)
+    data = bytes(range(message.length))
+    pieces = [data[at : at + 7].ljust(7, b"\0") for at in range(0, len(data), 7)]
+    lines = [f"08{id:02X}0201#{piece.hex()}{len(pieces) - 1 - n:02x}" for n, piece in enumerate(pieces)]
+    found = node(
+        """([[wire, length], lines]) => [
+            [...pasted.messageIn(wire, length, lines.toReversed().join("\\n")).data],
+            attempt(() => pasted.messageIn(wire, length, lines.slice(1).join("\\n"))).error,
+            attempt(() => pasted.messageIn(wire, length, "04110201#")).error,
+            attempt(() => pasted.messageIn(wire, length, `04${wire.ids[0].toString(16)}0201#`)).error,
+        ]""",
+        [facts(shipped, id), lines],
+    )
+    assert found[0] == list(data) and "packets are missing" in found[1] and "another message's" in found[2]
+    assert "carry no data" in found[3]
