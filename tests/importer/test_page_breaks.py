@@ -11,7 +11,7 @@ from tests.importer.manuals.further import FURTHER
 from tests.importer.test_layouts import TITLES
 
 
-@pytest.mark.parametrize(("layout", "skip"), [(name, (60, 20, 34)[i % 3]) for i, name in enumerate(FURTHER)])
+@pytest.mark.parametrize(("layout", "skip"), [(name, (60, 20, 34, 60)[i % 4]) for i, name in enumerate(FURTHER)])
 def test_tables_over_page_breaks_come_back_whole(layout, skip, tmp_path):
     if FURTHER[layout].func is browser.draw and browser.program() is None:
         pytest.skip("Chromium is not at hand")

@@ -63,8 +63,11 @@ def shipped(*names: str, most: int | None = None, skip: int = 0) -> dict[str, di
         made[name] = tree
     known = {e["name"] for tree in made.values() for e in tree.get("enums", [])}
     for tree in made.values():
+        announced = tree.pop("formula_for", {})
         for message in tree["messages"]:
             for one in message.get("fields", []):
+                if "formula" in one and message["kind"] in announced:
+                    one.setdefault("formula_for", announced[message["kind"]])
                 if one.get("enum") not in (None, *known):
                     one["type"] = "uint"
                     del one["enum"]

@@ -23,8 +23,8 @@ class Columns(NamedTuple):
     lines: int
 
 
-def find(lines: list[Line], profile: Profile) -> Columns | None:
-    """The heading row that begins with the first of ``lines``; None if none does."""
+def find(lines: list[Line], profile: Profile, loose: bool = True) -> Columns | None:
+    """The heading row that begins with the first of ``lines``; None if none does. ``loose``: one without offsets is one, too."""
     best: Columns | None = None
     for count in range(1, min(MOST_LINES, len(lines)) + 1):
         block = lines[:count]
@@ -36,10 +36,10 @@ def find(lines: list[Line], profile: Profile) -> Columns | None:
             if header and (best is None or _known(header) > _known(best.header)):
                 spans = [(min(w.x0 for w in cell), max(w.x1 for w in cell)) for cell in cells]
                 best = Columns(header, spans, count)
-    if best is None and lines:
+    if best is None and lines and loose:
         for cells in filter(None, (_in_one_line(lines[0], profile), _clustered(lines[:1]))):
             header = headings.match([_text(cell) for cell in cells], profile, loose=True)
-            if header and header.kind == "fields":
+            if header and header.kind == "fields" and all(header.roles) and header.titles[0][:1].isupper():
                 return Columns(header, [(min(w.x0 for w in cell), max(w.x1 for w in cell)) for cell in cells], 1)
     return best
 

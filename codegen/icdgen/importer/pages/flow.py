@@ -300,7 +300,7 @@ class _Flow:
         return gap > 2.2 * line.size and not self.has_key(line, found)
 
     def begins_anew(self, rest: list[Line], found: Columns) -> bool:
-        again = columns.find(rest[:3], self.profile)
+        again = columns.find(rest[:3], self.profile, loose=False)
         return again is not None
 
     def has_key(self, line: Line, found: Columns) -> bool:
