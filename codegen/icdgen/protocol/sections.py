@@ -28,6 +28,7 @@ from icdgen.protocol.declared import (
 
 _BITS = ("lsb0", "msb0")
 _MSB0 = "whether bit 0 is the most significant one of a byte"
+CAN_WITH_DATA = ("telecommand", "reply")  # the other kinds have no data
 CAN_KINDS = ("telecommand", "acknowledge", "refusal", "request", "reply", "request_refusal")
 _POLL = "time between two polls of "
 

@@ -16,6 +16,7 @@ from icdgen_runtime.wire.uart import uart_encode
 from icdgen.backends.html.texts import count
 from icdgen.icd.model import Message
 from icdgen.protocol.facts import Can, Facts
+from icdgen.protocol.sections import CAN_WITH_DATA
 
 _SHOWN = 24  # data bytes that are written out
 
@@ -88,7 +89,7 @@ def _can_facts(form: Can) -> dict[str, object]:
     found: dict[str, object] = {role: [form.parts[role].shift, form.parts[role].bits] for role in ("type", "channel")}
     for name in ("types", "extended_types"):
         types = getattr(form, name)
-        found[name] = [types[kind] for kind in can.WITH_DATA if kind in types]
+        found[name] = [types[kind] for kind in CAN_WITH_DATA if kind in types]
     return found | ({"extended": [form.extended.data_bytes, form.extended.left_at]} if form.extended else {})
 
 
