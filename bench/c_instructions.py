@@ -74,7 +74,7 @@ CALL = """\
 def messages() -> dict[int, MessageDescription]:
     """The frames of the bench."""
     icd = load([BENCH.parent / "icd"], check=False).icd
-    of_id = {one.message.telemetry_id: one for one in describe(icd).node("cubeacp").messages}
+    of_id = {one.model.telemetry_id: one for one in describe(icd).node("cubeacp").messages}
     return {id: of_id[id] for id in LIMITS}
 
 
@@ -141,7 +141,7 @@ def main() -> int:
     print("| frame | decode | by hand | ratio | encode | by hand | ratio | Cortex-M4 -Os, bytes a field |")
     print("|---|---|---|---|---|---|---|---|")
     for id, message in found.items():
-        cells = [f"{id} {message.message.name}"]
+        cells = [f"{id} {message.model.name}"]
         for what, limit in zip(("decode", "encode"), LIMITS[id], strict=True):
             ours, theirs = counts[f"{what}_{id}"], counts[f"hand_{what}_{id}"]
             cells += [f"{ours:.0f}", f"{theirs:.0f}", f"{ours / theirs:.2f}"]

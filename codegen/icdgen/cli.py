@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import sys
 from importlib import import_module
 from keyword import iskeyword
@@ -16,10 +17,12 @@ from icdgen.reports.excerpt import shown
 # Name -> module in ``icdgen.commands``; the module has a click command of the same name.
 _COMMANDS = {
     "generate": "generate",
+    "init": "init",
     "check": "check",
     "fmt": "fmt",
     "rule": "rule",
     "show": "show",
+    "units": "units",
     "docs": "docs",
     "decode": "decode",
     "encode": "encode",
@@ -48,6 +51,7 @@ class _Commands(click.Group):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         if args and args[0] not in (*_COMMANDS, "--help", "-h", "--version"):
+            _refuse_mistyped(args[0])
             args = [_DEFAULT, *args]
         return super().parse_args(ctx, args)
 
@@ -63,6 +67,17 @@ class _Commands(click.Group):
             return super().invoke(ctx)
         except BrokenPipeError:  # click would say 1, which means findings
             ctx.exit(141)
+
+
+def _refuse_mistyped(word: str) -> None:
+    """A word that is no option, and no file or folder, was meant as a command, and not as an ICD."""
+    if not word.isidentifier() or os.path.lexists(word):
+        return
+    from difflib import get_close_matches
+
+    close = get_close_matches(word.lower(), _COMMANDS, 3)
+    meant = "did you mean " + " or ".join(f"`{name}`" for name in close) + "?" if close else ""
+    raise UserError(f"there is no command `{word}`, and no file of that name", meant or "`icdgen --help` lists them")
 
 
 @click.group(

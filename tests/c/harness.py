@@ -88,7 +88,7 @@ def targets(icd: Icd) -> list[Target]:
     for node in describe(icd).nodes:
         for message in node.messages:
             places, at = [], 0
-            for field in message.message.fields:
+            for field in message.model.fields:
                 places.append(at)
                 at += field.bits // 8 if field.type == "bytes" else 8
             found.append(Target(message, tuple(places), at))
@@ -107,7 +107,7 @@ def _row(target: Target) -> dict[str, object]:
     message = target.message
     collect, assign, fields = [], [], []
     for one, place in zip(message.fields, target.places, strict=True):
-        field, name = one.field, one.name
+        field, name = one.model, one.name
         fields.append({"at": field.at, "bits": field.bits, "type": _TYPES[field.type], "place": place})
         if field.type == "bytes":
             collect.append(f"memcpy(record + {place}, message.{name}, {field.bits // 8});")
@@ -124,7 +124,7 @@ def _row(target: Target) -> dict[str, object]:
         "stem": stem(message),
         "big_endian": str(message.node.byte_order == "big").lower(),
         "msb_first": str(message.node.bit_order == "msb0").lower(),
-        "length": message.message.length,
+        "length": message.model.length,
         "record": target.size,
         "misfit": message.is_narrow,
         "fields": fields,

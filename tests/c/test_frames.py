@@ -48,7 +48,7 @@ def test_all_messages_and_the_interpreter_agree_with_the_reference_codec(program
 def assert_agrees(program: Path, icd: Icd) -> None:
     """Zeros, ones, a code for each bit position, extremes of each field, some random frames: same values, same bytes."""
     targets = harness.targets(icd)
-    frames = [list(samples(t.message.node, t.message.message)) for t in targets]
+    frames = [list(samples(t.message.node, t.message.model)) for t in targets]
     data = b"".join(
         struct.pack("<HI", index, len(of_message)) + b"".join(of_message) for index, of_message in enumerate(frames)
     )
@@ -56,7 +56,7 @@ def assert_agrees(program: Path, icd: Icd) -> None:
     assert done.returncode == 0, (done.stdout[-1000:] + done.stderr)[-4000:]
     out, at = done.stdout, 0
     for target, of_message in zip(targets, frames, strict=True):
-        node, message = target.message.node, target.message.message
+        node, message = target.message.node, target.message.model
         for frame in of_message:
             raw = codec.decode(node, message, frame)
             expected = record(message, raw) + codec.encode(node, message, raw)

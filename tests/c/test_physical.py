@@ -57,10 +57,10 @@ def compare(icd: Icd, folder: Path, *options: str, wide: int = 4000) -> int:
     )  # fmt: skip
     alike = defaultdict(list)
     for number, one in enumerate(scaled):
-        alike[one.steps, one.field.bits, one.storage].append(number)
+        alike[one.steps, one.model.bits, one.storage].append(number)
     with subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         for numbers in alike.values():
-            field = scaled[numbers[0]].field
+            field = scaled[numbers[0]].model
             process.stdin.write(struct.pack(f"<H{len(numbers)}H", len(numbers), *numbers))
             for table in tables(field, wide):
                 process.stdin.write(table)
@@ -75,7 +75,7 @@ def row(field: FieldDescription) -> dict[str, object]:
         "type": f"{name}_t",
         "name": field.name,
         "storage": type_of(field),
-        "exact": str(_survives(field.field)).lower(),
+        "exact": str(_survives(field.model)).lower(),
         "getter": f"{name}_{field.physical_name}",
         "setter": f"{name}_set_{field.physical_name}",
         "get_whole": None,

@@ -75,7 +75,7 @@ def test_its_names_are_held_to_the_rules_where_it_is_generated(icdgen, tmp_path,
 
 def test_its_files_can_be_replaced(icdgen, tmp_path):
     (tmp_path / "own" / "lua").mkdir(parents=True)
-    (tmp_path / "own" / "lua" / "node.lua.j2").write_text("-- {{ node.node.title }}\n")
+    (tmp_path / "own" / "lua" / "node.lua.j2").write_text("-- {{ node.model.title }}\n")
     (tmp_path / "own" / "lua" / "registry.lua").write_text("-- ours\n")
     assert icdgen("--lang", "lua", "--out", "out", "--templates", "own", "demo.yaml").returncode == 0
     assert (tmp_path / "out" / "demo.lua").read_text() == "-- Demo\n"

@@ -42,7 +42,7 @@ class Place(NamedTuple):
 def source(icd: Icd, node_name: str = NODE) -> str:
     """The client's main file."""
     node, known = icd.node(node_name), facts.of(icd, icd.node(node_name))
-    rows = {one.message.name: one for one in describe(icd).node(node).spoken}
+    rows = {one.model.name: one for one in describe(icd).node(node).spoken}
 
     def of(messages, values) -> list[Row]:
         return [_row(icd, rows[message.name], values(message)) for message in messages]
@@ -73,7 +73,7 @@ def source(icd: Icd, node_name: str = NODE) -> str:
 def _start(icd: Icd, boot: Node) -> str:
     """The type of the telecommand that starts the application."""
     name = boot.protocol["program_start"]["message"]
-    return _type(next(one for one in describe(icd).node(boot).messages if one.message.name == name))
+    return _type(next(one for one in describe(icd).node(boot).messages if one.model.name == name))
 
 
 def build(folder: Path) -> list[str]:
@@ -107,7 +107,7 @@ def _numbered(field: Field, number: int, otherwise: int | bytes) -> int | bytes:
 
 
 def _row(icd: Icd, row: MessageDescription, raw: dict[str, int | bytes]) -> Row:
-    return Row(_type(row), f"&{list(codec.encode(row.node, row.message, raw))}")
+    return Row(_type(row), f"&{list(codec.encode(row.node, row.model, raw))}")
 
 
 def _type(row: MessageDescription) -> str:
@@ -115,7 +115,7 @@ def _type(row: MessageDescription) -> str:
 
 
 def _field(row: MessageDescription, name: str) -> str:
-    return next(one.name for one in row.fields if one.field.name == name)
+    return next(one.name for one in row.fields if one.model.name == name)
 
 
 if __name__ == "__main__":

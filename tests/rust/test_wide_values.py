@@ -23,10 +23,10 @@ def cases(icd: Icd) -> Iterator[str]:
     for node in describe(icd).nodes:
         for message in node.messages:
             for one in (field for field in message.fields if field.is_narrow):
-                field, length = one.field, message.message.length
-                zeros = codec.decode(node.node, message.message, bytes(length))
+                field, length = one.model, message.model.length
+                zeros = codec.decode(node.model, message.model, bytes(length))
                 ones = -1 if field.type == "int" else (1 << field.bits) - 1
-                frame = codec.encode(node.node, message.message, {**zeros, field.name: ones})
+                frame = codec.encode(node.model, message.model, {**zeros, field.name: ones})
                 # All ones fit a signed field: it is -1. The widest value has one bit less, and is cut to the same.
                 widest = "Coded::from_raw(!0)" if field.type == "enum" else f"{integer_type(one)}::MAX"
                 yield CASE.format(

@@ -259,7 +259,7 @@ def test_strict_refuses_what_no_enumeration_has():
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        ((), "it is not said where to listen"),
+        ((), "it is not said which node is meant"),
         (("--tcp", "0", "--node", "cubemag"), "does not say how messages of cubemag are framed"),
         (("--tcp", "0"), "it is not said which node is meant"),
         (("--tcp", "0", "--node", "cubeacp", "--fault", "rain=1"), "is no fault"),

@@ -47,7 +47,7 @@ def test_the_python_of_every_message_runs(shipped, tmp_path):
     for node in describe(shipped).nodes:
         for message in node.messages:
             text = next(one.text for one in usage.snippets(message) if one.key == "python")
-            parts += [f"buffer = bytes({message.message.length})", text]
+            parts += [f"buffer = bytes({message.model.length})", text]
     source = tmp_path / "usage.py"
     source.write_text("\n".join([*parts, "print(len(sent))"]), "utf-8")
     environment = {"PYTHONPATH": str(GENERATED / "python"), "PYTHONDONTWRITEBYTECODE": "1"}

@@ -41,7 +41,7 @@ _PORT = click.IntRange(0, 65535)
 def sim(
     name: str, pty: bool, tcp: int | None, udp: int | None, host: str, icds: tuple[Path, ...], **options: Any
 ) -> None:
-    """A device made from its ICD, on a pseudo-terminal, a TCP or a UDP port.
+    """A device made from its ICD, on a pseudo-terminal (if nothing else is said), a TCP or a UDP port.
 
     Prints where it listens, one line for each, and serves until it is interrupted or, with --orders, its input ends.
     """
@@ -50,7 +50,7 @@ def sim(
     ways: list[tuple[Any, ...]] = [("pty",)] if pty else []
     ways += [(way, host, port) for way, port in (("tcp", tcp), ("udp", udp)) if port is not None]
     if not ways:
-        raise UserError("it is not said where to listen", "--pty, --tcp PORT or --udp PORT")
+        ways = [("tcp", host, 0)] if sys.platform == "win32" else [("pty",)]
     if pty and sys.platform == "win32":
         raise UserError("there are no pseudo-terminals here", "use --tcp PORT")
     loss = options.pop("loss")

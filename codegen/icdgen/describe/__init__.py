@@ -46,7 +46,7 @@ class Description:
         """The description of a message, whoever speaks it."""
         key = message.node, message.name
         found = self._messages.get(key)
-        if found is None or found.message is not message:
+        if found is None or found.model is not message:
             found = self._messages[key] = MessageDescription(self, message, self.icd.node(message.node))
         return found
 
@@ -54,7 +54,7 @@ class Description:
         """The description of an enumeration, whoever uses it."""
         key = enum.node, enum.name
         found = self._enums.get(key)
-        if found is None or found.enum is not enum:
+        if found is None or found.model is not enum:
             found = self._enums[key] = EnumDescription(enum, self.icd.node(enum.node), self._enum_bits[key])
         return found
 

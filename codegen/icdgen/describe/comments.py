@@ -6,6 +6,7 @@ Text in backticks is code, and there is no other markup: text of the ICD comes a
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.describe.bounds import Bound, bounds
@@ -27,6 +28,7 @@ class Comment(NamedTuple):
         return self.head, *self.rest, *self.errata
 
 
+@lru_cache(maxsize=8192)
 def words(text: str) -> str:
     """Text of the ICD, for a paragraph: on one line, without backticks."""
     return " ".join(text.replace("`", "'").split())

@@ -26,10 +26,10 @@ def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
 
 
 class EnumDescription:
-    """An enumeration of ``node``; ``storage`` holds every value of it, named or not."""
+    """An enumeration (``model``) of ``node``; ``storage`` holds every value of it, named or not."""
 
     def __init__(self, enum: Enum, node: Node, bits: int) -> None:
-        self.enum, self.node = enum, node
+        self.model, self.node = enum, node
         self.storage = Storage(holding(bits))
         self.words = naming.words(enum.identifier or enum.name, node.vocabulary)
         self.name = naming.snake(self.words)
@@ -37,25 +37,25 @@ class EnumDescription:
     @cached_property
     def members(self) -> tuple[MemberDescription, ...]:
         """In the order of the manual."""
-        return tuple(MemberDescription(member, self.node.vocabulary) for member in self.enum.members)
+        return tuple(MemberDescription(member, self.node.vocabulary) for member in self.model.members)
 
     @cached_property
     def comment(self) -> Comment:
-        return enum_comment(self.enum)
+        return enum_comment(self.model)
 
     def member(self, value: int) -> MemberDescription | None:
         """The first member of a value, if one has it."""
-        return next((one for one in self.members if one.member.value == value), None)
+        return next((one for one in self.members if one.model.value == value), None)
 
 
 class MemberDescription:
-    """A value of an enumeration."""
+    """A value (``model``) of an enumeration."""
 
     def __init__(self, member: Member, vocabulary: tuple[str, ...]) -> None:
-        self.member = member
+        self.model = member
         self.words = naming.words(member.identifier or member.name, vocabulary)
         self.name = naming.snake(self.words)
 
     @cached_property
     def comment(self) -> Comment:
-        return member_comment(self.member)
+        return member_comment(self.model)

@@ -23,10 +23,10 @@ class Id(NamedTuple):
 
 
 class MessageDescription:
-    """A message that ``node`` declares."""
+    """A message (``model``) that ``node`` declares."""
 
     def __init__(self, description: Description, message: Message, node: Node) -> None:
-        self._description, self.message, self.node = description, message, node
+        self._description, self.model, self.node = description, message, node
         self.words = naming.words(message.identifier or message.name, node.vocabulary)
         self.name = naming.snake(self.words)
 
@@ -34,12 +34,12 @@ class MessageDescription:
     def fields(self) -> tuple[FieldDescription, ...]:
         """In the order of the ICD."""
         enum = self._description.enum
-        return tuple(FieldDescription(f, self, enum(f.enum) if f.enum else None) for f in self.message.fields)
+        return tuple(FieldDescription(f, self, enum(f.enum) if f.enum else None) for f in self.model.fields)
 
     @cached_property
     def ids(self) -> tuple[Id, ...]:
         """The id, or the set id and the get id."""
-        message = self.message
+        message = self.model
         found = (
             ("id", message.id, f"Id of the {message.kind}."),
             ("set_id", message.set_id, "Id of the telecommand that sets it."),
@@ -50,12 +50,12 @@ class MessageDescription:
     @property
     def telecommand_id_name(self) -> str:
         """Name of the id under which it is sent: ``id`` or ``set_id``."""
-        return "id" if self.message.id is not None else "set_id"
+        return "id" if self.model.id is not None else "set_id"
 
     @property
     def telemetry_id_name(self) -> str:
         """Name of the id under which it is requested: ``id`` or ``get_id``."""
-        return "id" if self.message.id is not None else "get_id"
+        return "id" if self.model.id is not None else "get_id"
 
     @property
     def is_narrow(self) -> bool:
@@ -64,10 +64,10 @@ class MessageDescription:
 
     @property
     def has_floats(self) -> bool:
-        return any(field.type == "float" for field in self.message.fields)
+        return any(field.type == "float" for field in self.model.fields)
 
     @cached_property
     def comment(self) -> Comment:
         bits = self._description.node(self.node).log_bits
-        telemetry_id = self.message.telemetry_id
-        return message_comment(self.message, None if telemetry_id is None else bits.get(telemetry_id))
+        telemetry_id = self.model.telemetry_id
+        return message_comment(self.model, None if telemetry_id is None else bits.get(telemetry_id))

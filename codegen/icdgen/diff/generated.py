@@ -294,7 +294,7 @@ def _types(cut: Icd) -> Types:
     def of(language: str, node: Node, message: Message, field: Field) -> str:
         if field.type == "enum" and field.enum is None:
             return f"u{field.bits}" if language == "rust" else "int"
-        one = next(one for one in description.message(message).fields if one.field is field)
+        one = next(one for one in description.message(message).fields if one.model is field)
         if language == "python":
             plain = {"uint": "int", "enum": "int"}.get(field.type, field.type)
             return camel(one.enum.words) if one.enum is not None else plain

@@ -118,40 +118,63 @@ class _Builder:
         if "\0" in self.text:
             place = _after(self.name, self.text[: self.text.index("\0")])
             return None, [Finding("ICD001", "the file holds a NUL character", place, "remove it")]
-        root: list[object] = []
-        stack: list[list[Any]] = []  # [container, pending key, place of pending key]
-        parser = event_parser(self.text)
-        known = self.scalars  # it stands for 'not seen yet' too
+        roots = Seq(Place(self.name))
+        container: Any = roots  # what is being filled
+        key: str | None = None  # of a mapping, whose value comes next
+        key_at: Any = None
+        stack: list[tuple[Any, str | None, Any]] = []  # those around it
+        name, known = self.name, self.scalars  # the latter stands for 'not seen yet' too
+        next_event = event_parser(self.text).get_event
         try:
-            while True:
-                event = parser.get_event()
+            while True:  # once an event, by the ten thousand: nothing is called that can be said here
+                event = next_event()
                 kind = type(event)
+                if kind is events.MappingEndEvent or kind is events.SequenceEndEvent:
+                    container, key, key_at = stack.pop()
+                    continue
+                start, end = event.start_mark, event.end_mark
+                line, column = start.line, start.column
+                length = end.column - column if end.line == line else 1
+                place = _new(Place, (name, line + 1, column + 1, length if length > 0 else 1))
+                value: Any
                 if kind is events.ScalarEvent:
                     plain = not event.style and event.anchor is None and event.tag is None
                     value = known.get(event.value, known) if plain else known
                     if value is known:
                         value = self.scalar(event)
-                    self.put(stack, root, value, event)
                 elif kind is events.MappingStartEvent or kind is events.SequenceStartEvent:
                     if event.anchor is not None:
                         self.refuse_alias(event)
                     self.check_tag(event)
-                    container = (Map if kind is events.MappingStartEvent else Seq)(self.place(event))
-                    self.put(stack, root, container, event)
-                    if len(stack) >= MAX_DEPTH:
-                        self.add("ICD001", f"nested more than {MAX_DEPTH} deep", event, "an ICD needs five levels")
-                        return None, self.findings
-                    stack.append([container, None, None])
-                elif kind is events.MappingEndEvent or kind is events.SequenceEndEvent:
-                    stack.pop()
+                    value = (Map if kind is events.MappingStartEvent else Seq)(place)
                 elif kind is events.AliasEvent:
                     self.refuse_alias(event)
                     return None, self.findings
-                elif kind is events.DocumentStartEvent and root:
+                elif kind is events.DocumentStartEvent and roots:
                     self.add("ICD001", "a second document begins here", event, "one ICD is one document: remove `---`")
                     return None, self.findings
                 elif kind is events.StreamEndEvent:
                     break
+                else:
+                    continue
+                if type(container) is Seq:
+                    container.append(value)
+                    container.items_at.append(place)
+                elif key is None:
+                    key, key_at = value if type(value) is str else self.key(value, event), place
+                else:
+                    if key in container:
+                        self.refuse_twin(key, key_at, container.keys_at[key])
+                    container[key] = value
+                    container.keys_at[key] = key_at
+                    container.values_at[key] = place
+                    key = None
+                if kind is not events.ScalarEvent:
+                    if len(stack) >= MAX_DEPTH:
+                        self.add("ICD001", f"nested more than {MAX_DEPTH} deep", event, "an ICD needs five levels")
+                        return None, self.findings
+                    stack.append((container, key, key_at))
+                    container, key = value, None
         except yaml.YAMLError as error:
             mark = getattr(error, "problem_mark", None)
             place = Place(self.name, mark.line + 1, mark.column + 1) if mark else self.unprintable()
@@ -159,35 +182,17 @@ class _Builder:
             help = "check indentation, quotes and brackets just before this place"
             self.findings.append(Finding("ICD001", f"not YAML: {problem}", place, help))
             return None, self.findings
-        return (root[0] if root else None), self.findings
+        return (roots[0] if roots else None), self.findings
 
-    def put(self, stack: list[list[Any]], root: list[object], value: object, event: Event) -> None:
-        if not stack:
-            root.append(value)
-            return
-        top = stack[-1]
-        container = top[0]
-        if type(container) is Seq:
-            container.append(value)
-            container.items_at.append(self.place(event))
-        elif top[2] is None:  # a key
-            if not isinstance(value, str):
-                if isinstance(value, (Map, Seq)):
-                    self.add("ICD001", "a key must be a word, not a mapping or a list", event, "give the key a name")
-                value = str(value)
-            top[1], top[2] = value, self.place(event)
-        else:
-            key = top[1]
-            if key in container:
-                first = container.keys_at[key]
-                self.findings.append(
-                    Finding("ICD002", f"the key `{key}` stands twice in this mapping, first in line {first.line}",
-                            top[2], "remove one of them")
-                )  # fmt: skip
-            container[key] = value
-            container.keys_at[key] = top[2]
-            container.values_at[key] = self.place(event)
-            top[2] = None
+    def key(self, value: object, event: Event) -> str:
+        """A key that is not written as a word."""
+        if isinstance(value, (Map, Seq)):
+            self.add("ICD001", "a key must be a word, not a mapping or a list", event, "give the key a name")
+        return str(value)
+
+    def refuse_twin(self, key: str, place: Place, first: Place) -> None:
+        message = f"the key `{key}` stands twice in this mapping, first in line {first.line}"
+        self.findings.append(Finding("ICD002", message, place, "remove one of them"))
 
     def scalar(self, event: Event) -> object:
         text = event.value

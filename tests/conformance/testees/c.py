@@ -112,7 +112,7 @@ def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
     nodes = [node.name for node in icd.nodes]
     yield PurePosixPath("testee_nodes.c"), render("nodes.c.j2", origin=origin(), nodes=nodes)
     for node in describe(icd).nodes:
-        yield PurePosixPath(f"nodes/{node.name}.c"), render("node.c.j2", origin=origin(node.node), **_Rows(node).all())
+        yield PurePosixPath(f"nodes/{node.name}.c"), render("node.c.j2", origin=origin(node.model), **_Rows(node).all())
 
 
 class _Rows:
@@ -128,7 +128,7 @@ class _Rows:
             "telecommand": self.dispatcher("telecommand", [(m, m.telecommand_id_name) for m in node.telecommands]),
             "telemetry": self.dispatcher("telemetry", [(m, m.telemetry_id_name) for m in node.telemetry]),
         }
-        upper, one = node.name.upper(), node.node
+        upper, one = node.name.upper(), node.model
         return {
             "node": node.name,
             "link": node.is_linked,
@@ -144,18 +144,18 @@ class _Rows:
 
     def dispatcher(self, direction: str, messages: list[tuple[MessageDescription, str]]) -> Dispatcher:
         routes = [
-            Route(names.constant(one, id), str(one.message.kind == CONFIGURATION).lower(), names.stem(one))
+            Route(names.constant(one, id), str(one.model.kind == CONFIGURATION).lower(), names.stem(one))
             for one, id in messages
         ]
         return Dispatcher(f"{self.node.name}_{direction}", routes)
 
     def enum(self, enum: EnumDescription) -> EnumRow:
-        return EnumRow(names.stem(enum), literal(enum.enum.name), f"UINT{enum.storage.bits}_MAX")
+        return EnumRow(names.stem(enum), literal(enum.model.name), f"UINT{enum.storage.bits}_MAX")
 
     def message(self, message: MessageDescription) -> MessageRow:
         return MessageRow(
             stem=names.stem(message),
-            text=literal(message.message.name),
+            text=literal(message.model.name),
             length=names.constant(message, "length"),
             ids=[names.constant(message, id.name) for id in message.ids],
             misfit=message.is_narrow,
@@ -164,7 +164,7 @@ class _Rows:
         )
 
     def field(self, one: FieldDescription) -> FieldRow:
-        field, pair = one.field, accessors(one) if one.steps else None
+        field, pair = one.model, accessors(one) if one.steps else None
         macros = [(constant.key, names.constant(one.message, constant.name)) for constant in one.constants]
         return FieldRow(
             text=literal(field.name),

@@ -74,7 +74,7 @@ class NodeEntry:
         self.routes = [route for message in node.spoken for route in self._routes(message)]
         self.enums = [
             EnumEntry(
-                string(enum.enum.name),
+                string(enum.model.name),
                 f"{crate}::{node.name}::enums::{names.type_name(enum)}",
                 f"u{enum.storage.bits}",
             )
@@ -83,8 +83,8 @@ class NodeEntry:
         has = {"telecommand": bool(node.telecommands), "telemetry": bool(node.telemetry)}
         self.sums = [Dispatcher(way, way.capitalize(), f"u{id_bits}") for way, there in has.items() if there]
         self.telecommand, self.telemetry = (f"Some({way})" if there else "None" for way, there in has.items())
-        self.node_type = self._constant("NODE_TYPE", node.node.node_type)
-        self.interface_version = self._constant("INTERFACE_VERSION", node.node.interface_version)
+        self.node_type = self._constant("NODE_TYPE", node.model.node_type)
+        self.interface_version = self._constant("INTERFACE_VERSION", node.model.interface_version)
         self.messages = [self._message(message) for message in node.messages]
 
     def _constant(self, name: str, value: int | None) -> str:
@@ -95,7 +95,7 @@ class NodeEntry:
 
     def _routes(self, message: MessageDescription) -> Iterator[Route]:
         path = self._path(message)
-        ways = {"id": message.message.kind.capitalize(), "set_id": "Set", "get_id": "Get"}
+        ways = {"id": message.model.kind.capitalize(), "set_id": "Set", "get_id": "Get"}
         for id in message.ids:
             yield Route(ways[id.name], f"{path}::{id.name.upper()}", path)
 
@@ -110,12 +110,12 @@ def _field(field: FieldDescription) -> FieldEntry:
     if field.steps is not None:
         scale = f"Some(Scale {{ get: Self::{field.physical_name}, set: Self::set_{field.physical_name} }})"
     names = [(one.key, f"Self::{one.name.upper()}") for one in field.constants if one.key != "const"]
-    if field.field.special:
+    if field.model.special:
         special = f"|| vec![{', '.join(f'i128::from({name})' for key, name in names if key == 'special')}]"
     if field.bounds:
         values = ", ".join(f'("{key}", {name} as f64)' for key, name in names if key != "special")
         limits = f"|| vec![{values}]"
-    return FieldEntry(string(field.field.name), field.name, scale, special, limits)
+    return FieldEntry(string(field.model.name), field.name, scale, special, limits)
 
 
 class RustTesteeBackend:

@@ -75,7 +75,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "includes": ["../icdgen.h", *enums],
         "name": name,
         "upper": name.upper(),
-        "length": message.message.length,
+        "length": message.model.length,
         "ids": constants.ids(message),
         "constants": constants.constants(message),
         "members": members.declarations(message),
@@ -110,9 +110,9 @@ def _facts(icd: Icd, node: Node) -> Facts:
 def _link(node: NodeDescription, known: Facts) -> dict[str, object]:
     from icdgen.backends.c.link import LinkTables, aliases, sizes
 
-    title = words(node.node.title)
+    title = words(node.model.title)
     return {
-        "origin": origin(node.node),
+        "origin": origin(node.model),
         "node": node.name,
         "guard": _guard(node.name, "link"),
         "about": comment(["@file", f"{title}: how its messages travel."]),
@@ -125,16 +125,16 @@ def _link(node: NodeDescription, known: Facts) -> dict[str, object]:
 
 def _enums(node: NodeDescription) -> dict[str, object]:
     return {
-        "origin": origin(node.node),
+        "origin": origin(node.model),
         "guard": _guard(node.name, "enums"),
-        "title": prose(words(node.node.title)),
+        "title": prose(words(node.model.title)),
         "enums": [_enum(enum) for enum in node.enums],
     }
 
 
 def _enum(enum: EnumDescription) -> dict[str, object]:
     bits = enum.storage.bits
-    macros = any(one.member.value > _MAX_ENUMERATOR for one in enum.members)
+    macros = any(one.model.value > _MAX_ENUMERATOR for one in enum.members)
     literals = "UINT64_C({})" if bits == 64 else "{}u" if macros else "{}"
     return {
         "name": names.stem(enum),
@@ -144,9 +144,9 @@ def _enum(enum: EnumDescription) -> dict[str, object]:
         "members": [
             {
                 "name": names.enumerator(enum, one),
-                "value": literals.format(one.member.value),
+                "value": literals.format(one.model.value),
                 "comment": described(one.comment, "" if macros else STEP),
-                "text": literal(one.member.name),
+                "text": literal(one.model.name),
             }
             for one in enum.members
         ],
@@ -154,18 +154,18 @@ def _enum(enum: EnumDescription) -> dict[str, object]:
 
 
 def _node(node: NodeDescription) -> dict[str, object]:
-    headers = [f"{name}.h" for name in node.node.includes]
+    headers = [f"{name}.h" for name in node.model.includes]
     headers += [f"{node.name}/enums.h"] if node.enums else []
     headers += [f"{node.name}/{message.name}.h" for message in node.messages]
     headers += [f"{node.name}/link.h"] if node.is_linked else []
     return {
-        "origin": origin(node.node),
+        "origin": origin(node.model),
         "guard": _guard(node.name),
-        "about": comment(["@file", f"{words(node.node.title)}: all messages.", sentence(node.node.summary)]),
+        "about": comment(["@file", f"{words(node.model.title)}: all messages.", sentence(node.model.summary)]),
         "includes": ["icdgen.h", *headers],
-        "title": prose(words(node.node.title)),
+        "title": prose(words(node.model.title)),
         "upper": node.name.upper(),
-        "digest": node.node.digest[:16],
-        "constants": constants.of_node(node.node),
+        "digest": node.model.digest[:16],
+        "constants": constants.of_node(node.model),
         "dispatchers": dispatchers(node),
     }

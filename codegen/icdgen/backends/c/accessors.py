@@ -33,12 +33,12 @@ def accessors(message: MessageDescription) -> list[Accessor]:
 def _double(field: FieldDescription) -> Accessor:
     assert field.steps is not None
     scaled = physical.scaled(field)
-    what = physical_name(field.field)
+    what = physical_name(field.model)
     function, *arguments = scaled.setter
     return _accessor(
         field,
         (field.physical_name, "double"),
-        (physical_comment(field.field, field.steps), what),
+        (physical_comment(field.model, field.steps), what),
         scaled.getter,
         call(f"return {function}", (f"&message->{field.name}", *arguments)),
     )
@@ -52,11 +52,11 @@ def whole_accessors(message: MessageDescription) -> list[Accessor]:
 
 def whole_name(field: FieldDescription, whole: physical.Whole) -> str:
     """``estimated_roll_angle_mdeg``"""
-    return f"{field.name}_{part_of_unit(field.field, whole.prefix)[0]}"
+    return f"{field.name}_{part_of_unit(field.model, whole.prefix)[0]}"
 
 
 def _whole(field: FieldDescription, whole: physical.Whole) -> Accessor:
-    what = f"{words(field.field.name)} in {words(part_of_unit(field.field, whole.prefix)[1])}"
+    what = f"{words(field.model.name)} in {words(part_of_unit(field.model, whole.prefix)[1])}"
     tests = [f"value < {whole.least}"] if whole.least is not None else []
     tests += [f"value > {whole.most}"] if whole.most is not None else []
     return _accessor(

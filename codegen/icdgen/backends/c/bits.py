@@ -15,7 +15,7 @@ BITS = "{bits}"  # stands for the bits of the field in the expressions made here
 
 def is_word(field: FieldDescription) -> bool:
     """Whether the field is a byte, or a word of 2, 4 or 8 whole bytes that is loaded and stored as one."""
-    one = field.field
+    one = field.model
     return one.type != "bytes" and one.at % 8 == 0 and one.bits in (8, 16, 32, 64)
 
 
@@ -39,11 +39,11 @@ class Read(NamedTuple):
 
 def read(field: FieldDescription) -> Read:
     """The raw value of an integer, enum or bool field (the bits of a float) over ``buffer``."""
-    bits = field.field.bits
+    bits = field.model.bits
     if is_word(field):
         return Read(32, (_load(field),), f"icdgen_i{bits}({BITS})" if field.storage.signed else BITS)
     pieces = field.pieces
-    if field.field.type == "bool":
+    if field.model.type == "bool":
         return Read(32, (f"{_byte(pieces[0])} & {mask(pieces[0].mask, 8)}",), f"({BITS}) != 0u")
     wide = 64 if bits > 32 else 32
     if len(pieces) == 1:
@@ -58,13 +58,13 @@ def _from_bits(field: FieldDescription, wide: int, joined: bool) -> str:
         return cast(BITS, storage.bits) if joined and storage.bits != wide else BITS
     if not field.is_narrow:
         return f"icdgen_i{storage.bits}({cast(BITS, storage.bits) if storage.bits != wide else BITS})"
-    sign = mask(1 << (field.field.bits - 1), 64 if wide == 64 else storage.bits)
+    sign = mask(1 << (field.model.bits - 1), 64 if wide == 64 else storage.bits)
     extended = f"icdgen_extend{wide}({BITS}, {sign})"
     return extended if storage.bits == wide else cast(extended, storage.bits, True)
 
 
 def _load(field: FieldDescription) -> str:
-    byte, bits = field.field.at // 8, field.field.bits
+    byte, bits = field.model.at // 8, field.model.bits
     return f"buffer[{byte}]" if bits == 8 else f"icdgen_load_u{bits}{order(field.message.node)}(&buffer[{byte}])"
 
 
@@ -92,7 +92,7 @@ def put(field: FieldDescription, piece: Piece) -> str:
         value = f"{cast(value, storage.bits) if storage.signed else value} >> {piece.at}"
     if storage.bits > 8 or storage.signed:
         value = cast(value, 8)
-    top = piece.at + piece.bits == field.field.bits and not storage.signed
+    top = piece.at + piece.bits == field.model.bits and not storage.signed
     if not top and piece.shift + piece.bits < 8:
         value = f"{grouped(value)} & 0x{(1 << piece.bits) - 1:02X}"
     return f"{grouped(value)} << {piece.shift}" if piece.shift else value
@@ -100,7 +100,7 @@ def put(field: FieldDescription, piece: Piece) -> str:
 
 def store(field: FieldDescription) -> str:
     """The statement that stores a field for which `is_word` holds."""
-    byte, bits, value = field.field.at // 8, field.field.bits, _raw(field)
+    byte, bits, value = field.model.at // 8, field.model.bits, _raw(field)
     if field.storage.signed or field.storage.bits > bits:
         value = cast(value, bits)
     if bits == 8:
@@ -111,12 +111,12 @@ def store(field: FieldDescription) -> str:
 def _raw(field: FieldDescription) -> str:
     """The raw value, or the bits of a float."""
     member = f"message->{field.name}"
-    return f"icdgen_bits_f{field.field.bits}(&{member})" if field.field.type == "float" else member
+    return f"icdgen_bits_f{field.model.bits}(&{member})" if field.model.type == "float" else member
 
 
 def excess(field: FieldDescription) -> str:
     """An expression that is 0 if and only if the raw value of a narrow field fits."""
-    storage, one = field.storage, field.field
+    storage, one = field.storage, field.model
     wide = 64 if storage.bits == 64 else 32
     if not storage.signed:
         beyond = ((1 << storage.bits) - 1) ^ one.raw_max

@@ -32,7 +32,7 @@ def declared_names(description: Description) -> Iterator[Identifier]:
 
 
 def _node(node: NodeDescription) -> Iterator[Identifier]:
-    owner, source = f"node `{node.name}`", node.node.source
+    owner, source = f"node `{node.name}`", node.model.source
     yield Identifier(FILES, f"{node.name}.h", owner, source)
     for end in ("ICD_DIGEST", "NODE_TYPE", "INTERFACE_VERSION", "H"):
         yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source)
@@ -42,7 +42,7 @@ def _node(node: NodeDescription) -> Iterator[Identifier]:
     for kind, messages in (("telemetry", node.telemetry), ("telecommand", node.telecommands)):
         for one in messages:
             scope = f"members of {node.name}_{kind}_t"
-            yield Identifier(scope, one.name, f"message `{one.message.name}`", one.message.source)
+            yield Identifier(scope, one.name, f"message `{one.model.name}`", one.model.source)
     if node.enums:
         yield Identifier(FILES, f"{node.name}/enums.h", "the enumerations", None)
         yield Identifier(FILE, f"{node.name.upper()}_ENUMS_H", "the enumerations", None)
@@ -51,15 +51,15 @@ def _node(node: NodeDescription) -> Iterator[Identifier]:
 
 
 def _enum(enum: EnumDescription) -> Iterator[Identifier]:
-    owner = f"enumeration `{enum.enum.name}`"
+    owner = f"enumeration `{enum.model.name}`"
     for end in ("t", "name"):
-        yield Identifier(FILE, f"{names.stem(enum)}_{end}", owner, enum.enum.source)
+        yield Identifier(FILE, f"{names.stem(enum)}_{end}", owner, enum.model.source)
     for one in enum.members:
-        yield Identifier(FILE, names.enumerator(enum, one), f"`{one.member.name}` of {owner}", one.member.source)
+        yield Identifier(FILE, names.enumerator(enum, one), f"`{one.model.name}` of {owner}", one.model.source)
 
 
 def _link(node: NodeDescription) -> Iterator[Identifier]:
-    owner, source = f"the link of node `{node.name}`", node.node.source
+    owner, source = f"the link of node `{node.name}`", node.model.source
     yield Identifier(FILES, f"{node.name}/link.h", owner, source)
     yield Identifier(FILE, f"{node.name}_link", owner, source)
     for end in (*_SIZES, "NODE", "LINK_H"):
@@ -67,9 +67,9 @@ def _link(node: NodeDescription) -> Iterator[Identifier]:
 
 
 def _message(message: MessageDescription, linked: bool) -> Iterator[Identifier]:
-    owner, source = f"message `{message.message.name}`", message.message.source
+    owner, source = f"message `{message.model.name}`", message.model.source
     yield Identifier(FILES, f"{message.node.name}/{message.name}.h", owner, source)
-    telemetry = ("telemetry",) if linked and message.message.telemetry_id is not None else ()
+    telemetry = ("telemetry",) if linked and message.model.telemetry_id is not None else ()
     for end in ("h", "length", *(id.name for id in message.ids), *telemetry):
         yield Identifier(FILE, names.constant(message, end), owner, source)
     for end in ("t", "init", "decode", "encode", *(("misfit",) if message.is_narrow else ())):
@@ -80,7 +80,7 @@ def _message(message: MessageDescription, linked: bool) -> Iterator[Identifier]:
 
 def _field(field: FieldDescription) -> Iterator[Identifier]:
     message, stem = field.message, names.stem(field.message)
-    owner, source = f"field `{field.field.name}` of `{message.message.name}`", field.field.source
+    owner, source = f"field `{field.model.name}` of `{message.model.name}`", field.model.source
     yield Identifier(f"members of {stem}_t", field.name, owner, source)
     for one in field.constants:
         yield Identifier(FILE, names.constant(message, one.name), owner, source)

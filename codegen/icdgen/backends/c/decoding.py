@@ -37,7 +37,7 @@ def _group(group: Flags | Row, message: MessageDescription) -> str:
 
 
 def _one(field: FieldDescription) -> str:
-    one = field.field
+    one = field.model
     if one.type == "bytes":
         return f"memcpy(message->{field.name}, &buffer[{one.at // 8}], {one.bits // 8}u);"
     read = bits.read(field)
@@ -51,6 +51,6 @@ def _one(field: FieldDescription) -> str:
 
 
 def _assigned(field: FieldDescription, value: str) -> str:
-    if field.field.type == "float":
-        return call(f"icdgen_set_f{field.field.bits}", (f"&message->{field.name}", value))
+    if field.model.type == "float":
+        return call(f"icdgen_set_f{field.model.bits}", (f"&message->{field.name}", value))
     return f"message->{field.name} = {value};"

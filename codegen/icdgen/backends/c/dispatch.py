@@ -56,7 +56,7 @@ def _case(message: MessageDescription, id_name: str) -> Case:
         type=f"{stem}_t",
         member=message.name,
         length=names.constant(message, "length"),
-        text=literal(message.message.name),
+        text=literal(message.model.name),
         decode=call(f"return {stem}_decode", (member, "buffer", "length"), depth=2),
         encode=call(f"return {stem}_encode", (member, "buffer", "capacity"), depth=2),
     )

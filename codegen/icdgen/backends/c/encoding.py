@@ -13,7 +13,7 @@ def statements(message: MessageDescription) -> list[str]:
     """Statements that write every byte of the frame once, in order."""
     frame = _Frame(message)
     unused = [] if message.fields else ["(void)message;"]
-    if not message.fields and not message.message.length:
+    if not message.fields and not message.model.length:
         unused.append("(void)buffer;")
     return unused + frame.in_order()
 
@@ -40,7 +40,7 @@ class _Frame:
         self.parts.setdefault(byte, []).append((shift, term))
 
     def _one(self, field: FieldDescription) -> None:
-        one = field.field
+        one = field.model
         first, size = one.at // 8, one.bits // 8
         if one.type == "bytes":
             self.whole[first] = size, f"memcpy(&buffer[{first}], message->{field.name}, {size}u);"
@@ -67,7 +67,7 @@ class _Frame:
     def in_order(self) -> list[str]:
         """The statements, byte by byte; bytes without a field become 0."""
         found = []
-        byte, length = 0, self.message.message.length
+        byte, length = 0, self.message.model.length
         while byte < length:
             if byte in self.whole:
                 size, statement = self.whole[byte]

@@ -58,7 +58,7 @@ def member_groups(fields: Sequence[FieldDescription]) -> dict[int, Flags | Row]:
 
 
 def _position(field: FieldDescription) -> tuple[int, int] | None:
-    if field.field.type != "bool":
+    if field.model.type != "bool":
         return None
     (piece,) = field.pieces
     return piece.byte, piece.shift
@@ -79,10 +79,10 @@ def _flags(positions: Sequence[tuple[int, int] | None], first: int) -> Flags | N
 
 
 def _row(fields: Sequence[FieldDescription], first: int) -> Row | None:
-    bits, start = fields[first].field.bits, fields[first].field.at
+    bits, start = fields[first].model.bits, fields[first].model.at
     count = 0
     for field in fields[first:]:
-        one = field.field
+        one = field.model
         if not is_word(field) or one.bits != bits or one.at != start + count * bits or field.storage.bits != bits:
             break
         count += 1

@@ -35,14 +35,14 @@ def declarations(message: MessageDescription) -> list[Declaration]:
 
 
 def _declared(field: FieldDescription) -> str:
-    if field.field.type == "bytes":
-        return f"uint8_t {field.name}[{field.field.bits // 8}]"
+    if field.model.type == "bytes":
+        return f"uint8_t {field.name}[{field.model.bits // 8}]"
     return f"{type_of(field)} {field.name}"
 
 
 def misfits(message: MessageDescription) -> list[Misfit]:
     """The tests that encode makes, one a field whose C type holds more than the field."""
-    return [Misfit(bits.excess(field), literal(field.field.name)) for field in message.fields if field.is_narrow]
+    return [Misfit(bits.excess(field), literal(field.model.name)) for field in message.fields if field.is_narrow]
 
 
 def excess_type(message: MessageDescription) -> str:

@@ -10,11 +10,11 @@ from icdgen.describe import FieldDescription
 
 def type_of(field: FieldDescription) -> str:
     """The type of an integer, bool, enum or float field."""
-    kind = field.field.type
+    kind = field.model.type
     if kind == "bool":
         return "bool"
     if kind == "float":
-        return "float" if field.field.bits == 32 else "double"
+        return "float" if field.model.bits == 32 else "double"
     if field.enum is not None:
         return f"{stem(field.enum)}_t"
     return f"{'int' if field.storage.signed else 'uint'}{field.storage.bits}_t"

@@ -38,11 +38,11 @@ _Maker = Callable[[MessageDescription, FieldDescription | None], list[str]]
 
 
 def _is_sent(message: MessageDescription) -> bool:
-    return message.message.telecommand_id is not None
+    return message.model.telecommand_id is not None
 
 
 def _is_received(message: MessageDescription) -> bool:
-    return message.message.telemetry_id is not None
+    return message.model.telemetry_id is not None
 
 
 def _c(message: MessageDescription, field: FieldDescription | None) -> list[str]:
@@ -59,7 +59,7 @@ def _c(message: MessageDescription, field: FieldDescription | None) -> list[str]
         lines.append("}")
     if _is_sent(message):
         variable = "command" if _is_received(message) else "message"
-        frame = f"uint8_t frame[{length}{'' if message.message.length else ' + 1'}];"
+        frame = f"uint8_t frame[{length}{'' if message.model.length else ' + 1'}];"
         lines += ["", f"{name}_t {variable};", frame, "", f"{name}_init(&{variable});"]
         if field is not None and field.steps is not None:
             call = f"{name}_set_{field.physical_name}(&{variable}, 0.0);"
@@ -67,7 +67,7 @@ def _c(message: MessageDescription, field: FieldDescription | None) -> list[str]
         elif field is not None and field.enum is not None and field.enum.members:
             lines.append(f"{variable}.{field.name} = {enumerator(field.enum, field.enum.members[-1])};")
         elif field is not None:
-            lines.append(f"{variable}.{field.name} = {'false' if field.field.type == 'bool' else '0'};")
+            lines.append(f"{variable}.{field.name} = {'false' if field.model.type == 'bool' else '0'};")
         lines.append(f"if ({name}_encode(&{variable}, frame, sizeof frame) == ICD_OK) {{")
         lines += [f"    send({constant(message, message.telecommand_id_name)}, frame, {length});", "}"]
     return lines
@@ -91,7 +91,7 @@ def _python(message: MessageDescription, field: FieldDescription | None) -> list
             imported += f", {camel(enum.words)}"
             lines.append(f"command.{field.name} = {camel(enum.words)}.{enum.members[-1].name.upper()}")
         elif field is not None:
-            lines.append(f"command.{field.name} = {_ZEROS.get(field.field.type, '0').capitalize()}")
+            lines.append(f"command.{field.name} = {_ZEROS.get(field.model.type, '0').capitalize()}")
         lines.append(f"send({name}.{message.telecommand_id_name.upper()}, command.to_bytes())")
     return [f"from {_PACKAGE}.{message.node.name} import {imported}", *lines]
 
@@ -112,7 +112,7 @@ def _rust(message: MessageDescription, field: FieldDescription | None) -> list[s
             used.append(f"use {CRATE}::{enum.node.name}::enums::{type_name(enum)};")
             lines.append(f"command.{field.name} = {type_name(enum)}::{type_name(enum.members[-1])}.into();")
         elif field is not None and enum is None:
-            lines.append(f"command.{field.name} = {_ZEROS.get(field.field.type, '0')};")
+            lines.append(f"command.{field.name} = {_ZEROS.get(field.model.type, '0')};")
         to_bytes = "try_to_bytes()?" if message.is_narrow else "to_bytes()"
         lines.append(f"send({name}::{message.telecommand_id_name.upper()}, &command.{to_bytes});")
     return used + lines
@@ -120,5 +120,5 @@ def _rust(message: MessageDescription, field: FieldDescription | None) -> list[s
 
 def _worth_showing(message: MessageDescription) -> FieldDescription | None:
     """The first field with a scale, else the first that is neither constant nor a byte array."""
-    usual = [one for one in message.fields if one.field.const is None and one.field.type != "bytes"]
+    usual = [one for one in message.fields if one.model.const is None and one.model.type != "bytes"]
     return next((one for one in usual if one.steps is not None), usual[0] if usual else None)

@@ -53,16 +53,16 @@ class PythonBackend:
                 yield root / path, f"# {origin()}\n{render.source(name)}"
         for node in description.nodes:
             folder = root / node.name
-            first = {"origin": origin(node.node)}
+            first = {"origin": origin(node.model)}
             yield folder / "__init__.py", render(
                 "node.py.j2",
-                origin=origin(node.node, with_digest=True),
+                origin=origin(node.model, with_digest=True),
                 **nodes.values(node, description),
             )
             if node.is_linked:
-                yield folder / "_link.py", render("link.py.j2", **first, **links.values(icd, node.node))
+                yield folder / "_link.py", render("link.py.j2", **first, **links.values(icd, node.model))
             folder /= names.TYPES
-            yield folder / "__init__.py", render("types.py.j2", **first, title=prose(node.node.title))
+            yield folder / "__init__.py", render("types.py.j2", **first, title=prose(node.model.title))
             for enum in node.enums:
                 path = folder / f"{names.module_name(enum)}.py"
                 yield path, render("enum.py.j2", **first, **nodes.enum_values(enum))

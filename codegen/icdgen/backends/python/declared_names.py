@@ -14,26 +14,26 @@ def declared_names(description: Description, package: str) -> Iterator[Identifie
     """All names that come from the ICDs, and what they clash with of the names that are always there."""
     for node in description.nodes:
         scope, within = f"package {package}", f"{package}.{node.name}"
-        yield Identifier(scope, node.name, f"node `{node.name}`", node.node.source)
+        yield Identifier(scope, node.name, f"node `{node.name}`", node.model.source)
         if node.name in names.IN_PACKAGE:
             yield Identifier(scope, node.name, names.IN_PACKAGE[node.name].format(node.name), None)
         for name in DEVICES:
             yield Identifier(f"files of {within}", name, "a device of Windows", None)
         for enum in node.enums:  # messages have files in every language
-            owner_text = f"enumeration `{enum.enum.name}`"
-            yield Identifier(f"files of {within}", names.module_name(enum), owner_text, enum.enum.source)
-        for owner in map(description.node, (*description.icd.included(node.node), node.node)):
+            owner_text = f"enumeration `{enum.model.name}`"
+            yield Identifier(f"files of {within}", names.module_name(enum), owner_text, enum.model.source)
+        for owner in map(description.node, (*description.icd.included(node.model), node.model)):
             for one in owner.messages:
-                owner_text = f"message `{one.message.name}`"
-                yield Identifier(f"module {within}", names.class_name(one), owner_text, one.message.source)
+                owner_text = f"message `{one.model.name}`"
+                yield Identifier(f"module {within}", names.class_name(one), owner_text, one.model.source)
             for enum in owner.enums:
-                owner_text = f"enumeration `{enum.enum.name}`"
-                yield Identifier(f"module {within}", names.class_name(enum), owner_text, enum.enum.source)
+                owner_text = f"enumeration `{enum.model.name}`"
+                yield Identifier(f"module {within}", names.class_name(enum), owner_text, enum.model.source)
         for enum in node.enums:
             scope = f"members of {within}.{names.class_name(enum)}"
             for member in enum.members:
-                owner_text = f"member `{member.member.name}` of `{enum.enum.name}`"
-                yield Identifier(scope, member.name.upper(), owner_text, member.member.source)
+                owner_text = f"member `{member.model.name}` of `{enum.model.name}`"
+                yield Identifier(scope, member.name.upper(), owner_text, member.model.source)
         for one in node.messages:
             yield from _message(one, f"members of {within}.{names.class_name(one)}")
 
@@ -42,7 +42,7 @@ def _message(message: MessageDescription, scope: str) -> Iterator[Identifier]:
     for field in message.fields:
         physical = (field.physical_name,) if field.steps is not None else ()
         for name in (field.name, *physical):
-            owner = f"field `{field.field.name}` of `{message.message.name}`"
-            yield Identifier(scope, name, owner, field.field.source)
+            owner = f"field `{field.model.name}` of `{message.model.name}`"
+            yield Identifier(scope, name, owner, field.model.source)
             if name in names.IN_MESSAGE:
                 yield Identifier(scope, name, names.IN_MESSAGE[name].format(name), None)

@@ -37,7 +37,7 @@ class Scaled(NamedTuple):
 
 def row(field: FieldDescription, default: str) -> Row:
     """Everything that the template needs of a field; ``default`` is an expression."""
-    kind = class_name(field.enum) if field.enum else "int" if field.field.type == "uint" else field.field.type
+    kind = class_name(field.enum) if field.enum else "int" if field.model.type == "uint" else field.model.type
     parameter = f"{field.name}: {kind} = {default}"
     physical, physical_parameter = field.name, parameter
     if field.steps is not None:
@@ -52,7 +52,7 @@ def _number(exact: Fraction) -> str:
 
 
 def _info(field: FieldDescription, kind: str) -> str:
-    one = field.field
+    one = field.model
     items = [f'"{field.name}"', literal(one.name), str(one.at), str(one.bits), f'"{one.type}"']
     if one.unit:
         items.append(f"unit={literal(one.unit.symbol)}")
@@ -76,11 +76,11 @@ def scaled(field: FieldDescription) -> Scaled:
     value = f"self.{field.name}" if p == 1 else f"self.{field.name} * {p}"
     if c:
         value = f"{value} {'+' if c > 0 else '-'} {abs(c)}"
-    ends = str(field.field.raw_min), str(field.field.raw_max)
+    ends = str(field.model.raw_min), str(field.model.raw_max)
     arguments = ["value", f'"{field.name}"', str(field.steps.terms), *ends]
     return Scaled(
         field.physical_name,
-        docstring(8, [paragraph(physical_comment(field.field, field.steps))]),
+        docstring(8, [paragraph(physical_comment(field.model, field.steps))]),
         f"float({value})" if q == 1 else f"({value}) / {q}" if c else f"{value} / {q}",
         bracketed(f"self.{field.name} = _codec.raw_value(", arguments, ")", WIDTH, " " * 8),
     )

@@ -207,7 +207,7 @@ class Maker:
 
     def attributes(self, message: Message) -> dict[str, str]:
         """Attributes of a message by the names of its fields."""
-        return {one.field.name: one.name for one in describe(self.icd).message(message).fields}
+        return {one.model.name: one.name for one in describe(self.icd).message(message).fields}
 
 
 def made(name: str, part: Any) -> Call:

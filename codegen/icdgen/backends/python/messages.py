@@ -18,7 +18,7 @@ def values(message: MessageDescription) -> dict[str, object]:
     packing = Packer(message).packing()
     defaults: dict[str, str] = {}
     rows = [row(field, _default(field, defaults)) for field in message.fields]
-    one, name = message.message, names.class_name(message)
+    one, name = message.model, names.class_name(message)
     ids = " and ".join(map(str, one.ids))
     return {
         "name": name,
@@ -44,9 +44,9 @@ def values(message: MessageDescription) -> dict[str, object]:
 
 def _default(field: FieldDescription, defaults: dict[str, str]) -> str:
     """What a field is at first; constants of the module are kept in ``defaults``."""
-    kind, value = field.field.type, field.fresh
+    kind, value = field.model.type, field.fresh
     if kind == "bytes":
-        return _constant(defaults, f"bytes({field.field.bits // 8})")
+        return _constant(defaults, f"bytes({field.model.bits // 8})")
     if field.enum is None:
         return str(bool(value)) if kind == "bool" else "0.0" if kind == "float" else str(value)
     name, member = names.class_name(field.enum), field.enum.member(value)
@@ -58,7 +58,7 @@ def _constant(defaults: dict[str, str], call: str) -> str:
 
 
 def _constants(message: MessageDescription) -> list[str]:
-    one, node = message.message, message.node
+    one, node = message.model, message.node
     found = [f'NODE = "{node.name}"', f"NAME = {literal(one.name)}", f'KIND = "{one.kind}"']
     found += (f"{id.name.upper()} = {id.value}" for id in message.ids)
     ids = ", ".join(id.name.upper() for id in message.ids)

@@ -15,19 +15,19 @@ from icdgen.icd.model import Node
 def values(node: NodeDescription, description: Description) -> dict[str, object]:
     """What the node template needs."""
     declared: list[tuple[str, str]] = []
-    for owner in map(description.node, (*description.icd.included(node.node), node.node)):
+    for owner in map(description.node, (*description.icd.included(node.model), node.model)):
         both: tuple[MessageDescription | EnumDescription, ...] = (*owner.messages, *owner.enums)
         declared += ((names.home(one, node.name, ".."), names.class_name(one)) for one in both)
     linked = [("._link", "LINK")] if node.is_linked else []
     return {
-        "doc": docstring(0, _documentation(node.node)),
+        "doc": docstring(0, _documentation(node.model)),
         "imports": sorted(f"from {home} import {name} as {name}" for home, name in declared + linked),
-        "constants": _constants(node.node),
+        "constants": _constants(node.model),
         "linked": node.is_linked,
         "homes": exploded("{", [f'"{name}": "{home}"' for home, name in sorted(declared)], "}"),
-        "telecommands": _by_id((one.message.telecommand_id, one) for one in node.telecommands),
-        "telemetry": _by_id((one.message.telemetry_id, one) for one in node.telemetry),
-        "enums": exploded("{", [f'{literal(one.enum.name)}: "{names.class_name(one)}"' for one in node.enums], "}"),
+        "telecommands": _by_id((one.model.telecommand_id, one) for one in node.telecommands),
+        "telemetry": _by_id((one.model.telemetry_id, one) for one in node.telemetry),
+        "enums": exploded("{", [f'{literal(one.model.name)}: "{names.class_name(one)}"' for one in node.enums], "}"),
     }
 
 
@@ -62,11 +62,11 @@ def enum_values(enum: EnumDescription) -> dict[str, object]:
         notes = [
             paragraph(text) for text in one.comment.paragraphs[1:]
         ]  # the head says name and value, as the code does
-        declaration = f"{one.name.upper()} = {one.member.value}, {literal(one.member.name)}"
+        declaration = f"{one.name.upper()} = {one.model.value}, {literal(one.model.name)}"
         members.append((declaration, docstring(4, notes) if notes else ""))
     return {
         "name": names.class_name(enum),
-        "module_doc": docstring(0, [f"{prose(enum.enum.name)}, an enumeration of {prose(enum.node.title)}."]),
+        "module_doc": docstring(0, [f"{prose(enum.model.name)}, an enumeration of {prose(enum.node.title)}."]),
         "doc": docstring(4, map(paragraph, enum.comment.paragraphs)),
         "members": members,
     }
@@ -78,5 +78,5 @@ def listed(description: Description) -> dict[str, object]:
     return {
         "imports": [f"from . import {name} as {name}" for name in found],
         "nodes": exploded("NODES = (", [f'"{name}"' for name in found], ")"),
-        "titles": [(node.name, prose(node.node.title)) for node in description.nodes],
+        "titles": [(node.name, prose(node.model.title)) for node in description.nodes],
     }

@@ -50,7 +50,7 @@ class Packer:
     """Makes the packing of one message."""
 
     def __init__(self, message: MessageDescription) -> None:
-        self.message, self.order = message.message, message.node.byte_order
+        self.message, self.order = message.model, message.node.byte_order
         self.items: list[_Item] = []
         self.assign: list[str] = []
         self.prepare: list[str] = []
@@ -65,8 +65,8 @@ class Packer:
         crossing = []
         shared = self._shared_bytes()
         for field in self.fields:
-            span = byte_range(field.field)
-            if is_whole_bytes(field.field) and not shared.intersection(span):
+            span = byte_range(field.model)
+            if is_whole_bytes(field.model) and not shared.intersection(span):
                 self._whole(field, span.start, len(span))
             elif len(span) == 1:
                 (piece,) = field.pieces
@@ -90,7 +90,7 @@ class Packer:
 
     def _shared_bytes(self) -> set[int]:
         """Bytes that more than one field touches."""
-        touched = [byte for field in self.fields for byte in byte_range(field.field)]
+        touched = [byte for field in self.fields for byte in byte_range(field.model)]
         return {byte for byte, count in Counter(touched).items() if count > 1}
 
     def _table(self, prefix: str, kind: str, *arguments: str) -> str:
@@ -104,11 +104,11 @@ class Packer:
     def _kind(self, field: FieldDescription) -> str:
         if field.enum is not None:
             return class_name(field.enum)
-        return {"bool": "bool", "int": "_codec.signed"}.get(field.field.type, "int")
+        return {"bool": "bool", "int": "_codec.signed"}.get(field.model.type, "int")
 
     def _whole(self, field: FieldDescription, byte: int, size: int) -> None:
         """A field of whole bytes: one item of the struct."""
-        one, own, local = field.field, f"self.{field.name}", f"v{byte}"
+        one, own, local = field.model, f"self.{field.name}", f"v{byte}"
         if one.type == "bytes":
             self.items.append(_Item(byte, size, f"{size}s", own, local))
             self.prepare.append(f"{local} = _codec.sized({own}, {size})")
@@ -147,7 +147,7 @@ class Packer:
         self.items.append(_Item(byte, 1, "B", local, local))
         parts = sorted(self.parts.get(byte, ()), key=lambda part: part[0])
         if parts:
-            spec = (f"({shift}, {field.field.bits}, {self._kind(field)})" for shift, field in parts)
+            spec = (f"({shift}, {field.model.bits}, {self._kind(field)})" for shift, field in parts)
             rows = self._table("_BITS", "bit_table", *spec)
             inverse = rows.replace("_BITS", "_BYTES")
             self.tables["Inverse", rows] = inverse
@@ -163,7 +163,7 @@ class Packer:
 
     def _take_apart(self, field: FieldDescription) -> None:
         """Encoding of a field that crosses bytes: its bits as an integer, and its pieces for the bytes."""
-        one, own = field.field, f"self.{field.name}"
+        one, own = field.model, f"self.{field.name}"
         local = f"n{one.at}"
         if one.type == "float":
             self.prepare.append(f"{local} = _floats.float{one.bits}_bits({own})")
@@ -176,7 +176,7 @@ class Packer:
 
     def _put_together(self, field: FieldDescription) -> None:
         """Decoding of a field that crosses bytes."""
-        one = field.field
+        one = field.model
         local = f"n{one.at}"
         for number, piece in enumerate(field.pieces):
             is_top = piece.shift + piece.bits == 8

@@ -47,14 +47,14 @@ class RustBackend:
         yield from _runtime("src/support", render)
         for node in description.nodes:
             folder = PurePosixPath("src") / node.name
-            shared = {**common, "origin": origin(node.node)}
+            shared = {**common, "origin": origin(node.model)}
             rows = [MessageRow(message, f"u{id_bits}") for message in node.messages]
             row = nodes.NodeRow(node, rows, id_bits)
             yield folder / "mod.rs", render(
                 "node.rs.j2",
                 node=row,
                 wired=node.is_linked,
-                **common | {"origin": origin(node.node, with_digest=True)},
+                **common | {"origin": origin(node.model, with_digest=True)},
             )
             if node.enums:
                 enums = [EnumRow(enum) for enum in node.enums]

@@ -25,9 +25,9 @@ class Accessors(NamedTuple):
 def accessors(field: FieldDescription) -> Accessors:
     """Those of a field with a scale. The support module's entry of the field checks what is set."""
     assert field.steps is not None
-    getter, constant, what = field.physical_name, field.name.upper(), physical_name(field.field)
+    getter, constant, what = field.physical_name, field.name.upper(), physical_name(field.model)
     return Accessors(
-        doc([prose(physical_comment(field.field, field.steps))], "    "),
+        doc([prose(physical_comment(field.model, field.steps))], "    "),
         signature(f"pub fn {getter}", ("&self",), "f64"),
         _physical(field.steps, field.storage.bits, f"self.{field.name}", constant),
         doc([prose(f"Sets {what}, to the nearest raw value, ties to even.")], "    "),

@@ -12,7 +12,7 @@ FLAGS_FROM = 4  # so many flags of one byte are taken from the table of the supp
 
 def reading(field: FieldDescription, tables: set[int]) -> str:
     """Expression of the raw value, from ``bytes``; ``tables`` are the bytes whose flags stand in ``flags_N``."""
-    one, row = field.field, field.pieces
+    one, row = field.model, field.pieces
     if one.type == "bytes":
         return f"array(bytes, {one.at // 8})"
     if one.type == "bool":
@@ -31,7 +31,7 @@ def reading(field: FieldDescription, tables: set[int]) -> str:
 
 
 def _whole(field: FieldDescription, size: int) -> str:
-    one = field.field
+    one = field.model
     first = one.at // 8
     if size == 8:
         byte = f"bytes[{first}]"
@@ -53,14 +53,14 @@ def _enum(value: str, size: int, wider: int) -> str:
 
 def _finished(field: FieldDescription, value: str, size: int) -> str:
     """The unsigned value of ``size`` bits as the field's type."""
-    kind = field.field.type
+    kind = field.model.type
     if kind == "enum":
         return _enum(value, size, field.storage.bits)
     if kind == "float":
         return f"f{size}::from_bits({value})"
     if kind == "uint":
         return value
-    unused = size - field.field.bits
+    unused = size - field.model.bits
     if size == 8:
         shifted = value if not unused else f"{_parenthesised(value)} << {unused}"
         signed = f"i8::from_le_bytes([{shifted}])"
@@ -104,7 +104,7 @@ def fitting(field: FieldDescription) -> str:
 
 def writing(field: FieldDescription) -> list[str]:
     """Statements that put the raw value into ``bytes``, without the bits that its field has no room for."""
-    one, row, source = field.field, field.pieces, f"self.{field.name}"
+    one, row, source = field.model, field.pieces, f"self.{field.name}"
     if one.type == "bytes":
         return [f"put_array(&mut bytes, {one.at // 8}, &{source});"]
     if one.type == "bool":
@@ -131,7 +131,7 @@ def _copied(first: int, count: int, source: str) -> str:
 
 
 def _put_whole(field: FieldDescription, source: str) -> list[str]:
-    first, size, kind = field.field.at // 8, field.storage.bits, field.field.type
+    first, size, kind = field.model.at // 8, field.storage.bits, field.model.type
     if size == 8 and kind != "int":
         return [f"bytes[{first}] = {source}{'.raw()' if kind == 'enum' else ''};"]
     to_bytes = f"to_{_order(field)}_bytes()"
@@ -168,5 +168,5 @@ def _put(piece: Piece, part: str) -> str:
 
 def flag_tables(message: MessageDescription) -> set[int]:
     """The bytes that hold so many flags that a table is worth its load."""
-    flags = [field.pieces[0].byte for field in message.fields if field.field.type == "bool"]
+    flags = [field.pieces[0].byte for field in message.fields if field.model.type == "bool"]
     return {byte for byte in flags if flags.count(byte) >= FLAGS_FROM}

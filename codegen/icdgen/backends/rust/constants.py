@@ -25,7 +25,7 @@ def of_message(message: MessageDescription, id_type: str) -> list[Constant]:
 
 
 def _of_field(field: FieldDescription, one: described.Constant) -> Constant:
-    if field.field.type == "bool" and one.is_raw:
+    if field.model.type == "bool" and one.is_raw:
         return _constant(one.name, "bool", "true" if one.value else "false", one.comment)
     if isinstance(one.value, int):
         return _constant(one.name, integer_type(field), integer(one.value), one.comment)

@@ -23,7 +23,7 @@ def declared_names(description: Description) -> Iterator[Identifier]:
         yield Identifier(scope, name, said, None)
     yield from _devices(scope)
     for node in description.nodes:
-        yield Identifier(scope, node.name, f"node `{node.name}`", node.node.source)
+        yield Identifier(scope, node.name, f"node `{node.name}`", node.model.source)
     for node in description.nodes:
         yield from _node(node)
 
@@ -43,34 +43,34 @@ def _node(node: NodeDescription) -> Iterator[Identifier]:
     yield from _ours(types, names.USED_TYPES)
     yield from _ours(enums, _ENUM_USES)
     for enum in node.enums:
-        yield Identifier(enums, names.type_name(enum), f"enumeration `{enum.enum.name}`", enum.enum.source)
+        yield Identifier(enums, names.type_name(enum), f"enumeration `{enum.model.name}`", enum.model.source)
         yield from _enum(enum)
     for one in node.messages:
-        owner = f"message `{one.message.name}`"
-        yield Identifier(modules, one.name, owner, one.message.source)
-        yield Identifier(types, names.type_name(one), owner, one.message.source)
+        owner = f"message `{one.model.name}`"
+        yield Identifier(modules, one.name, owner, one.model.source)
+        yield Identifier(types, names.type_name(one), owner, one.model.source)
         yield from _message(one)
     for sum_type, messages in (("Telecommand", node.telecommands), ("Telemetry", node.telemetry)):
         scope = f"variants of {node.name}::{sum_type}"
         for one in messages:
-            yield Identifier(scope, names.type_name(one), f"message `{one.message.name}`", one.message.source)
+            yield Identifier(scope, names.type_name(one), f"message `{one.model.name}`", one.model.source)
 
 
 def _enum(enum: EnumDescription) -> Iterator[Identifier]:
-    scope = f"variants of {enum.node.name}::{enum.enum.name}"
+    scope = f"variants of {enum.node.name}::{enum.model.name}"
     yield from _ours(scope, (names.catch_all(enum),))
     for one in enum.members:
-        owner = f"member `{one.member.name}` of `{enum.enum.name}`"
-        yield Identifier(scope, names.type_name(one), owner, one.member.source)
+        owner = f"member `{one.model.name}` of `{enum.model.name}`"
+        yield Identifier(scope, names.type_name(one), owner, one.model.source)
 
 
 def _message(message: MessageDescription) -> Iterator[Identifier]:
-    where = f"{message.node.name}::{message.message.name}"
+    where = f"{message.node.name}::{message.model.name}"
     fields, methods, associated = f"fields of {where}", f"methods of {where}", f"constants of {where}"
     yield from _ours(methods, _METHODS)
     yield from _ours(associated, _CONSTANTS)
     for field in message.fields:
-        owner, source = f"field `{field.field.name}` of `{message.message.name}`", field.field.source
+        owner, source = f"field `{field.model.name}` of `{message.model.name}`", field.model.source
         yield Identifier(fields, field.name, owner, source)
         if field.steps is not None:
             yield Identifier(methods, field.physical_name, owner, source)

@@ -30,7 +30,7 @@ class EnumRow:
         self.other = names.catch_all(enum)
         self.members = []
         for one in enum.members:
-            name, value = names.type_name(one), one.member.value
+            name, value = names.type_name(one), one.model.value
             self.members.append(
                 Variant(
                     name,
@@ -38,7 +38,7 @@ class EnumRow:
                     value == 0,
                     arm(integer(value), f"Self::{name}"),
                     arm(f"Self::{name}", integer(value)),
-                    arm(f"Self::{name}", string(one.member.name)),
+                    arm(f"Self::{name}", string(one.model.name)),
                 )
             )
         self.complete = len(enum.members) == 1 << enum.storage.bits

@@ -40,7 +40,7 @@ class MessageRow:
     """What the template of a message is given."""
 
     def __init__(self, message: MessageDescription, id_type: str) -> None:
-        one, fields = message.message, message.fields
+        one, fields = message.model, message.fields
         self.type = names.type_name(message)
         self.doc = doc(map(prose, message.comment.paragraphs))
         self.head = doc([f"{prose(words(one.name))}, a message of node `{message.node.name}`."], mark="//!")
@@ -55,7 +55,7 @@ class MessageRow:
         self.checked = [_checked(field) for field in fields if field.steps is not None or field.is_narrow]
         self.telecommand_id, self.telemetry_id = _byte(one.telecommand_id), _byte(one.telemetry_id)
         self.literal = _literal([(field.name, row.reading) for field, row in zip(fields, self.fields, strict=True)])
-        zeros = all(f.fresh == 0 and (f.field.type != "bytes" or f.field.bits <= DERIVES_DEFAULT * 8) for f in fields)
+        zeros = all(f.fresh == 0 and (f.model.type != "bytes" or f.model.bits <= DERIVES_DEFAULT * 8) for f in fields)
         self.default = None if zeros else _literal([(field.name, _fresh(field)) for field in fields])
         derived = ["Clone", "Copy", "Debug", *(["Default"] if zeros else []), "PartialEq"]
         self.derives = ", ".join(derived + ([] if message.has_floats else ["Eq", "Hash"]))
@@ -72,16 +72,16 @@ def _row(field: FieldDescription, tables: set[int]) -> FieldRow:
     return FieldRow(
         doc=doc(map(prose, field.comment.paragraphs), "    "),
         declaration=assigned(f"pub {field.name}:", names.raw_type(field), ","),
-        serde=field.field.type == "bytes",
+        serde=field.model.type == "bytes",
         reading=bits.reading(field, tables),
         writing=bits.writing(field),
     )
 
 
 def _fresh(field: FieldDescription) -> str:
-    kind = field.field.type
+    kind = field.model.type
     if kind == "bytes":
-        return f"[0; {field.field.bits // 8}]"
+        return f"[0; {field.model.bits // 8}]"
     if kind == "enum":
         return f"Coded::from_raw({integer(field.fresh)})"
     if kind == "float":
@@ -96,7 +96,7 @@ def _literal(rows: list[tuple[str, str]]) -> str:
 
 
 def _checked(field: FieldDescription) -> Checked:
-    one = field.field
+    one = field.model
     terms = field.steps.terms if field.steps is not None else (1, 0, 1)
     kind, ends = names.integer_type(field), (integer(one.raw_min), integer(one.raw_max))
     return Checked(field.name.upper(), string(one.name), kind, *ends, *map(integer, terms))

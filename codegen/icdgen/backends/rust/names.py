@@ -56,7 +56,7 @@ def integer_type(field: FieldDescription) -> str:
 
 def raw_type(field: FieldDescription) -> str:
     """Type of the raw value in the message's struct."""
-    one = field.field
+    one = field.model
     if field.enum is not None:
         return f"Coded<{enum_path(field.enum, field.message.node)}>"
     if one.type == "bytes":

@@ -47,7 +47,7 @@ class NodeRow:
     """What the template of a node is given."""
 
     def __init__(self, node: NodeDescription, messages: list[MessageRow], id_bits: int) -> None:
-        one, spoken = node.node, dict.fromkeys(message.node.name for message in node.spoken)
+        one, spoken = node.model, dict.fromkeys(message.node.name for message in node.spoken)
         self.name = node.name
         printed = ", ".join(f"{key} {value}" for key, value in one.document)
         included = ", ".join(f"[`{name}`](crate::{name})" for name in spoken if name != node.name)
@@ -76,7 +76,7 @@ class NodeRow:
 def _variant(message: MessageDescription, id_name: str, node: Node) -> Variant:
     name, path = names.type_name(message), names.message_path(message, node)
     bare, number = f"Self::{name}(_)", f"{path}::{id_name.upper()}"
-    about = doc([prose(sentence(message.message.name))], "    ")
+    about = doc([prose(sentence(message.model.name))], "    ")
     to_bytes = "message.try_to_bytes()?" if message.is_narrow else "message.to_bytes()"
     return Variant(
         f"{about}\n    {name}({path}),",

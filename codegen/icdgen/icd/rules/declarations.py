@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from operator import is_
 from typing import NamedTuple
 
 from icdgen.icd.identifiers import Identifier
-from icdgen.icd.model import Icd, Message
+from icdgen.icd.model import Icd, Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.rule import REGISTERED
 
@@ -42,16 +43,15 @@ def _sound(ctx: Context) -> Icd:
         kept = tuple(f for f in message.fields if id(f.source) not in bad and (f.enum or f.type != "enum"))
         return message if len(kept) == len(message.fields) else replace(message, fields=kept)
 
+    def sound_node(node: Node) -> Node:
+        messages = tuple(sound(m) for m in node.messages if id(m.source) not in twins)
+        enums = tuple({e.name: e for e in node.enums}.values())  # fields refer to the last of a name
+        includes = tuple(name for name in node.includes if name != node.name)
+        if (messages, enums, includes) == (node.messages, node.enums, node.includes):
+            return node
+        return replace(node, messages=messages, enums=enums, includes=includes)
+
     first = {n.name: n for n in reversed(ctx.icd.nodes)}
-    return Icd(
-        tuple(
-            replace(
-                node,
-                messages=tuple(sound(m) for m in node.messages if id(m.source) not in twins),
-                enums=tuple({e.name: e for e in node.enums}.values()),  # fields refer to the last of a name
-                includes=tuple(name for name in node.includes if name != node.name),
-            )
-            for node in ctx.icd.nodes
-            if first[node.name] is node
-        )
-    )
+    nodes = tuple(sound_node(node) for node in ctx.icd.nodes if first[node.name] is node)
+    # What is described of a sound model for its names is described for its code too.
+    return ctx.icd if all(map(is_, nodes, ctx.icd.nodes)) and len(nodes) == len(ctx.icd.nodes) else Icd(nodes)

@@ -63,9 +63,9 @@ def sizes(known: Facts) -> list[Macro]:
 def aliases(messages: Iterable[MessageDescription]) -> list[Alias]:
     """``DEMO_ANGLES_TELEMETRY``: how a message is requested, whatever its kind."""
     return [
-        Alias(constant(one, "telemetry"), f"{one.message.node.upper()}_NODE, {one.message.telemetry_id}u")
+        Alias(constant(one, "telemetry"), f"{one.model.node.upper()}_NODE, {one.model.telemetry_id}u")
         for one in messages
-        if one.message.telemetry_id is not None
+        if one.model.telemetry_id is not None
     ]
 
 

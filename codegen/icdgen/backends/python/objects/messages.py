@@ -21,7 +21,7 @@ class ModelMessage(Message):
 
     def __init__(self) -> None:
         for one in self.description.fields:
-            field = one.field
+            field = one.model
             setattr(self, one.name, _value(field, bytes(field.bits // 8) if field.type == "bytes" else one.fresh))
 
     @classmethod
@@ -30,16 +30,16 @@ class ModelMessage(Message):
         description, frame = cls.description, bytes(data)
         if len(frame) != cls.LENGTH:
             raise LengthError(cls.NAME, cls.LENGTH, len(frame))
-        raw, made = codec.decode(description.node, description.message, frame), cls()
+        raw, made = codec.decode(description.node, description.model, frame), cls()
         for one in description.fields:
-            setattr(made, one.name, _value(one.field, raw[one.field.name]))
+            setattr(made, one.name, _value(one.model, raw[one.model.name]))
         return made
 
     def to_bytes(self) -> bytes:
         """The frame, with reserved bits 0. Raises `RangeError`."""
         description = self.description
-        raw = {one.field.name: _raw(one, getattr(self, one.name)) for one in description.fields}
-        return codec.encode(description.node, description.message, raw)
+        raw = {one.model.name: _raw(one, getattr(self, one.name)) for one in description.fields}
+        return codec.encode(description.node, description.model, raw)
 
 
 class ModelMessages(Messages):
@@ -57,7 +57,7 @@ class ModelMessages(Messages):
 
 
 def _class(description: MessageDescription) -> type[ModelMessage]:
-    message = description.message
+    message = description.model
     members = {
         "description": description,
         "NODE": message.node,
@@ -67,7 +67,7 @@ def _class(description: MessageDescription) -> type[ModelMessage]:
         "IDS": message.ids,
         "ACKNOWLEDGED": message.acknowledge,
         "FIELDS": tuple(
-            FieldInfo(one.name, one.field.name, one.field.at, one.field.bits, one.field.type)
+            FieldInfo(one.name, one.model.name, one.model.at, one.model.bits, one.model.type)
             for one in description.fields
         ),
         "BYTE_ORDER": description.node.byte_order,
@@ -87,7 +87,7 @@ def _value(field: model.Field, raw: int | bytes) -> object:
 
 def _raw(one: FieldDescription, value: object) -> int | bytes:
     """The reverse of `_value`. Raises `RangeError`."""
-    field = one.field
+    field = one.model
     try:
         raw = codec.float_bits(field, value) if isinstance(value, float) else value
         assert isinstance(raw, int | bytes)

@@ -1,4 +1,4 @@
-"""The C self-test: the golden vectors as tables, for boards. It includes the headers of ``c`` and takes all names from its plan."""
+"""The self-test's files: the golden vectors as rows of tables."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
-from icdgen.backends import Identifier
 from icdgen.backends.c import names, physical
 from icdgen.backends.c.accessors import whole_name
 from icdgen.backends.c.text import literal, plain
@@ -101,21 +100,6 @@ class EnumRow(NamedTuple):
     name: str
 
 
-class CSelftestBackend:
-    """``icdgen --lang c-selftest``: the golden vectors as C source; needs no file system, no heap and no output."""
-
-    name = "c-selftest"
-    reserved: frozenset[str] = frozenset()
-
-    def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """The engine, the list of nodes, and one file of vectors a node."""
-        return files(icd, render)
-
-    def identifiers(self, icd: Icd) -> Iterator[Identifier]:
-        """None of its own: all are made from those of the ``c`` backend."""
-        return iter(())
-
-
 def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
     """The engine, the list of nodes, and one file of vectors a node."""
     for name in render.runtime_files():
@@ -123,7 +107,7 @@ def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
     nodes = [node.name for node in icd.nodes]
     yield PurePosixPath("icdgen_selftest_nodes.c"), render("nodes.c.j2", origin=origin(), nodes=nodes)
     for node in describe(icd).nodes:
-        text = render("node.c.j2", origin=origin(node.node, with_digest=True), **_Rows(icd, node).all())
+        text = render("node.c.j2", origin=origin(node.model, with_digest=True), **_Rows(icd, node).all())
         yield PurePosixPath(f"nodes/{node.name}.c"), text
 
 
@@ -132,7 +116,7 @@ class _Rows:
 
     def __init__(self, icd: Icd, node: NodeDescription) -> None:
         self.icd, self.node = icd, node
-        self.vectors = make(icd, node.node)
+        self.vectors = make(icd, node.model)
 
     def all(self) -> dict[str, object]:
         node = self.node
@@ -144,27 +128,27 @@ class _Rows:
             "names": list(self.names()),
             "messages": [self.message(*both) for both in zip(node.messages, self.vectors.messages, strict=True)],
             "dispatchers": [self.dispatcher(way, messages) for way, messages in directions if messages],
-            "longest": max((one.message.length for one in node.spoken), default=0),
+            "longest": max((one.model.length for one in node.spoken), default=0),
         }
 
     def names(self) -> Iterator[Name]:
         for enum, (_, unknown) in zip(self.node.enums, self.vectors.enums, strict=True):
             stem = names.stem(enum)
             for one in enum.members:
-                yield Name(stem, _unsigned(one.member.value), literal(one.member.name))
+                yield Name(stem, _unsigned(one.model.value), literal(one.model.name))
             if unknown is not None:
                 yield Name(stem, _unsigned(unknown), "NULL")
 
     def dispatcher(self, direction: str, messages: Iterable[MessageDescription]) -> Dispatcher:
         lengths = ["-1"] * 256
         for one in messages:
-            id = getattr(one.message, f"{direction}_id")
+            id = getattr(one.model, f"{direction}_id")
             if id < len(lengths):
-                lengths[id] = str(one.message.length)
+                lengths[id] = str(one.model.length)
         return Dispatcher(f"{self.node.name}_{direction}", _lines(lengths))
 
     def message(self, message: MessageDescription, vectors: MessageVectors) -> MessageRow:
-        length = message.message.length
+        length = message.model.length
         kept = bytes(length)
         for row in vectors.rows:  # reserved bits are those that no vector keeps
             kept = bytes(a | b for a, b in zip(kept, row.encoded, strict=True))
@@ -172,8 +156,8 @@ class _Rows:
         vector_rows = [self.vector(message, row, fields) for row in vectors.rows]
         size = length + sum(field.packed for field in fields)
         return MessageRow(
-            title=plain(message.message.name),
-            text=literal(message.message.name),
+            title=plain(message.model.name),
+            text=literal(message.model.name),
             stem=names.stem(message),
             member=message.name if message.name != "bytes" else "bytes_",
             length=length,
@@ -194,7 +178,7 @@ class _Rows:
     def vector(self, message: MessageDescription, row: Row, fields: list[FieldRow]) -> VectorRow:
         data = bytearray(row.frame)
         for one, field in zip(message.fields, fields, strict=True):
-            value = row.raw[one.field.name]
+            value = row.raw[one.model.name]
             if isinstance(value, bytes):
                 data += value
             else:
@@ -202,7 +186,7 @@ class _Rows:
         return VectorRow(plain(row.why), _lines(f"0x{byte:02X}" for byte in data))
 
     def field(self, one: FieldDescription, vectors: MessageVectors) -> FieldRow:
-        field, storage = one.field, one.storage
+        field, storage = one.model, one.storage
         is_bytes = field.type == "bytes"
         unfit = [v for v in vectors.unfit.get(field.name, ()) if not is_bytes and storage.min <= v <= storage.max]
         return FieldRow(
@@ -240,7 +224,7 @@ def _whole(field: FieldDescription) -> Accessors | None:
         return None
     per = {"milli": 1000, "micro": 1_000_000}[whole.prefix]
     lines = []
-    for raw in values(field.field):
+    for raw in values(field.model):
         assert isinstance(raw, int)
         exact = field.steps.physical(raw) * per
         assert exact.denominator == 1

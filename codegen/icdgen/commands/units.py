@@ -1,0 +1,21 @@
+"""``icdgen units``"""
+
+from __future__ import annotations
+
+import sys
+
+import click
+
+
+@click.command()
+def units() -> None:
+    """List the units that every ICD may use; others are declared in the ICD under `units:`."""
+    from icdgen import tables
+    from icdgen.icd.units import SPELLINGS, STANDARD
+
+    meant: dict[str, list[str]] = {}
+    for spelling, symbol in SPELLINGS.items():
+        meant.setdefault(symbol, []).append(spelling)
+    columns = [tables.Column(title) for title in ("unit", "in names", "quantity", "not")]
+    rows = [(u.symbol, u.identifier, u.quantity, ", ".join(meant.get(u.symbol, []))) for u in STANDARD.values()]
+    click.echo(tables.render(columns, rows, tables.width_of(sys.stdout)), nl=False)
