@@ -65,6 +65,12 @@ def test_the_reference_of_the_protocol_judges_and_does_nothing_else():
     assert importing == []
 
 
+def test_our_python_is_typed(tmp_path):
+    command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path), "codegen/icdgen"]
+    result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout + result.stderr
+
+
 def test_no_file_of_ours_outgrows_a_head():
     large = {
         str(p.relative_to(ROOT)): n

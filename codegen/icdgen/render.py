@@ -6,14 +6,22 @@ Values come finished from the backends: a template holds loops, not decisions ab
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from icdgen import fingerprints, shipped
 from icdgen.errors import UserError
 
 if TYPE_CHECKING:
-    from icdgen.backends import Backend
+    from jinja2 import BaseLoader, Environment
+
+
+class Named(Protocol):
+    """A backend, as far as rendering goes; it may have ``templates`` and ``runtime``, too."""
+
+    @property
+    def name(self) -> str: ...
 
 
 class Renderer:
@@ -42,7 +50,7 @@ class Renderer:
         )
 
     @classmethod
-    def of(cls, backend: Backend, override: Path | None = None) -> Renderer:
+    def of(cls, backend: Named, override: Path | None = None) -> Renderer:
         """The renderer of a backend, which may say where its templates and its runtime lie."""
         folders = (getattr(backend, "templates", None), getattr(backend, "runtime", None))
         return cls(backend.name, override, *folders)
@@ -95,12 +103,12 @@ def _where(error: Exception, template: str) -> str:
     return found
 
 
-def _loader(own: list[Path], shipped: Path, looked_at: dict[Path, str]):
+def _loader(own: list[Path], shipped: Path, looked_at: dict[Path, str]) -> BaseLoader:
     import jinja2
     from jinja2.loaders import split_template_path
 
     class Loader(jinja2.FileSystemLoader):
-        def get_source(self, environment, template):
+        def get_source(self, environment: Environment, template: str) -> tuple[str, str, Callable[[], bool]]:
             for folder in own:
                 path = folder.joinpath(*split_template_path(template))
                 looked_at[path] = fingerprints.of_path(os.fspath(path))

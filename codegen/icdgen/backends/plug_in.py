@@ -9,8 +9,8 @@ from importlib.metadata import EntryPoint
 from pathlib import Path, PurePath, PurePosixPath
 from typing import Any
 
-from icdgen.backends import Identifier
 from icdgen.errors import UserError
+from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Icd
 
 

@@ -56,7 +56,7 @@ def run(job: Job) -> Outcome:
         for plan in outcome.plans:
             write.apply(plan)
         if job.depfile is not None:
-            _write_depfile(job, outcome)
+            _write_depfile(job.depfile, outcome)
     return outcome
 
 
@@ -68,16 +68,16 @@ def _depfile(outcome: Outcome) -> tuple[bytes, set[str]]:
     return text.encode("utf-8", "surrogateescape"), {os.path.realpath(path) for path in (*targets, *needs)}
 
 
-def _write_depfile(job: Job, outcome: Outcome) -> None:
+def _write_depfile(path: Path, outcome: Outcome) -> None:
     data, named = _depfile(outcome)
-    depfile = Path(os.path.realpath(job.depfile))
+    depfile = Path(os.path.realpath(path))
     if str(depfile) in named:
-        raise UserError(f"{job.depfile} is an input or an output", "give the dependency file a name of its own")
+        raise UserError(f"{path} is an input or an output", "give the dependency file a name of its own")
     if write.read(depfile) != data:
         try:
             write.replace(depfile, data)
         except OSError as error:
-            raise UserError(f"cannot write {job.depfile}: {error.strerror}", "choose another place for it") from None
+            raise UserError(f"cannot write {path}: {error.strerror}", "choose another place for it") from None
 
 
 def _escape(path: str) -> str:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from icdgen.diagnostics import Finding, Place
+from icdgen.icd import remedies
 from icdgen.icd.located import Map, Seq
 
 PATH = Path(__file__).with_name("schema.json")
@@ -89,6 +90,7 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
         message = f"{what} must be {_TYPES.get(wanted, wanted)}, not {_describe(error.instance)}"
     elif name in ("enum", "const"):
         message = f"{what} cannot be {_describe(error.instance)}"
+        help = remedies.of_value(str(path[-1]) if path else "", error.instance) or help
     elif name in ("minimum", "maximum"):
         side = "at least" if name == "minimum" else "at most"
         message = f"{what} must be {side} {rule[name]}, not {error.instance}"
@@ -113,7 +115,8 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
 
 def _unknown_key(key: str, known: list[str], place: Place) -> Finding:
     close = difflib.get_close_matches(key, known, 1)
-    help = f"did you mean `{close[0]}`?" if close else "known keys: " + ", ".join(known)
+    help = remedies.of_key(key, known)
+    help = help or f"did you mean `{close[0]}`?" if help or close else "known keys: " + ", ".join(known)
     return Finding(CODE, f"unknown key `{key[:60]}`", place, help)
 
 

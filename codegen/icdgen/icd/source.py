@@ -115,6 +115,8 @@ class _Builder:
         import yaml
         from yaml import events
 
+        from icdgen.icd import remedies
+
         if "\0" in self.text:
             place = _after(self.name, self.text[: self.text.index("\0")])
             return None, [Finding("ICD001", "the file holds a NUL character", place, "remove it")]
@@ -179,7 +181,12 @@ class _Builder:
             mark = getattr(error, "problem_mark", None)
             place = Place(self.name, mark.line + 1, mark.column + 1) if mark else self.unprintable()
             problem = getattr(error, "problem", None) or getattr(error, "reason", None) or "the text cannot be read"
-            help = "check indentation, quotes and brackets just before this place"
+            help = (
+                remedies.of_syntax(problem, "".join(self.text.split("\n")[mark.line : mark.line + 1]), mark.column)
+                if mark
+                else ""
+            )
+            help = help or "check indentation, quotes and brackets just before this place"
             self.findings.append(Finding("ICD001", f"not YAML: {problem}", place, help))
             return None, self.findings
         return (roots[0] if roots else None), self.findings

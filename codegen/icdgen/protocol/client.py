@@ -12,6 +12,7 @@ sent, and each call returns events, mappings with the key ``event``:
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, Message
@@ -23,7 +24,7 @@ from icdgen.protocol.facts import Client as Settings
 TELECOMMAND, TELEMETRY = "telecommand", "telemetry"
 IDLE, HOLD, WAIT, PAUSE, POLL = "idle", "hold", "wait", "pause", "poll"
 
-Event = dict
+Event = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +54,7 @@ class Client:
             self._joiner = can.Joiner(known, address, 1)
         else:
             need(known.i2c_address, "i2c")
-        self.out: list = []  # UART: bytes; CAN: packets; I2C: (bytes to write, count to read)
+        self.out: list[Any] = []  # UART: bytes; CAN: packets; I2C: (bytes to write, count to read)
         self._transfers_asked = self._transfers_reported = (
             0  # I2C: transactions that went to `out`, and those that came back
         )
@@ -289,4 +290,4 @@ class Client:
         code, parameter = raw[polled.error], raw[polled.parameter]
         if code == self.known.errors.get("none", 0):
             return self._done(now)
-        return self._refused(now, int(code), int(parameter))  # type: ignore[arg-type]
+        return self._refused(now, int(code), int(parameter))

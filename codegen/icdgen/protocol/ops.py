@@ -6,6 +6,7 @@ Described in ``tests/conformance/README.md``. `answer` is the reference.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from icdgen.icd.model import Icd
 from icdgen.protocol import can, crc, errors, facts, files, i2c, logs, scripts, times, uart
@@ -17,7 +18,7 @@ from icdgen.protocol.sections import CAN_KINDS
 CAN_BYTES = 8  # of a classic CAN frame
 
 
-def answer(icd: Icd, request: Request) -> dict:
+def answer(icd: Icd, request: Request) -> dict[str, Any]:
     """The answer to one request. ``op`` must be one of `OPS`."""
     try:
         return {"ok": True, **OPS[request["op"]](_facts(icd, request), request)}
@@ -50,44 +51,44 @@ def _facts(icd: Icd, request: Request) -> Facts:
     raise facts.Unsupported("no node has a protocol")
 
 
-def crc8(known: Facts, request: Request) -> dict:
+def crc8(known: Facts, request: Request) -> dict[str, Any]:
     data = octets(request)
     return {"crc": crc.compute(facts.need(known.checksum, "crc8").crc, data)}
 
 
-def crc16(known: Facts, request: Request) -> dict:
+def crc16(known: Facts, request: Request) -> dict[str, Any]:
     data = octets(request)
     return {"crc": crc.compute(facts.need(known.crc16, "crc16"), data)}
 
 
-def uart_encode(known: Facts, request: Request) -> dict:
+def uart_encode(known: Facts, request: Request) -> dict[str, Any]:
     message, framing = octets(request), facts.need(known.framing, "uart")
     if not message:
         raise Refusal("length", expected=1, actual=0)
     return {"bytes": uart.encode(framing, message).hex()}
 
 
-def uart_decode(known: Facts, request: Request) -> dict:
+def uart_decode(known: Facts, request: Request) -> dict[str, Any]:
     stream = octets(request)
     found = uart.Decoder(facts.need(known.framing, "uart"), known.longest).feed(stream)
     return {"frames": [event.message.hex() for event in found if event.event == uart.MESSAGE]}
 
 
-def uart_events(known: Facts, request: Request) -> dict:
+def uart_events(known: Facts, request: Request) -> dict[str, Any]:
     limit = number(request, "limit", 1, known.longest, known.longest)
     chunks = [_hex(chunk) for chunk in rows(request, "chunks")]
     decoder = uart.Decoder(facts.need(known.framing, "uart"), limit)
     events = []
     for chunk in chunks:
         for event in decoder.feed(chunk):
-            row: dict = {"event": event.event}
+            row: dict[str, Any] = {"event": event.event}
             if event.event == uart.MESSAGE:
                 row.update(kind=uart.kind(known, event.message), bytes=event.message.hex())
             events.append(row)
     return {"events": events, "discarded": decoder.discarded, "pending": decoder.pending}
 
 
-def can_split(known: Facts, request: Request) -> dict:
+def can_split(known: Facts, request: Request) -> dict[str, Any]:
     packets = can.split(known, _message(known, request))
     return {"packets": [{"id": packet.id, "bytes": packet.data.hex()} for packet in packets]}
 
@@ -100,7 +101,7 @@ def _message(known: Facts, request: Request) -> can.Message:
     return can.Message(kind, id, source, destination, data)
 
 
-def can_join(known: Facts, request: Request) -> dict:
+def can_join(known: Facts, request: Request) -> dict[str, Any]:
     address = number(request, "address", 0, 255) if "address" in request else None
     senders, packets = number(request, "senders", 1, 16, 4), []
     for row in mappings(request, "packets"):
@@ -115,8 +116,8 @@ def can_join(known: Facts, request: Request) -> dict:
     return {"events": [_can_event(event) for event in events]}
 
 
-def _can_event(event: can.Event) -> dict:
-    row: dict = {"event": event.event, "id": event.id, "source": event.source}
+def _can_event(event: can.Event) -> dict[str, Any]:
+    row: dict[str, Any] = {"event": event.event, "id": event.id, "source": event.source}
     if event.message:
         row.update(kind=event.message.kind, destination=event.message.destination, bytes=event.message.data.hex())
     if event.event == can.INCOMPLETE:
@@ -124,7 +125,7 @@ def _can_event(event: can.Event) -> dict:
     return row
 
 
-def i2c_request(known: Facts, request: Request) -> dict:
+def i2c_request(known: Facts, request: Request) -> dict[str, Any]:
     kind, id, checked = text(request, "kind"), number(request, "id", 0, 255), flag(request, "crc")
     if kind == "telemetry":
         if id not in known.telemetry:
@@ -135,14 +136,14 @@ def i2c_request(known: Facts, request: Request) -> dict:
     return {"write": i2c.telecommand(known, id, octets(request), checked).hex(), "read": 0}
 
 
-def i2c_reply(known: Facts, request: Request) -> dict:
+def i2c_reply(known: Facts, request: Request) -> dict[str, Any]:
     id, data, checked = number(request, "id", 0, 255), octets(request), flag(request, "crc")
     if id not in known.telemetry:
         raise Refusal("unknown-id")
     return {"bytes": i2c.reply(known, id, data, checked).hex()}
 
 
-def log_decode(known: Facts, request: Request) -> dict:
+def log_decode(known: Facts, request: Request) -> dict[str, Any]:
     log = logs.decode(known, octets(request))
     entries = [
         {"seconds": e.seconds, "milliseconds": e.milliseconds, "frames": [_frame(f) for f in e.frames]}
@@ -151,11 +152,11 @@ def log_decode(known: Facts, request: Request) -> dict:
     return {"mask": None if log.mask is None else log.mask.hex(), "entries": entries, "truncated": log.truncated}
 
 
-def _frame(frame: logs.Frame) -> dict:
+def _frame(frame: logs.Frame) -> dict[str, Any]:
     return {"bit": frame.bit, "id": frame.id, "bytes": frame.data.hex()}
 
 
-def log_encode(known: Facts, request: Request) -> dict:
+def log_encode(known: Facts, request: Request) -> dict[str, Any]:
     entries = [
         (number(e, "seconds"), number(e, "milliseconds", 0, 65535), [_hex(f) for f in rows(e, "frames")])
         for e in mappings(request, "entries")
@@ -163,24 +164,24 @@ def log_encode(known: Facts, request: Request) -> dict:
     return {"bytes": logs.encode(known, octets(request, "mask"), entries).hex()}
 
 
-def log_message_decode(known: Facts, request: Request) -> dict:
+def log_message_decode(known: Facts, request: Request) -> dict[str, Any]:
     mask, found = logs.decode_message(known, octets(request))
     return {"mask": mask.hex(), "frames": [_frame(frame) for frame in found]}
 
 
-def log_message_encode(known: Facts, request: Request) -> dict:
+def log_message_encode(known: Facts, request: Request) -> dict[str, Any]:
     data = [_hex(frame) for frame in rows(request, "frames")]
     return {"bytes": logs.encode_message(known, octets(request, "mask"), data).hex()}
 
 
-def dos_time(known: Facts, request: Request) -> dict:
+def dos_time(known: Facts, request: Request) -> dict[str, Any]:
     if "value" in request:
         parts = times.unpack(known, number(request, "value"))
         return {**{name: parts[name] for name in times.PARTS}, "valid": times.wrong(parts) is None}
     return {"value": times.pack(known, {name: number(request, name, 0, 9999) for name in times.PARTS})}
 
 
-def hole_map(known: Facts, request: Request) -> dict:
+def hole_map(known: Facts, request: Request) -> dict[str, Any]:
     packets = number(request, "packets")
     if "bytes" in request:
         map_ = octets(request)
@@ -196,12 +197,12 @@ def hole_map(known: Facts, request: Request) -> dict:
     }
 
 
-def index_decode(known: Facts, request: Request) -> dict:
+def index_decode(known: Facts, request: Request) -> dict[str, Any]:
     entries, truncated = files.read_index(known, octets(request))
     return {"entries": [{**e._asdict(), "meta": e.meta.hex()} for e in entries], "truncated": truncated}
 
 
-def index_encode(known: Facts, request: Request) -> dict:
+def index_encode(known: Facts, request: Request) -> dict[str, Any]:
     entries = []
     for row in mappings(request, "entries"):
         numbers = {key: number(row, key) for key in files.IndexEntry._fields[:-1]}
@@ -209,7 +210,7 @@ def index_encode(known: Facts, request: Request) -> dict:
     return {"bytes": files.write_index(known, entries).hex()}
 
 
-def identify(known: Facts, request: Request) -> dict:
+def identify(known: Facts, request: Request) -> dict[str, Any]:
     from icdgen import codec
 
     data = octets(request)
@@ -224,7 +225,7 @@ def identify(known: Facts, request: Request) -> dict:
     return {**found, "matches": matches}
 
 
-OPS: dict[str, Callable[[Facts, Request], dict]] = {
+OPS: dict[str, Callable[[Facts, Request], dict[str, Any]]] = {
     op.__name__: op
     for op in (
         crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,

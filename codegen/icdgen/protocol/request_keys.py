@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
-Request = dict
+Request = dict[str, Any]
 
 
 class Refusal(Exception):
@@ -47,14 +48,14 @@ def flag(request: Request, key: str) -> bool:
     return value
 
 
-def rows(request: Request, key: str) -> list:
+def rows(request: Request, key: str) -> list[Any]:
     value = request.get(key)
     if not isinstance(value, list):
         raise Refusal("request", detail=f"`{key}` is missing or is no list")
     return value
 
 
-def mappings(request: Request, key: str) -> list[dict]:
+def mappings(request: Request, key: str) -> list[dict[str, Any]]:
     found = rows(request, key)
     if not all(isinstance(row, dict) for row in found):
         raise Refusal("request", detail=f"`{key}` has an entry that is no object")

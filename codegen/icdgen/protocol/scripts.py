@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from icdgen.protocol import can, programs, transfer
 from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Client, Request
 from icdgen.protocol.errors import BusyError, LengthError, UnknownIdError
@@ -13,7 +15,7 @@ BUSES = (UART, I2C, CAN)
 LONGEST = 1 << 20  # how often the bytes of an upload are repeated at most
 
 
-def client(known: Facts, request: dict) -> dict:
+def client(known: Facts, request: dict[str, Any]) -> dict[str, Any]:
     """The op ``client``."""
     bus = text(request, "bus")
     if bus not in BUSES:
@@ -25,7 +27,7 @@ def client(known: Facts, request: dict) -> dict:
     return {"steps": steps}
 
 
-def _settings(known: Facts, request: dict) -> Settings:
+def _settings(known: Facts, request: dict[str, Any]) -> Settings:
     given, default = request.get("settings", {}), known.client
     if not isinstance(given, dict):
         raise Refusal("request", detail="`settings` is no object")
@@ -37,10 +39,10 @@ def _settings(known: Facts, request: dict) -> Settings:
     )
 
 
-def _client_step(talking: Client, row: dict) -> dict:
+def _client_step(talking: Client, row: dict[str, Any]) -> dict[str, Any]:
     now = number(row, "at")
     step: dict[str, object] = {}
-    events: list[dict] = []
+    events: list[dict[str, Any]] = []
     try:
         if "telecommand" in row:
             request = Request(TELECOMMAND, number(row, "telecommand", 0, 255), octets(row), flag(row, "repeat"))
@@ -63,7 +65,7 @@ def _client_step(talking: Client, row: dict) -> dict:
     return {**step, "out": [_sent(talking.bus, one) for one in out], "events": events, "deadline": talking.deadline}
 
 
-def _receive(talking: Client, now: int, row: dict) -> list[dict]:
+def _receive(talking: Client, now: int, row: dict[str, Any]) -> list[dict[str, Any]]:
     given = row["receive"]
     if talking.bus == UART:
         return talking.received(now, hex_bytes(given))
@@ -74,7 +76,7 @@ def _receive(talking: Client, now: int, row: dict) -> list[dict]:
     return talking.packet(now, can.Packet(number(given, "id", 0, (1 << 29) - 1), octets(given)))
 
 
-def _sent(bus: str, one) -> object:
+def _sent(bus: str, one: Any) -> object:
     if bus == UART:
         return one.hex()
     if bus == CAN:
@@ -82,7 +84,7 @@ def _sent(bus: str, one) -> object:
     return {"write": one[0].hex(), "read": one[1]}
 
 
-def file(known: Facts, request: dict) -> dict:
+def file(known: Facts, request: dict[str, Any]) -> dict[str, Any]:
     """The op ``file``."""
     procedure = procedure_of(known, request)
     steps = []
@@ -92,7 +94,7 @@ def file(known: Facts, request: dict) -> dict:
             procedure.event(now, _event(event))
         asked = procedure.next(now)
         steps.append({"request": _asked(asked), "deadline": procedure.deadline, "result": procedure.result})
-    answer: dict = {"steps": steps}
+    answer: dict[str, Any] = {"steps": steps}
     if isinstance(procedure, transfer.Download):
         answer["blocks"] = [{"offset": offset, "bytes": data.hex()} for offset, data in procedure.blocks]
     elif isinstance(procedure, transfer.FileList):
@@ -104,7 +106,7 @@ def file(known: Facts, request: dict) -> dict:
     return answer
 
 
-def _event(event: object) -> dict:
+def _event(event: object) -> dict[str, Any]:
     """An event of the client as it stands in a script: the keys that a procedure looks at."""
     if not isinstance(event, dict) or text(event, "event") not in (*transfer.OUTCOMES, "packet"):
         raise Refusal("request", detail="there is no such event")
@@ -115,7 +117,7 @@ def _event(event: object) -> dict:
     return event
 
 
-def _asked(asked: Request | None) -> dict | None:
+def _asked(asked: Request | None) -> dict[str, Any] | None:
     if asked is None:
         return None
     if asked.kind == TELEMETRY:
@@ -123,7 +125,7 @@ def _asked(asked: Request | None) -> dict | None:
     return {"telecommand": asked.id, "bytes": asked.data.hex(), "repeat": asked.repeat}
 
 
-def procedure_of(known: Facts, request: dict) -> transfer.Procedure:
+def procedure_of(known: Facts, request: dict[str, Any]) -> transfer.Procedure:
     """The procedure that a request of the op ``file`` means."""
     name = text(request, "do")
     block = number(request, "block", 1) if "block" in request else None

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import dataclass
+from typing import Any
 
 from icdgen import codec
 from icdgen.protocol import crc, files
@@ -29,7 +30,7 @@ class Wait:
     until: int
 
 
-Steps = Generator["Request | Wait", "dict | None", None]
+Steps = Generator["Request | Wait", "dict[str, Any] | None", None]
 
 
 class Procedure:
@@ -64,7 +65,7 @@ class Procedure:
             return self._wanted
         return None
 
-    def event(self, now: int, event: dict) -> None:
+    def event(self, now: int, event: dict[str, Any]) -> None:
         """Takes an event of the client."""
         self.now = now
         if event["event"] == "packet":
@@ -76,7 +77,7 @@ class Procedure:
     def packet(self, number: int, data: bytes) -> None:
         """Takes a download packet."""
 
-    def _go_on(self, event: dict | None) -> None:
+    def _go_on(self, event: dict[str, Any] | None) -> None:
         try:
             assert self._steps
             self._wanted = self._steps.send(event)
@@ -85,18 +86,18 @@ class Procedure:
         except Ended as failure:
             self._wanted, self.result = None, str(failure)
 
-    def ask(self, request: Request) -> Generator[Request | Wait, dict | None, dict]:
+    def ask(self, request: Request) -> Generator[Request | Wait, dict[str, Any] | None, dict[str, Any]]:
         """A request; its outcome."""
         outcome = yield request
         assert outcome
         return outcome
 
-    def wait(self, milliseconds: int) -> Generator[Request | Wait, dict | None, None]:
+    def wait(self, milliseconds: int) -> Generator[Request | Wait, dict[str, Any] | None, None]:
         yield Wait(self.now + milliseconds)
 
     def telecommand(
         self, step: str, repeat: bool = True, **values: int | bytes
-    ) -> Generator[Request | Wait, dict | None, dict]:
+    ) -> Generator[Request | Wait, dict[str, Any] | None, dict[str, Any]]:
         """Sends the telecommand of a step with values by role; others as a fresh message has them."""
         outcome = yield from self.ask(self.request(step, repeat, **values))
         if outcome["event"] != "done":
@@ -121,7 +122,7 @@ class Procedure:
         assert message.telecommand_id is not None
         return Request(TELECOMMAND, message.telecommand_id, codec.encode(self.known.node, message, raw), repeat)
 
-    def telemetry(self, step: str) -> Generator[Request | Wait, dict | None, tuple[dict, bytes]]:
+    def telemetry(self, step: str) -> Generator[Request | Wait, dict[str, Any] | None, tuple[dict[str, Any], bytes]]:
         """Requests the frame of a step: its values by role, and its bytes."""
         part = self.step(step)
         assert part.message.telemetry_id is not None
@@ -134,7 +135,7 @@ class Procedure:
 
     def poll(
         self, step: str, role: str, wanted: int, interval: str, timeout: int, program: int | None = None
-    ) -> Generator[Request | Wait, dict | None, tuple[dict, bytes]]:
+    ) -> Generator[Request | Wait, dict[str, Any] | None, tuple[dict[str, Any], bytes]]:
         """Requests the frame until the flag is as wanted, of that program if the frame says of which one."""
         end = self.now + timeout
         while True:
@@ -166,7 +167,7 @@ class FileList(Transfer):
 
     def __init__(self, known: Facts) -> None:
         super().__init__(known)
-        self.entries: list[dict] = []
+        self.entries: list[dict[str, Any]] = []
 
     def _run(self) -> Steps:
         last, again = None, 0
@@ -222,7 +223,7 @@ class Download(Transfer):
             if self.size is None and len(data) < want:
                 return
 
-    def _block(self, want: int) -> Generator[Request | Wait, dict | None, bytes]:
+    def _block(self, want: int) -> Generator[Request | Wait, dict[str, Any] | None, bytes]:
         rounds = 0
         while True:
             self.got, self.count = {}, 0
@@ -363,7 +364,7 @@ class Upload(Transfer):
             if rounds == self.number("upload.rounds"):
                 raise Ended("checksum")
 
-    def _missing(self, count: int) -> Generator[Request | Wait, dict | None, list[int]]:
+    def _missing(self, count: int) -> Generator[Request | Wait, dict[str, Any] | None, list[int]]:
         """Positions of the packets that the node has not."""
         form = need(self.known.hole_map, "file_transfer.hole_map")
         map_ = b""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from icdgen import naming
-from icdgen.icd.model import Field, Member
+from icdgen.icd.model import Enum, Field, Member
 from icdgen.values import numbers
 from icdgen.values.errors import BadHex, BadValue
 from icdgen.values.find import by_name
@@ -27,7 +29,7 @@ def raw_value(field: Field, text: str) -> int | bytes:
         return _TRUTH[text.lower()]
     value = numbers.integer(text)
     if value is None and field.enum:
-        return _member(field, text)
+        return _member(field, field.enum, text)
     if value is None:
         raise BadValue(f"`{text}` is not a whole number")
     return value
@@ -35,7 +37,8 @@ def raw_value(field: Field, text: str) -> int | bytes:
 
 def from_physical(field: Field, text: str) -> int | bytes:
     """The raw value nearest to a physical one. Raises `BadValue`; does not look at the range."""
-    return _READERS.get(field.type, _integer)(field, text)
+    reader: _Reader = _READERS.get(field.type, _integer)
+    return reader(field, text)
 
 
 def _bool(field: Field, text: str) -> int:
@@ -98,11 +101,11 @@ def without_unit(field: Field, text: str) -> str:
 def _enum(field: Field, text: str) -> int:
     if field.enum is None:
         return _integer(field, text)
-    return _member(field, text)
+    return _member(field, field.enum, text)
 
 
-def _member(field: Field, text: str) -> int:
-    known = field.enum.members
+def _member(field: Field, enum: Enum, text: str) -> int:
+    known = enum.members
     number = numbers.integer(text)
     found = {m.value for m in by_name(known, text, ())}
     if not found and number is None:
@@ -111,7 +114,7 @@ def _member(field: Field, text: str) -> int:
         found.add(number)
     if len(found) == 1:
         return found.pop()
-    what = "fits several members" if found else f"is no member of {field.enum.name}"
+    what = "fits several members" if found else f"is no member of {enum.name}"
     raise BadValue(f"`{text}` {what}{members(field)}")
 
 
@@ -120,4 +123,5 @@ def _has_words(member: Member, text: str) -> bool:
     return bool(wanted) and set(wanted) <= set(naming.words(member.name))
 
 
-_READERS = {"bool": _bool, "bytes": _bytes, "float": _float, "enum": _enum}
+_Reader = Callable[[Field, str], int | bytes]
+_READERS: dict[str, _Reader] = {"bool": _bool, "bytes": _bytes, "float": _float, "enum": _enum}

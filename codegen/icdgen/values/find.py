@@ -6,7 +6,7 @@ import difflib
 import re
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from icdgen import naming
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Field, Icd, Message, Node
@@ -15,7 +15,17 @@ from icdgen.values.errors import Ambiguous, NotFound
 KINDS = (TELECOMMAND, TELEMETRY, CONFIGURATION)
 MOST_LISTED = 20
 _NUMBER = re.compile(r"[0-9]{1,20}|0[xX][0-9A-Fa-f]{1,20}")
-_Named = TypeVar("_Named")
+
+
+class _HasName(Protocol):
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def identifier(self) -> str | None: ...
+
+
+_Named = TypeVar("_Named", bound=_HasName)
 
 
 def find_node(icd: Icd, name: str) -> Node:
@@ -64,7 +74,7 @@ def find_field(message: Message, key: str, vocabulary: tuple[str, ...] = ()) -> 
 
 def by_name(items: Sequence[_Named], key: str, vocabulary: tuple[str, ...]) -> list[_Named]:
     """Items of exactly this name, else of this name in any case, else of these words, however they are joined."""
-    steps: list[Callable[[object], bool]] = [
+    steps: list[Callable[[_Named], bool]] = [
         lambda item: item.name == key,
         lambda item: item.name.casefold() == key.strip().casefold(),
         lambda item: _joined(key, vocabulary) in (_joined(n, vocabulary) for n in _names(item)),
@@ -96,7 +106,7 @@ def _ids(message: Message, kind: str | None) -> tuple[int | None, ...]:
     return {TELECOMMAND: (message.telecommand_id,), TELEMETRY: (message.telemetry_id,)}.get(kind or "", message.ids)
 
 
-def _names(item: object) -> Iterable[str]:
+def _names(item: _HasName) -> Iterable[str]:
     return filter(None, (item.name, item.identifier))
 
 

@@ -8,7 +8,8 @@ from icdgen.diagnostics import Place
 from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Message, Node, Part
 from icdgen.icd.rules.context import Context, mappings
-from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import close_to, line_of, listing, quote
 
 _KEYS = ("bits", "type", "enum", "unit", "formula")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from icdgen.icd.errata import Applied
 from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Icd, Message, Node
-from icdgen.icd.rules.rule import Fault
+from icdgen.icd.rules.fault import Fault
 
 if TYPE_CHECKING:
     from icdgen.icd.identifiers import Language

@@ -8,7 +8,8 @@ from typing import TypeVar
 from icdgen.icd.located import Map
 from icdgen.icd.model import Enum, Message, Node
 from icdgen.icd.rules.context import Context, mappings
-from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
 from icdgen.icd.units import STANDARD
 

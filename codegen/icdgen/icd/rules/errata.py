@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from icdgen.diagnostics import Place
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.rule import REGISTERED, Fault, elsewhere, rule
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.rule import REGISTERED, elsewhere, rule
 from icdgen.icd.rules.wording import close_to, count, line_of
 
 elsewhere("errata", "ICD080", "ICD081", "ICD082", "ICD083")

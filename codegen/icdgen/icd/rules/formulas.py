@@ -8,7 +8,8 @@ from icdgen.icd import exact, formula
 from icdgen.icd.located import Map
 from icdgen.icd.model import Field, Node
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
 
 SCALED = ("uint", "int")

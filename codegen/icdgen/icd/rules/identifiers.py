@@ -10,7 +10,8 @@ from icdgen.icd.identifiers import Identifier
 from icdgen.icd.located import Map
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.declarations import TWINS, declared
-from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, listing, quote
 
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")

@@ -9,7 +9,8 @@ from icdgen.icd.located import Map
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.duplicates import is_news, together
-from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, listing, quote
 
 # kind -> the keys of its ids and the direction each belongs to

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from icdgen.icd.division import obstacles
 from icdgen.icd.model import Field
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, quote
 
 _INTEGER = (frozenset(range(1, 65)), "1 to 64 bits")

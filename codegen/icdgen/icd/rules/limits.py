@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 from icdgen.icd.model import Field, Limits
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.values import NUMBERS
 from icdgen.icd.rules.wording import quote
 

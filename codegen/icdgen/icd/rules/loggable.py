@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from icdgen.icd.model import Message, Node
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import close_to, count, line_of, quote
 
 

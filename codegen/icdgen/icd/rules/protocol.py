@@ -8,7 +8,8 @@ from typing import TypeGuard
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context
-from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, quote
 
 CHECKED = b"123456789"  # what the check value of a CRC is computed over, by convention

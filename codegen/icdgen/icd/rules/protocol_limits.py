@@ -8,9 +8,10 @@ from math import ceil
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message, Node
 from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.ids import KEYS
 from icdgen.icd.rules.protocol_sizes import numbers, section_of
-from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, listing, quote
 
 BYTE = 255

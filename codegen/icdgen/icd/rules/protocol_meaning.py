@@ -7,10 +7,11 @@ from collections.abc import Iterator
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import CAN_DATA_BYTES, TELECOMMAND, TELEMETRY, Node
 from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.ids import KEYS
 from icdgen.icd.rules.protocol_limits import in_force
 from icdgen.icd.rules.protocol_sizes import numbers, section_of
-from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, listing, quote
 
 ACKNOWLEDGE_ROLES = ("id", "error")

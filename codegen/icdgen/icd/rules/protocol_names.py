@@ -8,8 +8,9 @@ from typing import TypeVar
 from icdgen.diagnostics import Place
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.protocol import sections
-from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import close_to, quote
 
 T = TypeVar("T")

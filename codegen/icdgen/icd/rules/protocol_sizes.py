@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
 from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.protocol import sections
-from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count as counted
 
 CAN_IDENTIFIER_BITS = 29  # of an extended CAN frame

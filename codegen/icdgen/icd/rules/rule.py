@@ -4,23 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from icdgen.diagnostics import Place
-from icdgen.icd.located import Map
+from icdgen.icd.rules.fault import Fault
 
 if TYPE_CHECKING:
     from icdgen.icd.rules.context import Context
     from icdgen.icd.rules.pages import Page
-
-
-class Fault(NamedTuple):
-    """One breach of a rule. ``owner`` is the mapping that it concerns, by which an erratum's `accept` finds it."""
-
-    owner: Map | None
-    place: Place
-    message: str
-    help: str = ""
 
 
 Check = Callable[["Context"], Iterator[Fault]]

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from icdgen.icd.model import Field
 from icdgen.icd.rules.context import Context, mappings
-from icdgen.icd.rules.rule import Fault, rule
+from icdgen.icd.rules.fault import Fault
+from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, quote
 
 NUMBERS = ("uint", "int", "enum")

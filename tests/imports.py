@@ -1,0 +1,84 @@
+"""Who imports whom within a package, imports within functions and for type checkers included."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+Graph = Mapping[str, frozenset[str]]  # module -> modules that it imports
+
+
+def graph(folder: Path) -> Graph:
+    """The modules of a package. Raises `SyntaxError` for what is no Python."""
+    files = {_module(path, folder): path for path in sorted(folder.rglob("*.py"))}
+    return {name: frozenset(_imports(name, path, files)) - {name} for name, path in files.items()}
+
+
+def _module(path: Path, folder: Path) -> str:
+    parts = path.relative_to(folder.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def _imports(name: str, path: Path, known: Mapping[str, Path]) -> Iterator[str]:
+    home = name if path.name == "__init__.py" else name.rpartition(".")[0]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name in known)
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                above = home.split(".")[: len(home.split(".")) - node.level + 1]
+                base = ".".join([*above, *([base] if base else [])])
+            for alias in node.names:
+                inner = f"{base}.{alias.name}"
+                if inner in known:
+                    yield inner
+                elif base in known:
+                    yield base
+
+
+def circles(graph: Graph) -> list[list[str]]:
+    """Groups of modules that import each other, directly or by way of others."""
+    reached = {name: _reached(name, graph) for name in graph}
+    groups = {frozenset(other for other in reached[name] if name in reached[other]) for name in graph}
+    return sorted(sorted(group) for group in groups if group)
+
+
+def _reached(name: str, graph: Graph) -> set[str]:
+    found: set[str] = set()
+    queue = list(graph[name])
+    while queue:
+        one = queue.pop()
+        if one not in found:
+            found.add(one)
+            queue += graph[one]
+    return found
+
+
+def folded(graph: Graph, places: Iterable[str]) -> Graph:
+    """The graph of the places, each a module or a package with all that is in it; the longest that fits counts.
+
+    The outermost package stands for itself alone.
+    """
+    ranked = sorted(places, key=len, reverse=True)
+
+    def place(name: str) -> str:
+        return next((one for one in ranked if name == one or ("." in one and name.startswith(f"{one}."))), name)
+
+    found: dict[str, set[str]] = {}
+    for name, imports in graph.items():
+        found.setdefault(place(name), set()).update(place(one) for one in imports)
+    return {name: frozenset(imports - {name}) for name, imports in found.items()}
+
+
+def upward(graph: Graph, layers: Iterable[Iterable[str]]) -> list[str]:
+    """Imports that do not lead down, and places that are in no layer. ``layers`` go from the bottom to the top."""
+    level = {place: number for number, layer in enumerate(layers) for place in layer}
+    rows = folded(graph, level)
+    wrong = [f"{name} is in no layer" for name in rows if name not in level]
+    for name, imports in rows.items():
+        for one in sorted(imports):
+            if name in level and one in level and level[one] >= level[name]:
+                wrong.append(f"{name} imports {one}, which does not stand below it")
+    return sorted(wrong)
