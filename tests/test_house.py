@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import subprocess
 import sys
@@ -13,6 +14,7 @@ import yaml
 from tests.conftest import ROOT
 
 PYTHON = [name for name in ("codegen", "tests", "bench", "examples", "scripts") if (ROOT / name).is_dir()]
+CACHES = {".ruff_cache", ".mypy_cache", ".pytest_cache", "__pycache__"}  # of tools that ran in a folder of ours
 
 
 def test_generated_is_what_the_backends_make_of_the_shipped_icds():
@@ -32,7 +34,7 @@ def test_the_generator_knows_no_device():
         p
         for top in ("codegen", "templates", "runtime")
         for p in (ROOT / top).rglob("*")
-        if p.is_file() and p.suffix != ".pyc"
+        if p.is_file() and p.suffix != ".pyc" and not CACHES.intersection(p.parts)
     ]
     assert [f"{p.relative_to(ROOT)}: {m.group()}" for p in files if (m := word.search(p.read_text("utf-8")))] == []
 
@@ -41,6 +43,26 @@ def test_the_generator_knows_no_device():
 def test_our_python_is_linted_and_formatted(command):
     result = subprocess.run([sys.executable, "-m", *command, *PYTHON], cwd=ROOT, capture_output=True, text=True)
     assert result.returncode == 0, result.stdout + result.stderr
+
+
+def test_the_reference_of_the_protocol_judges_and_does_nothing_else():
+    facts = {"facts", "reading", "sections", "declared"}  # what an ICD says; the other modules do something with it
+    machines = {path.stem for path in (ROOT / "codegen/icdgen/protocol").glob("*.py")} - facts - {"__init__"}
+    assert {"client", "uart", "can", "transfer", "logs", "crc"} <= machines
+    importing = []
+    for path in (ROOT / "codegen").rglob("*.py"):
+        if path.relative_to(ROOT / "codegen/icdgen").parts[0] in ("protocol", "vectors", "recognize"):
+            continue
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module:
+                names = {f"{node.module}.{alias.name}" for alias in node.names} | {node.module}
+            elif isinstance(node, ast.Import):
+                names = {alias.name for alias in node.names}
+            else:
+                continue
+            used = {name.split(".")[2] for name in names if name.startswith("icdgen.protocol.")} & machines
+            importing += [f"{path.relative_to(ROOT)}: {name}" for name in sorted(used)]
+    assert importing == []
 
 
 def test_our_python_is_typed():

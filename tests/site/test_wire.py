@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from icdgen.backends.html import wire
 from icdgen.backends.html.relations import Relations
+from icdgen.backends.python.objects.links import link_of
 from icdgen.protocol import i2c
 
 
@@ -30,10 +31,11 @@ def test_an_optional_checksum_covers_the_parameters(shipped):
 
 def test_what_the_icd_says_about_the_id_holds_for_the_bytes(shipped):
     message = next(m for m in shipped.node("cubeacp").messages if m.name == "ASGP4 Run Mode")
-    known, section, checked = Relations(shipped).wire(message)
+    known, section, _, checked = Relations(shipped).wire(message)
     covering = [replace(one.facts, checksum=replace(one.facts.checksum, covers_id=True)) for one in checked]
     plain = replace(known, framing=replace(known.framing, escapes_id=False))
-    other = wire.Wire(plain, section, [wire.Speaker(one, section) for one in covering])
+    speakers = [wire.Speaker(one, section, link_of(shipped, one)) for one in covering]
+    other = wire.Wire(plain, section, link_of(shipped, plain), speakers)
     uart = wire.buses(message, other, b"\x1f")[0]
     texts = [" ".join(chunk.text for chunk in line.chunks) for line in uart.lines]
     check = i2c.checksum(covering[0], 0x1F, b"\x1f")

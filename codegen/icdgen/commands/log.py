@@ -36,11 +36,10 @@ def log(
     """
     from icdgen import tables
     from icdgen.logfile import listing, source
-    from icdgen.logfile.nodes import node_of
 
     form = form or _form_of(out)
     icd = load_or_exit(icds).icd
-    found = source.open_log(icd, node_of(icd, name), file)
+    found = source.open_log(icd, source.node_of(icd, name), file)
     if form is None:
         if head is not None:
             raise click.UsageError("--head needs --format or --out")

@@ -11,6 +11,7 @@ from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Node
 from icdgen.logfile.columns import Plan, plan
 from icdgen.protocol import facts
+from icdgen.values import find_node
 
 PIECE = 4 << 20  # bytes that are read at once, about
 
@@ -74,6 +75,20 @@ class Source:
         if self.entries > 1 and self.time(self.entry(self.entries - 1)) < self.time(self.entry(0)):
             found.append("the last entry is older than the first")
         return [f"{doubt}; is this a log of {self.plan.node.name}?" for doubt in found]
+
+
+def node_of(icd: Icd, name: str | None) -> Node:
+    """The node that is meant; without a name the only one that has logs. Raises `icdgen.errors.UserError`."""
+    if name is not None:
+        return find_node(icd, name)
+    able = [node for node in icd.nodes if facts.of(icd, node).log_file is not None]
+    if len(able) == 1:
+        return able[0]
+    names = ", ".join(node.name for node in able)
+    raise UserError(
+        "it is not said whose log it is" if able else "the ICDs describe no log files",
+        f"--node NAME; nodes: {names}" if able else "`protocol.telemetry_log` describes them, see docs/icd-format.md",
+    )
 
 
 def open_log(icd: Icd, node: Node, path: Path) -> Source:

@@ -12,9 +12,7 @@ from typing import NamedTuple
 
 from icdgen.protocol.errors import TooLongError
 from icdgen.protocol.facts import Can, Facts, need
-
-KINDS = ("telecommand", "acknowledge", "refusal", "request", "reply", "request_refusal")
-WITH_DATA = ("telecommand", "reply")  # the others have no data
+from icdgen.protocol.sections import CAN_WITH_DATA
 
 MESSAGE = "message"
 DUPLICATE = "duplicate"  # a packet that was there already, dropped
@@ -76,7 +74,7 @@ def split(facts: Facts, message: Message) -> list[Packet]:
         return Packet(id, data)
 
     data, size = message.data, len(message.data)
-    room = can.data_bytes if message.kind in WITH_DATA else 0
+    room = can.data_bytes if message.kind in CAN_WITH_DATA else 0
     if size <= room:
         return [packet(can.types, data)]
     form = can.extended
@@ -140,7 +138,7 @@ class Joiner:
             return events
         kind = next((k for k, number in self.can.types.items() if number == type_), None)
         if kind is not None:
-            if len(packet.data) > (self.can.data_bytes if kind in WITH_DATA else 0):
+            if len(packet.data) > (self.can.data_bytes if kind in CAN_WITH_DATA else 0):
                 return [*events, Event(MALFORMED, id, source)]
             return [*events, Event(MESSAGE, id, source, Message(kind, id, source, destination, packet.data))]
         kind = next((k for k, number in self.can.extended_types.items() if number == type_), None)

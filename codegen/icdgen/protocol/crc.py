@@ -1,9 +1,6 @@
-"""CRCs, bit by bit, and the table for those who go byte by byte."""
+"""CRCs, bit by bit."""
 
 from __future__ import annotations
-
-from dataclasses import replace
-from functools import cache
 
 from icdgen.protocol.facts import Crc
 
@@ -39,10 +36,3 @@ class Register:
 def compute(crc: Crc, data: bytes) -> int:
     """The CRC of the bytes."""
     return Register(crc).feed(data).result()
-
-
-@cache
-def table(crc: Crc) -> tuple[int, ...]:
-    """What each byte, first bit on top, makes of a register of zeros."""
-    plain = replace(crc, init=0, reflect_in=False, reflect_out=False, xor_out=0)
-    return tuple(compute(plain, bytes([byte])) for byte in range(256))

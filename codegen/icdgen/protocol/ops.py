@@ -13,6 +13,7 @@ from icdgen.protocol import can, crc, errors, facts, files, i2c, logs, scripts, 
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.request_keys import Refusal, Request, flag, mappings, number, octets, rows, text
 from icdgen.protocol.request_keys import hex_bytes as _hex
+from icdgen.protocol.sections import CAN_KINDS
 
 CAN_BYTES = 8  # of a classic CAN frame
 
@@ -94,7 +95,7 @@ def can_split(known: Facts, request: Request) -> dict[str, Any]:
 
 def _message(known: Facts, request: Request) -> can.Message:
     kind, data = text(request, "kind"), octets(request)
-    if kind not in can.KINDS:
+    if kind not in CAN_KINDS:
         raise Refusal("request", detail="there is no such kind")
     id, source, destination = (number(request, key, 0, 255) for key in ("id", "source", "destination"))
     return can.Message(kind, id, source, destination, data)

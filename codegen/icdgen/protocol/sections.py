@@ -28,6 +28,8 @@ from icdgen.protocol.declared import (
 
 _BITS = ("lsb0", "msb0")
 _MSB0 = "whether bit 0 is the most significant one of a byte"
+CAN_WITH_DATA = ("telecommand", "reply")  # the other kinds have no data
+CAN_KINDS = ("telecommand", "acknowledge", "refusal", "request", "reply", "request_refusal")
 _POLL = "time between two polls of "
 
 
@@ -141,7 +143,7 @@ class Can:
         CAN_DATA_BYTES,
     )
     parts: dict[str, CanPart]
-    types: dict[str, int]  # kind -> message type; see `KINDS` of `icdgen.protocol.can`
+    types: dict[str, int]  # kind -> message type; see `CAN_KINDS`
     extended_types: dict[str, int]
     extended: Extended | None
 

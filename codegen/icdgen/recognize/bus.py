@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from icdgen.protocol import can
+from icdgen.protocol.sections import CAN_WITH_DATA
 from icdgen.recognize import match
 from icdgen.recognize.packets import Printed
 from icdgen.recognize.reading import ACKNOWLEDGE, REFUSAL, REQUEST, TELECOMMAND, TELEMETRY, Reading, Speaker
@@ -51,7 +52,7 @@ def _of_speaker(speaker: Speaker, packets: list[can.Packet]) -> list[Reading]:
 def _reading(speaker: Speaker, told: can.Message) -> Reading | None:
     sends = told.kind in ("telecommand", "acknowledge", "refusal")
     message = (speaker.facts.telecommands if sends else speaker.facts.telemetry).get(told.id)
-    if message is None or (told.kind in can.WITH_DATA and len(told.data) != message.length):
+    if message is None or (told.kind in CAN_WITH_DATA and len(told.data) != message.length):
         return None
     way = f"CAN, from address {told.source} to {told.destination}"
     return Reading(speaker, _WHAT[told.kind], message, told.id, told.data, remarks=(way,))

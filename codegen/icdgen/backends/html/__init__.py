@@ -9,12 +9,15 @@ from collections.abc import Iterator
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
+from icdgen import shipped
 from icdgen.backends import Identifier
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
     from icdgen.diff.inputs.side import Side
     from icdgen.render import Renderer
+
+shipped.provide_runtime()  # which makes the bytes that pages show
 
 
 class HtmlBackend:

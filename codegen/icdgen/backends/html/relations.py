@@ -8,6 +8,7 @@ from typing import NamedTuple
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
 from icdgen.backends.html.wire import Speaker, Wire
+from icdgen.backends.python.objects.links import link_of
 from icdgen.icd.model import Enum, Erratum, Field, Icd, Loggable, Message, Node
 from icdgen.icd.units import Unit
 from icdgen.protocol import facts
@@ -98,7 +99,8 @@ class Relations:
 
     def _speaker(self, node: Node) -> Speaker:
         if node.name not in self._spoken:
-            self._spoken[node.name] = Speaker(facts.of(self.icd, node), self.icd.protocol_of(node))
+            known = facts.of(self.icd, node)
+            self._spoken[node.name] = Speaker(known, self.icd.protocol_of(node), link_of(self.icd, known))
         return self._spoken[node.name]
 
     def users(self, enum: Enum) -> list[Place]:

@@ -1,5 +1,5 @@
-"""What goes over UART, I2C and CAN for one message, as the reference of the protocol makes it. A bus that the ICD does not
-describe is left out."""
+"""What goes over UART, I2C and CAN for one message, as the Python runtime makes it. A bus that the ICD does not describe
+is left out."""
 
 from __future__ import annotations
 
@@ -7,11 +7,16 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
+from icdgen_runtime.wire.can import CanMessage, can_split
+from icdgen_runtime.wire.errors import TooLongError, UnsupportedError
+from icdgen_runtime.wire.i2c import i2c_write
+from icdgen_runtime.wire.link import Link
+from icdgen_runtime.wire.uart import uart_encode
+
 from icdgen.backends.html.texts import count
 from icdgen.icd.model import Message
-from icdgen.protocol import can, i2c, uart
-from icdgen.protocol.errors import TooLongError
-from icdgen.protocol.facts import Can, Facts, Unsupported
+from icdgen.protocol.facts import Can, Facts
+from icdgen.protocol.sections import CAN_WITH_DATA
 
 _SHOWN = 24  # data bytes that are written out
 
@@ -39,10 +44,11 @@ class Bus:
 
 
 class Speaker(NamedTuple):
-    """A node that speaks a message: what code is made from, and the section of the ICD that it is read from."""
+    """A node that speaks a message: what code is made from, the section of the ICD that it is read from, and its ``LINK``."""
 
     facts: Facts
     section: dict[str, Any]
+    link: Link
 
 
 class Wire(NamedTuple):
@@ -50,6 +56,7 @@ class Wire(NamedTuple):
 
     facts: Facts
     section: dict[str, Any]
+    link: Link
     checked: list[Speaker]
 
 
@@ -82,7 +89,7 @@ def _can_facts(form: Can) -> dict[str, object]:
     found: dict[str, object] = {role: [form.parts[role].shift, form.parts[role].bits] for role in ("type", "channel")}
     for name in ("types", "extended_types"):
         types = getattr(form, name)
-        found[name] = [types[kind] for kind in can.WITH_DATA if kind in types]
+        found[name] = [types[kind] for kind in CAN_WITH_DATA if kind in types]
     return found | ({"extended": [form.extended.data_bytes, form.extended.left_at]} if form.extended else {})
 
 
@@ -126,23 +133,22 @@ def _uart(message: Message, wire: Wire, data: bytes) -> Bus | None:
         return None
     lines = []
     if message.telecommand_id is not None:
-        lines.append(Line("Telecommand", _framed(wire.facts, message.telecommand_id, data)))
+        lines.append(Line("Telecommand", _framed(wire.link, message.telecommand_id, data)))
         checked = _check(wire, "telecommand", "uart")
         if checked:
-            lines.append(Line("with CRC", _framed(wire.facts, message.telecommand_id, data, checked)))
+            lines.append(Line("with CRC", _framed(wire.link, message.telecommand_id, data, checked)))
     if message.telemetry_id is not None:
-        lines.append(Line("Request", _framed(wire.facts, message.telemetry_id, b"")))
-        lines.append(Line("Answer", _framed(wire.facts, message.telemetry_id, data)))
+        lines.append(Line("Request", _framed(wire.link, message.telemetry_id, b"")))
+        lines.append(Line("Answer", _framed(wire.link, message.telemetry_id, data)))
     return Bus("UART", _uart_note(wire.section["uart"], wire.facts), lines)
 
 
-def _framed(facts: Facts, id: int, data: bytes, checked: Speaker | None = None) -> list[Chunk]:
+def _framed(link: Link, id: int, data: bytes, checked: Speaker | None = None) -> list[Chunk]:
     """The bytes on the line, cut where the id, the data and the checksum begin and end."""
-    assert facts.framing is not None
-    body = i2c.telecommand(checked.facts if checked else facts, id, data, checked is not None)
-    line = uart.encode(facts.framing, body)
+    body = i2c_write(checked.link if checked else link, id, data, checked is not None)
+    line = uart_encode(link, body)
     # What is sent for a part begins where the parts before it, sent alone, would be followed by the end of message.
-    ends = [len(uart.encode(facts.framing, body[:size])) - 2 for size in (0, 1, 1 + len(data), len(body))]
+    ends = [2, *(len(uart_encode(link, body[:size])) - 2 for size in (1, 1 + len(data), len(body)))]
     start, id_sent, data_sent, check_sent = (line[at:to] for at, to in zip([0, *ends], ends, strict=False))
     chunks = [Chunk("frame", _hex(start), "start of message"), Chunk("id", _hex(id_sent), f"id {id}")]
     chunks += _data(data_sent)
@@ -192,7 +198,7 @@ def _id(id: int) -> Chunk:
 def _with_crc(wire: Wire, direction: str, id: int, data: bytes, sent: list[Chunk]) -> Iterator[Line]:
     checked = _check(wire, direction, "i2c")
     if checked:
-        whole = i2c.telecommand(checked.facts, id, data, True)
+        whole = i2c_write(checked.link, id, data, True)
         yield Line("with CRC", [*sent, _crc_chunk(whole[1 + len(data) :], checked, direction)])
 
 
@@ -206,23 +212,23 @@ def _can(message: Message, wire: Wire, data: bytes) -> Bus | None:
     node = form.node_address
     lines: list[Line] = []
     if message.telecommand_id is not None:
-        sent = can.Message("telecommand", message.telecommand_id, 0, node, data)
+        sent = CanMessage("telecommand", message.telecommand_id, 0, node, data)
         lines += _packets(wire, sent, "Telecommand")
     if message.telemetry_id is not None:
-        lines += _packets(wire, can.Message("request", message.telemetry_id, 0, node), "Request")
-        lines += _packets(wire, can.Message("reply", message.telemetry_id, node, 0, data), "Answer")
+        lines += _packets(wire, CanMessage("request", message.telemetry_id, 0, node), "Request")
+        lines += _packets(wire, CanMessage("reply", message.telemetry_id, node, 0, data), "Answer")
     bits = sum(part.bits for part in form.parts.values())
     note = f"{bits}-bit identifiers. Your own address stands as 0: put it in its place."
     return Bus("CAN", note, lines) if lines else None
 
 
-def _packets(wire: Wire, message: can.Message, label: str) -> Iterator[Line]:
+def _packets(wire: Wire, message: CanMessage, label: str) -> Iterator[Line]:
     """One packet, or as many extended ones as it takes; of many the first two and the last."""
     form = wire.facts.can
     assert form is not None
     try:
-        packets = can.split(wire.facts, message)
-    except (TooLongError, Unsupported):
+        packets = can_split(wire.link, message)
+    except (TooLongError, UnsupportedError):
         return
     if len(packets) == 1 and len(message.data) <= form.data_bytes:
         yield Line(label, [_identifier(wire, packets[0].id), *_data(packets[0].data)])
@@ -242,7 +248,7 @@ def _packets(wire: Wire, message: can.Message, label: str) -> Iterator[Line]:
 def _identifier(wire: Wire, id: int) -> Chunk:
     form = wire.facts.can
     assert form is not None
-    parts = can.parts_of(form, id)
+    parts = {role: id >> part.shift & (1 << part.bits) - 1 for role, part in form.parts.items()}
     rows = wire.section["can"]["message_types"]["values"]
     name = next(row["name"] for row in rows if row["value"] == parts["type"])
     rest = f"channel {parts['channel']}, source {parts['source']}, destination {parts['destination']}"

@@ -8,6 +8,7 @@ from typing import Any
 
 from icdgen.protocol import can
 from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import CAN_KINDS, CAN_WITH_DATA
 
 Requests = Iterator[tuple[str, dict[str, Any]]]
 
@@ -18,11 +19,11 @@ def requests(known: Facts, source: Random) -> Requests:
     assert form
     node, other, third = form.node_address, 0x42, 0xFE
     samples: list[can.Message] = []
-    for kind in can.KINDS:
+    for kind in CAN_KINDS:
         ids = known.telecommands if kind in ("telecommand", "acknowledge", "refusal") else known.telemetry
         if kind not in form.types:
             continue
-        if kind not in can.WITH_DATA:
+        if kind not in CAN_WITH_DATA:
             samples += [can.Message(kind, id, node, other) for id in list(ids)[:2]]
             continue
         by_length = {m.length: id for id, m in reversed(ids.items())}

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from icdgen.backends.c.link.facts import TYPES, FactTables
 from icdgen.backends.c.link.rows import lines, row_of
-from icdgen.protocol import crc
-from icdgen.protocol.can import KINDS
 from icdgen.protocol.facts import Crc, Step
+from icdgen.protocol.sections import CAN_KINDS
 
 _CAN_BYTES = 8
 _MOST_PACKETS = 256
@@ -27,7 +26,7 @@ class BusTables(FactTables):
         form = one and one.extended
         if one is None or one.data_bytes > _CAN_BYTES or (form and self.too_wide()):
             return "NULL"
-        types = (", ".join(str(t.get(kind, -1)) for kind in KINDS) for t in (one.types, one.extended_types))
+        types = (", ".join(str(t.get(kind, -1)) for kind in CAN_KINDS) for t in (one.types, one.extended_types))
         rows = [
             row_of(f"{{{one.parts[role].bits}u, {one.parts[role].shift}u}}", f"{role}: bits, shift")
             for role in ("type", "channel", "source", "destination")
@@ -49,7 +48,7 @@ class BusTables(FactTables):
         """The initialiser of a CRC without its braces; the table for whole bytes is one of its own."""
         table = "NULL"
         if 8 <= one.width <= 16:
-            entries = [f"{value:#0{2 + -(-one.width // 4)}x}u," for value in crc.table(one)]
+            entries = [f"{value:#0{2 + -(-one.width // 4)}x}u," for value in _table(one)]
             table = self.add(f"{name}_table[]", "uint16_t", lines(entries))
         facts = (row.partition(", /*")[0] for row in self.facts(name, one))
         return ", ".join([*facts, table])
@@ -61,3 +60,15 @@ class BusTables(FactTables):
     def crc16(self) -> str:
         one = self.known.crc16
         return "NULL" if one is None else self.add("crc16", TYPES[Crc], [self.crc("crc16", one)])
+
+
+def _table(one: Crc) -> list[int]:
+    """What each byte, first bit on top, makes of a register of zeros."""
+    top, mask = 1 << one.width - 1, (1 << one.width) - 1
+    table = []
+    for byte in range(256):
+        register = byte << one.width - 8
+        for _ in range(8):
+            register = register << 1 & mask ^ (one.polynomial if register & top else 0)
+        table.append(register)
+    return table
