@@ -9,6 +9,7 @@ from icdgen.icd.model import CAN_DATA_BYTES, TELECOMMAND, TELEMETRY, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.ids import KEYS
+from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import in_force
 from icdgen.icd.rules.protocol_sizes import numbers, section_of
 from icdgen.icd.rules.rule import rule
@@ -132,6 +133,18 @@ def messages_can_be_sent(ctx: Context) -> Iterator[Fault]:
                         "correct `length`, or say how CAN sends several packets: `can.extended` and its message types"
                     )
                     yield Fault(message.source, message.source.at("length"), text, help)
+
+
+@rule("ICD110")
+def progress_comes_to_an_end(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        for section in sections(node):
+            progress = section.get("progress")
+            fields = progress.get("fields") if isinstance(progress, Map) else None
+            if isinstance(progress, Map) and isinstance(fields, Map) and not {"busy", "ready"} & fields.keys():
+                message = "no field tells when it is done"
+                help = "name the field that is set meanwhile, `busy`, or the one that is set afterwards, `ready`"
+                yield Fault(progress, progress.at("fields"), message, help)
 
 
 def _is_short(can: Map, direction: str) -> bool:

@@ -1,8 +1,9 @@
-"""Messages, fields, enumeration members and message types that the protocol section names."""
+"""Messages, fields, enumeration members, message types and nodes that the protocol section names."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TypeVar
 
 from icdgen.diagnostics import Place
@@ -94,6 +95,19 @@ def message_types_exist(ctx: Context) -> Iterator[Fault]:
                     yield Fault(
                         section, section.at(key), f"there is no message type {quote(name)}", _verbatim(name, known)
                     )
+
+
+@rule("ICD109", whole=True)
+def named_nodes_exist(ctx: Context) -> Iterator[Fault]:
+    known = {node.name for node in ctx.icd.nodes}
+    for node in ctx.icd.nodes:
+        for section in sections(node):
+            for name, place in _values(section, "nodes", str):
+                # A node that was not asked for is not loaded, but its file lies beside this one.
+                if name not in known and not Path(place.file).with_name(f"{name}.yaml").exists():
+                    close = close_to(name, known)
+                    help = f"did you mean {quote(close)}?" if close else "correct it, or load the node's file too"
+                    yield Fault(section, place, f"there is no node {quote(name)}", help)
 
 
 def _verbatim(name: str, known: set[str]) -> str:
