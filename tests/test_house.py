@@ -43,8 +43,8 @@ def test_our_python_is_linted_and_formatted(command):
     assert result.returncode == 0, result.stdout + result.stderr
 
 
-def test_our_python_is_typed(tmp_path):
-    command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path), "codegen/icdgen"]
+def test_our_python_is_typed():
+    command = [sys.executable, "-m", "mypy", "--strict", "codegen/icdgen"]
     result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert result.returncode == 0, result.stdout + result.stderr
 

@@ -52,10 +52,11 @@ def check_raw(field: Field, value: int | bytes) -> None:
         if not isinstance(value, (bytes, bytearray)) or len(value) != field.bits // 8:
             raise CodecError(f"{field.name!r} takes {field.bits // 8} bytes")
         return
-    if isinstance(value, (bytes, bytearray, str)) or value != int(value):
+    if type(value) is not int and (isinstance(value, (bytes, bytearray, str)) or value != int(value)):
         raise CodecError(f"{field.name!r} takes an integer")
-    if not field.raw_min <= value <= field.raw_max:
-        raise CodecError(f"{field.name!r} takes {field.raw_min} to {field.raw_max}, not {value}")
+    low, high = field.raw_min, field.raw_max
+    if not low <= value <= high:
+        raise CodecError(f"{field.name!r} takes {low} to {high}, not {value}")
 
 
 def physical(field: Field, raw: int) -> Fraction | None:

@@ -26,14 +26,16 @@ int main(int count, char **arguments)
         fprintf(stderr, "usage: %s ID HEX\n", arguments[0]);
         return 2;
     }
-    const uint16_t id = (uint16_t)strtoul(arguments[1], NULL, 10);
+    const unsigned long number = strtoul(arguments[1], NULL, 10);
+    const uint8_t id = (uint8_t)number;
     uint8_t frame[1024];
     const size_t length = parse(arguments[2], frame, sizeof frame);
 
     cubeacp_telemetry_t telemetry;
-    const icd_status_t status = cubeacp_telemetry_decode(&telemetry, id, frame, length);
+    const icd_status_t status =
+        number == id ? cubeacp_telemetry_decode(&telemetry, id, frame, length) : ICD_ERROR_UNKNOWN_ID;
     if (status == ICD_ERROR_UNKNOWN_ID) {
-        fprintf(stderr, "no telemetry %u\n", (unsigned)id);
+        fprintf(stderr, "no telemetry %lu\n", number);
         return 1;
     }
     if (status == ICD_ERROR_LENGTH) {

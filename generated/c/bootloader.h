@@ -31,7 +31,7 @@
 
 /** Any telemetry of Bootloader: the member of `as` that goes with the id. */
 typedef struct {
-    uint16_t id;
+    uint8_t id;
     union {
         common_identification_t identification;
         common_boot_and_running_program_status_t boot_and_running_program_status;
@@ -67,7 +67,7 @@ typedef struct {
 } bootloader_telemetry_t;
 
 /** Name as printed in the manual; NULL for an unknown id. */
-static inline const char *bootloader_telemetry_name(uint16_t id)
+static inline const char *bootloader_telemetry_name(uint8_t id)
 {
     switch (id) {
     case COMMON_IDENTIFICATION_ID:
@@ -136,7 +136,7 @@ static inline const char *bootloader_telemetry_name(uint16_t id)
 }
 
 /** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
-static inline icd_status_t bootloader_telemetry_length(uint16_t id, size_t *length)
+static inline icd_status_t bootloader_telemetry_length(uint8_t id, size_t *length)
 {
     switch (id) {
     case COMMON_IDENTIFICATION_ID:
@@ -237,7 +237,7 @@ static inline icd_status_t bootloader_telemetry_length(uint16_t id, size_t *leng
 /** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
 static inline icd_status_t bootloader_telemetry_decode(
     bootloader_telemetry_t *ICDGEN_RESTRICT message,
-    uint16_t id,
+    uint8_t id,
     const uint8_t *ICDGEN_RESTRICT buffer,
     size_t length)
 {
@@ -403,7 +403,7 @@ static inline icd_status_t bootloader_telemetry_encode(
 
 /** Any telecommand of Bootloader: the member of `as` that goes with the id. */
 typedef struct {
-    uint16_t id;
+    uint8_t id;
     union {
         common_reset_t reset;
         common_reset_log_pointer_t reset_log_pointer;
@@ -440,7 +440,7 @@ typedef struct {
 } bootloader_telecommand_t;
 
 /** Name as printed in the manual; NULL for an unknown id. */
-static inline const char *bootloader_telecommand_name(uint16_t id)
+static inline const char *bootloader_telecommand_name(uint8_t id)
 {
     switch (id) {
     case COMMON_RESET_ID:
@@ -511,7 +511,7 @@ static inline const char *bootloader_telecommand_name(uint16_t id)
 }
 
 /** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
-static inline icd_status_t bootloader_telecommand_length(uint16_t id, size_t *length)
+static inline icd_status_t bootloader_telecommand_length(uint8_t id, size_t *length)
 {
     switch (id) {
     case COMMON_RESET_ID:
@@ -615,7 +615,7 @@ static inline icd_status_t bootloader_telecommand_length(uint16_t id, size_t *le
 /** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
 static inline icd_status_t bootloader_telecommand_decode(
     bootloader_telecommand_t *ICDGEN_RESTRICT message,
-    uint16_t id,
+    uint8_t id,
     const uint8_t *ICDGEN_RESTRICT buffer,
     size_t length)
 {

@@ -59,7 +59,7 @@
 
 /** Any telemetry of Common messages: the member of `as` that goes with the id. */
 typedef struct {
-    uint16_t id;
+    uint8_t id;
     union {
         common_identification_t identification;
         common_boot_and_running_program_status_t boot_and_running_program_status;
@@ -92,7 +92,7 @@ typedef struct {
 } common_telemetry_t;
 
 /** Name as printed in the manual; NULL for an unknown id. */
-static inline const char *common_telemetry_name(uint16_t id)
+static inline const char *common_telemetry_name(uint8_t id)
 {
     switch (id) {
     case COMMON_IDENTIFICATION_ID:
@@ -155,7 +155,7 @@ static inline const char *common_telemetry_name(uint16_t id)
 }
 
 /** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
-static inline icd_status_t common_telemetry_length(uint16_t id, size_t *length)
+static inline icd_status_t common_telemetry_length(uint8_t id, size_t *length)
 {
     switch (id) {
     case COMMON_IDENTIFICATION_ID:
@@ -247,7 +247,7 @@ static inline icd_status_t common_telemetry_length(uint16_t id, size_t *length)
 /** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
 static inline icd_status_t common_telemetry_decode(
     common_telemetry_t *ICDGEN_RESTRICT message,
-    uint16_t id,
+    uint8_t id,
     const uint8_t *ICDGEN_RESTRICT buffer,
     size_t length)
 {
@@ -395,7 +395,7 @@ static inline icd_status_t common_telemetry_encode(
 
 /** Any telecommand of Common messages: the member of `as` that goes with the id. */
 typedef struct {
-    uint16_t id;
+    uint8_t id;
     union {
         common_reset_t reset;
         common_reset_log_pointer_t reset_log_pointer;
@@ -427,7 +427,7 @@ typedef struct {
 } common_telecommand_t;
 
 /** Name as printed in the manual; NULL for an unknown id. */
-static inline const char *common_telecommand_name(uint16_t id)
+static inline const char *common_telecommand_name(uint8_t id)
 {
     switch (id) {
     case COMMON_RESET_ID:
@@ -488,7 +488,7 @@ static inline const char *common_telecommand_name(uint16_t id)
 }
 
 /** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
-static inline icd_status_t common_telecommand_length(uint16_t id, size_t *length)
+static inline icd_status_t common_telecommand_length(uint8_t id, size_t *length)
 {
     switch (id) {
     case COMMON_RESET_ID:
@@ -577,7 +577,7 @@ static inline icd_status_t common_telecommand_length(uint16_t id, size_t *length
 /** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
 static inline icd_status_t common_telecommand_decode(
     common_telecommand_t *ICDGEN_RESTRICT message,
-    uint16_t id,
+    uint8_t id,
     const uint8_t *ICDGEN_RESTRICT buffer,
     size_t length)
 {

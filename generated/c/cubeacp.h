@@ -138,7 +138,7 @@
 
 /** Any telemetry of CubeACP: the member of `as` that goes with the id. */
 typedef struct {
-    uint16_t id;
+    uint8_t id;
     union {
         common_identification_t identification;
         common_boot_and_running_program_status_t boot_and_running_program_status;
@@ -270,7 +270,7 @@ typedef struct {
 } cubeacp_telemetry_t;
 
 /** Name as printed in the manual; NULL for an unknown id. */
-static inline const char *cubeacp_telemetry_name(uint16_t id)
+static inline const char *cubeacp_telemetry_name(uint8_t id)
 {
     switch (id) {
     case COMMON_IDENTIFICATION_ID:
@@ -531,7 +531,7 @@ static inline const char *cubeacp_telemetry_name(uint16_t id)
 }
 
 /** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
-static inline icd_status_t cubeacp_telemetry_length(uint16_t id, size_t *length)
+static inline icd_status_t cubeacp_telemetry_length(uint8_t id, size_t *length)
 {
     switch (id) {
     case COMMON_IDENTIFICATION_ID:
@@ -920,7 +920,7 @@ static inline icd_status_t cubeacp_telemetry_length(uint16_t id, size_t *length)
 /** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
 static inline icd_status_t cubeacp_telemetry_decode(
     cubeacp_telemetry_t *ICDGEN_RESTRICT message,
-    uint16_t id,
+    uint8_t id,
     const uint8_t *ICDGEN_RESTRICT buffer,
     size_t length)
 {
@@ -1575,7 +1575,7 @@ static inline icd_status_t cubeacp_telemetry_encode(
 
 /** Any telecommand of CubeACP: the member of `as` that goes with the id. */
 typedef struct {
-    uint16_t id;
+    uint8_t id;
     union {
         common_reset_t reset;
         common_reset_log_pointer_t reset_log_pointer;
@@ -1649,7 +1649,7 @@ typedef struct {
 } cubeacp_telecommand_t;
 
 /** Name as printed in the manual; NULL for an unknown id. */
-static inline const char *cubeacp_telecommand_name(uint16_t id)
+static inline const char *cubeacp_telecommand_name(uint8_t id)
 {
     switch (id) {
     case COMMON_RESET_ID:
@@ -1794,7 +1794,7 @@ static inline const char *cubeacp_telecommand_name(uint16_t id)
 }
 
 /** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
-static inline icd_status_t cubeacp_telecommand_length(uint16_t id, size_t *length)
+static inline icd_status_t cubeacp_telecommand_length(uint8_t id, size_t *length)
 {
     switch (id) {
     case COMMON_RESET_ID:
@@ -2009,7 +2009,7 @@ static inline icd_status_t cubeacp_telecommand_length(uint16_t id, size_t *lengt
 /** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
 static inline icd_status_t cubeacp_telecommand_decode(
     cubeacp_telecommand_t *ICDGEN_RESTRICT message,
-    uint16_t id,
+    uint8_t id,
     const uint8_t *ICDGEN_RESTRICT buffer,
     size_t length)
 {

@@ -21,7 +21,7 @@
 
 /** Any telemetry of CubeMag: the member of `as` that goes with the id. */
 typedef struct {
-    uint16_t id;
+    uint8_t id;
     union {
         cubemag_state_t state;
         cubemag_deployment_status_t deployment_status;
@@ -31,7 +31,7 @@ typedef struct {
 } cubemag_telemetry_t;
 
 /** Name as printed in the manual; NULL for an unknown id. */
-static inline const char *cubemag_telemetry_name(uint16_t id)
+static inline const char *cubemag_telemetry_name(uint8_t id)
 {
     switch (id) {
     case CUBEMAG_STATE_ID:
@@ -48,7 +48,7 @@ static inline const char *cubemag_telemetry_name(uint16_t id)
 }
 
 /** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
-static inline icd_status_t cubemag_telemetry_length(uint16_t id, size_t *length)
+static inline icd_status_t cubemag_telemetry_length(uint8_t id, size_t *length)
 {
     switch (id) {
     case CUBEMAG_STATE_ID:
@@ -71,7 +71,7 @@ static inline icd_status_t cubemag_telemetry_length(uint16_t id, size_t *length)
 /** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
 static inline icd_status_t cubemag_telemetry_decode(
     cubemag_telemetry_t *ICDGEN_RESTRICT message,
-    uint16_t id,
+    uint8_t id,
     const uint8_t *ICDGEN_RESTRICT buffer,
     size_t length)
 {

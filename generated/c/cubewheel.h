@@ -20,7 +20,7 @@
 
 /** Any telemetry of CubeWheel: the member of `as` that goes with the id. */
 typedef struct {
-    uint16_t id;
+    uint8_t id;
     union {
         cubewheel_wheel_speed_t wheel_speed;
         cubewheel_wheel_reference_speed_t wheel_reference_speed;
@@ -29,7 +29,7 @@ typedef struct {
 } cubewheel_telemetry_t;
 
 /** Name as printed in the manual; NULL for an unknown id. */
-static inline const char *cubewheel_telemetry_name(uint16_t id)
+static inline const char *cubewheel_telemetry_name(uint8_t id)
 {
     switch (id) {
     case CUBEWHEEL_WHEEL_SPEED_ID:
@@ -44,7 +44,7 @@ static inline const char *cubewheel_telemetry_name(uint16_t id)
 }
 
 /** Bytes of a frame, without the id; ICD_ERROR_UNKNOWN_ID, and `length` unchanged, for an unknown id. */
-static inline icd_status_t cubewheel_telemetry_length(uint16_t id, size_t *length)
+static inline icd_status_t cubewheel_telemetry_length(uint8_t id, size_t *length)
 {
     switch (id) {
     case CUBEWHEEL_WHEEL_SPEED_ID:
@@ -64,7 +64,7 @@ static inline icd_status_t cubewheel_telemetry_length(uint16_t id, size_t *lengt
 /** Reads the frame that came under an id. The message is of use only if the result is ICD_OK. */
 static inline icd_status_t cubewheel_telemetry_decode(
     cubewheel_telemetry_t *ICDGEN_RESTRICT message,
-    uint16_t id,
+    uint8_t id,
     const uint8_t *ICDGEN_RESTRICT buffer,
     size_t length)
 {

@@ -329,13 +329,13 @@ static void dispatcher(run_t *run, const icdgen_selftest_dispatcher_t *one)
         const bool known = one->lengths[id] >= 0;
         size_t length = 0;
         run->vector = id;
-        check(run, one->length(id, &length) == (known ? ICD_OK : ICD_ERROR_UNKNOWN_ID), "dispatcher", "id");
+        check(run, one->length((uint8_t)id, &length) == (known ? ICD_OK : ICD_ERROR_UNKNOWN_ID), "dispatcher", "id");
         check(run, !known || length == (size_t)one->lengths[id], "dispatcher", "length");
         check(
-            run, one->decode(id, run->node->buffer, length) == (known ? ICD_OK : ICD_ERROR_UNKNOWN_ID), "dispatcher",
-            "decode");
+            run, one->decode((uint8_t)id, run->node->buffer, length) == (known ? ICD_OK : ICD_ERROR_UNKNOWN_ID),
+            "dispatcher", "decode");
         check(
-            run, !known || one->decode(id, run->node->buffer, length + 1u) == ICD_ERROR_LENGTH, "dispatcher",
+            run, !known || one->decode((uint8_t)id, run->node->buffer, length + 1u) == ICD_ERROR_LENGTH, "dispatcher",
             "wrong length");
     }
 }

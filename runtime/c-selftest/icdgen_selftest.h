@@ -110,8 +110,8 @@ typedef struct {
 /** The dispatcher of a direction: the length under each id, -1 where the id is unknown. */
 typedef struct {
     const int32_t *lengths;
-    icd_status_t (*length)(uint16_t id, size_t *length);
-    icd_status_t (*decode)(uint16_t id, const uint8_t *buffer, size_t length);
+    icd_status_t (*length)(uint8_t id, size_t *length);
+    icd_status_t (*decode)(uint8_t id, const uint8_t *buffer, size_t length);
 } icdgen_selftest_dispatcher_t;
 
 /** A value of an enumeration and its name; NULL if it has none. */

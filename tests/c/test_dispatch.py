@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import subprocess
 
+from icdgen.backends.c.dispatch import dispatchers
 from icdgen.backends.c.text import literal
+from icdgen.describe import describe
 from icdgen.icd.model import TELECOMMAND, TELEMETRY
 from tests.c import harness
 
@@ -12,7 +14,7 @@ PROGRAM = """\
 #include <stdio.h>
 #include <stdlib.h>
 {includes}
-typedef struct {{ uint16_t id; const char *name; size_t length; }} row_t;
+typedef struct {{ uint8_t id; const char *name; size_t length; }} row_t;
 static unsigned long differences = 0;
 static void check(bool holds, const char *node, unsigned id, const char *what)
 {{
@@ -34,19 +36,20 @@ static void check_{name}(void)
     static {name}_t message;
     uint8_t frame[{longest}], again[{longest}];
     size_t next = 0;
+    check(sizeof message.id == 1, "{name}", 0, "an id has more than a byte");
     for (size_t i = 0; i < sizeof frame; ++i) {{
         frame[i] = (uint8_t)rand();
     }}
-    for (uint32_t id = 0; id <= UINT16_MAX; ++id) {{
+    for (uint32_t id = 0; id <= UINT8_MAX; ++id) {{
         const bool known = next < sizeof rows / sizeof rows[0] && rows[next].id == id;
-        const char *const found = {name}_name((uint16_t)id);
+        const char *const found = {name}_name((uint8_t)id);
         size_t length = 4711;
-        const icd_status_t status = {name}_length((uint16_t)id, &length);
+        const icd_status_t status = {name}_length((uint8_t)id, &length);
         if (!known) {{
             check(found == NULL, "{name}", id, "an unknown id has a name");
             check(status == ICD_ERROR_UNKNOWN_ID && length == 4711, "{name}", id, "an unknown id has a length");
-            check({name}_decode(&message, (uint16_t)id, frame, 1) == ICD_ERROR_UNKNOWN_ID, "{name}", id, "decoded");
-            message.id = (uint16_t)id;
+            check({name}_decode(&message, (uint8_t)id, frame, 1) == ICD_ERROR_UNKNOWN_ID, "{name}", id, "decoded");
+            message.id = (uint8_t)id;
             check({name}_encode(&message, again, sizeof again) == ICD_ERROR_UNKNOWN_ID, "{name}", id, "encoded");
             continue;
         }}
@@ -94,3 +97,11 @@ def test_every_id_of_every_node_leads_to_its_message(tmp_path):
     done = subprocess.run([program], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     assert ids > 209  # all wire ids, those of `common` under each node that includes it
+
+
+def test_ids_that_fill_more_than_a_byte_get_the_wider_type():
+    node = describe(harness.shipped()).node("cubeacp")
+    for bits in (8, 16):
+        assert {(one.id_type, f"uint{bits}_t id" in one.decode_head) for one in dispatchers(node, bits)} == {
+            (f"uint{bits}_t", True)
+        }

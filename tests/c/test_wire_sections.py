@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import subprocess
 
@@ -16,6 +17,11 @@ PARTS = {
     "client": [],
     "identification": ["identification"],
     "statistics": [],
+    "statistics_reset": [],
+    "boot_status": [],
+    "program_start": [],
+    "program_copy": ["program_copy"],
+    "program_information": ["program_information"],
     "uart": ["framing", "acknowledge"],
     "i2c": ["polled"],
     "can": ["can"],
@@ -36,15 +42,18 @@ MEMBERS = sorted(member for members in PARTS.values() for member in members)
 
 @pytest.fixture(scope="module")
 def icd() -> Icd:
-    """Nodes with the messages of the CubeACP: with its whole protocol, without each section, with each alone."""
+    """Nodes with the messages of both programs: with all that either has of a protocol, without each section, with each alone."""
     shipped = harness.shipped()
-    acp = shipped.node("cubeacp")
-    whole = shipped.protocol_of(acp)
+    acp, bootloader = shipped.node("cubeacp"), shipped.node("bootloader")
+    whole = copy.deepcopy({**shipped.protocol_of(bootloader), **shipped.protocol_of(acp)})
+    del whole["file_transfer"]["upload"]["nodes"]  # any of these nodes can
     protocols = {"whole": whole}
     for section in whole:
         protocols[f"without_{section}"] = {name: part for name, part in whole.items() if name != section}
         protocols[f"only_{section}"] = {section: whole[section]}
-    bases = [dataclasses.replace(node, protocol={}) for node in (*shipped.included(acp), acp)]
+    taken = {id for message in bootloader.messages for id in message.ids}
+    acp = dataclasses.replace(acp, messages=tuple(m for m in acp.messages if not taken & set(m.ids)))
+    bases = [dataclasses.replace(node, protocol={}) for node in (*shipped.included(acp), bootloader, acp)]
     includes = tuple(node.name for node in bases)
     variant = dataclasses.replace(acp, messages=(), enums=(), includes=includes)
     return Icd((*bases, *(dataclasses.replace(variant, name=n, protocol=p) for n, p in protocols.items())))

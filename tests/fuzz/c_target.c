@@ -6,7 +6,6 @@
 
 #define DIRECTION 1u
 #define FIT 2u
-#define HIGH_ID 4u
 #define FILL 8u
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -82,7 +81,7 @@ static void same_again(const testee_dispatcher_t *dispatcher, const testee_messa
     if (first == NULL) {
         return;
     }
-    require(dispatcher->decode(any, (uint16_t)id, first, message->length) == ICD_OK);
+    require(dispatcher->decode(any, (uint8_t)id, first, message->length) == ICD_OK);
     touch(message, (char *)any + dispatcher->offset);
     second = encoded(dispatcher, message, any);
     require(second != NULL && memcmp(first, second, message->length) == 0);
@@ -111,9 +110,9 @@ static void try_message(
     size_t i, length = size, known = 0;
     uint8_t *frame;
     memset(any, 0, dispatcher->size);
-    require((dispatcher->length((uint16_t)id, &known) == ICD_OK) == (message != NULL));
+    require((dispatcher->length((uint8_t)id, &known) == ICD_OK) == (message != NULL));
     if (message != NULL && (flags & FILL) != 0u) {
-        dispatcher->select(any, (uint16_t)id);
+        dispatcher->select(any, (uint8_t)id);
         fill(message, (char *)any + dispatcher->offset, data, size);
         same_again(dispatcher, message, any, id);
         free(any);
@@ -126,7 +125,7 @@ static void try_message(
     for (i = 0; i < length; i++) {
         frame[i] = size != 0u ? data[i % size] : 0u;
     }
-    switch (dispatcher->decode(any, (uint16_t)id, frame, length)) {
+    switch (dispatcher->decode(any, (uint8_t)id, frame, length)) {
     case ICD_OK:
         require(message != NULL && length == message->length);
         same_again(dispatcher, message, any, id);
@@ -154,7 +153,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     node = testee_nodes[data[0] % testee_node_count];
     dispatcher = (data[1] & DIRECTION) != 0u ? node->telemetry : node->telecommand;
     if (dispatcher != NULL) {
-        try_message(dispatcher, data[2] + ((data[1] & HIGH_ID) != 0u ? 256u : 0u), data[1], data + 3, size - 3u);
+        try_message(dispatcher, data[2], data[1], data + 3, size - 3u);
     }
     return 0;
 }

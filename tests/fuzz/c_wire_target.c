@@ -136,7 +136,7 @@ static void can(const icd_link_t *link, input_t *input)
             icd_can_feed(&joiner, now, &packet, on_event, &seen);
             require(joiner.used <= count);
         }
-        icd_can_expire(&joiner, now + link->can->packet_timeout, on_event, &seen);
+        icd_can_expire(&joiner, now + (link->can->extended != NULL ? link->can->extended->packet_timeout : 0u), on_event, &seen);
         require(joiner.used == 0u);
     }
     free(buffer);

@@ -130,3 +130,14 @@ def test_a_column_that_nobody_knows_is_named_with_what_it_holds(tmp_path):
 def test_a_table_without_a_caption_is_not_passed_over(tmp_path):
     result, _ = read(tmp_path, MESSAGE + ENUM + "\nSome prose.\n\nStep\tShade\nfirst\tred\nsecond\tblue\n")
     assert "it begins with `Step | Shade`" in found(result, "IMP030")[0]
+
+
+def test_words_that_stand_on_their_side_are_said_to_be_left_out(tmp_path):
+    canvas = Canvas(str(tmp_path / "turned.pdf"), invariant=1)
+    canvas.drawString(72, 700, "Upright")
+    canvas.rotate(90)
+    canvas.drawString(200, -300, "Turned label")
+    canvas.showPage()
+    canvas.save()
+    shown = icdgen("import", "turned.pdf", cwd=tmp_path).stdout
+    assert re.search(r"note\[IMP014\] page 1: [0-9]+ words stand on their side", shown)

@@ -27,6 +27,7 @@ def exact_text(value: Fraction | int) -> str:
     return f"{'-' if value < 0 else ''}{digits[:-places]}.{digits[-places:]}"
 
 
+@lru_cache(maxsize=4096)
 def factor_text(factor: Fraction) -> str:
     """``0.01``; ``5/9`` where the decimal would not end."""
     text = exact_text(factor)

@@ -97,9 +97,15 @@ class Generated:
     @cached_property
     def under_old_owners(self) -> Names:
         owners: list[DeclaredPair] = [*self._match.messages.values(), *self._match.enums.values()]
-        if self._nodes_keep_names and not any(is_called_otherwise(pair) for pair in owners if pair.both):
+        if not self._nodes_keep_names:
+            return self._under_old_owners.names(self._under_old_owners.icd)
+        renamed = [pair for pair in owners if pair.both and is_called_otherwise(pair)]
+        if not renamed:
             return self.new
-        return self._under_old_owners.names(self._under_old_owners.icd)
+        those = self._kept & {id(one) for pair in renamed for one in (pair, *pair.parts)}
+        cut = _Cut(self._match, 1, those, OWNERS)
+        rest = {key: names for key, names in self.new.items() if key not in those}
+        return rest | {key: names for key, names in cut.names(cut.icd).items() if key in those}
 
     @cached_property
     def _under_old_owners(self) -> _Cut:
@@ -113,6 +119,8 @@ class Generated:
         """Old and new name of everything that is generated for the pair, where they differ. Its parts are left out."""
         after = self._at_home if isinstance(pair, MessagePair | EnumPair) else self.under_old_owners
         old, new = self.old.get(id(pair), ()), after.get(id(pair), ())
+        if old == new:
+            return []
         real = dict(zip(new, self.new.get(id(pair), ()), strict=False))
         found: list[tuple[Name | None, Name | None]] = []
         for key in sorted({_sort(name) for name in (*old, *new)}):
@@ -252,17 +260,24 @@ class _Cut:
         found: dict[int, dict[Name, None]] = {}
         types: dict[int, str] = {}  # Rust: id(pair) -> name of the type
         for language in LANGUAGES:
-            for one in backends.get(language).identifiers(icd):
-                pair = self.marks.get(id(one.source)) if one.source is not None else None
-                if pair is None or not one.text.isidentifier() or one.scope.startswith(("modules of", "files of")):
+            stems: dict[str, str | None] = {}  # scope -> stem of its names, None if they are no names
+            for scope, text, _, source in backends.get(language).identifiers(icd):
+                pair = self.marks.get(id(source)) if source is not None else None
+                if pair is None or not text.isidentifier():
                     continue
-                owner = pair.owner if isinstance(pair, FieldPair | MemberPair) else None
-                if owner is None and language == "c" and one.text.endswith("_H"):
+                stem = stems.get(scope, "?")
+                if stem == "?":
+                    stem = stems[scope] = _stem(language, scope)
+                if stem is None:
+                    continue
+                owner = pair.owner if isinstance(pair, (FieldPair, MemberPair)) else None
+                if owner is None and language == "c" and text.endswith("_H"):
                     continue  # an include guard
-                if language == "rust" and owner is None:
-                    types.setdefault(id(pair), one.text)
-                stem = types.get(id(owner), "") if language == "rust" else _stem(language, one.scope)
-                found.setdefault(id(pair), {})[Name(language, one.text, stem)] = None
+                if language == "rust":
+                    if owner is None:
+                        types.setdefault(id(pair), text)
+                    stem = types.get(id(owner), "")
+                found.setdefault(id(pair), {})[Name(language, text, stem)] = None
         return {key: tuple(names) for key, names in found.items()}
 
 
@@ -271,8 +286,10 @@ def _sort(name: Name) -> tuple[str, bool]:
     return name.language, not name.stem
 
 
-def _stem(language: str, scope: str) -> str:
-    """What a file must mention for a member of that scope to be meant; empty for what stands for itself."""
+def _stem(language: str, scope: str) -> str | None:
+    """What a file must mention for a member of that scope to be meant; empty for what stands for itself, None for files."""
+    if scope.startswith(("modules of", "files of")):
+        return None
     if not scope.startswith("members of "):
         return ""
     owner = scope.removeprefix("members of ")

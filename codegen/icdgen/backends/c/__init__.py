@@ -44,7 +44,8 @@ class CBackend:
 
             made = {"wire/sizes.h": render("sizes.h.j2", step_bytes=step_bytes(links.values()))}
             yield PurePosixPath("icdgen_wire.h"), first + header("icdgen_wire.h", made, render)
-        for node in describe(icd).nodes:
+        description = describe(icd)
+        for node in description.nodes:
             folder = PurePosixPath(node.name)
             if node.enums:
                 yield folder / "enums.h", render("enums.h.j2", **_enums(node))
@@ -52,7 +53,7 @@ class CBackend:
                 yield folder / f"{message.name}.h", render("message.h.j2", **_message(message))
             if node.name in links:
                 yield folder / "link.h", render("link.h.j2", **_link(node, links[node.name]))
-            yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", **_node(node))
+            yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", **_node(node, description.id_bits))
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that the headers declare."""
@@ -153,7 +154,7 @@ def _enum(enum: EnumDescription) -> dict[str, object]:
     }
 
 
-def _node(node: NodeDescription) -> dict[str, object]:
+def _node(node: NodeDescription, id_bits: int) -> dict[str, object]:
     headers = [f"{name}.h" for name in node.model.includes]
     headers += [f"{node.name}/enums.h"] if node.enums else []
     headers += [f"{node.name}/{message.name}.h" for message in node.messages]
@@ -167,5 +168,5 @@ def _node(node: NodeDescription) -> dict[str, object]:
         "upper": node.name.upper(),
         "digest": node.model.digest[:16],
         "constants": constants.of_node(node.model),
-        "dispatchers": dispatchers(node),
+        "dispatchers": dispatchers(node, id_bits),
     }

@@ -27,26 +27,29 @@ class Dispatcher(NamedTuple):
 
     kind: str
     name: str
+    id_type: str
     cases: list[Case]
     decode_head: str
     encode_head: str
 
 
-def dispatchers(node: NodeDescription) -> list[Dispatcher]:
+def dispatchers(node: NodeDescription, id_bits: int) -> list[Dispatcher]:
     """Telemetry and telecommands of the node and what it includes; a direction without messages is left out."""
     directions = (
         ("telemetry", [_case(m, m.telemetry_id_name) for m in node.telemetry]),
         ("telecommand", [_case(m, m.telecommand_id_name) for m in node.telecommands]),
     )
-    return [_dispatcher(kind, f"{node.name}_{kind}", cases) for kind, cases in directions if cases]
+    return [_dispatcher(kind, f"{node.name}_{kind}", f"uint{id_bits}_t", cases) for kind, cases in directions if cases]
 
 
-def _dispatcher(kind: str, name: str, cases: list[Case]) -> Dispatcher:
+def _dispatcher(kind: str, name: str, id_type: str, cases: list[Case]) -> Dispatcher:
     message, buffer = f"{name}_t *ICDGEN_RESTRICT message", "uint8_t *ICDGEN_RESTRICT buffer"
-    decode_parameters = message, "uint16_t id", f"const {buffer}", "size_t length"
+    decode_parameters = message, f"{id_type} id", f"const {buffer}", "size_t length"
     encode_parameters = f"const {message}", buffer, "size_t capacity"
     decode_head = head("icd_status_t ", f"{name}_decode", *decode_parameters)
-    return Dispatcher(kind, name, cases, decode_head, head("icd_status_t ", f"{name}_encode", *encode_parameters))
+    return Dispatcher(
+        kind, name, id_type, cases, decode_head, head("icd_status_t ", f"{name}_encode", *encode_parameters)
+    )
 
 
 def _case(message: MessageDescription, id_name: str) -> Case:

@@ -183,6 +183,11 @@ def _look_over(pages: list[Page], document: Document, name: str) -> None:
                 Trouble("IMP013", f"{page.unseen} words stand outside the visible page; they were left out",
                         Spot(page.number), "look whether the page is cut off", "note")
             )  # fmt: skip
+        if page.turned:
+            document.troubles.append(
+                Trouble("IMP014", f"{page.turned} words stand on their side; they were left out", Spot(page.number),
+                        "look whether a table has turned labels, or stands on its side as a whole", "note")
+            )  # fmt: skip
         if page.unmapped:
             document.troubles.append(
                 Trouble("IMP012", f"{page.unmapped} characters of the page have no meaning: the PDF does not say which they are",

@@ -1,0 +1,226 @@
+"""A set of ICDs, its nodes, their messages and the fields of these, which know each other."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import NamedTuple
+
+from icdgen import layout, naming
+from icdgen.describe import steps
+from icdgen.describe.bounds import Bound, bounds
+from icdgen.describe.comments import Comment, field_comment, message_comment
+from icdgen.describe.constants import Constant, constants
+from icdgen.describe.enums import EnumDescription, enum_widths
+from icdgen.describe.storage import Storage, holding
+from icdgen.icd.model import Enum, Field, Icd, Message, Node
+
+
+class FieldDescription:
+    """A field (``model``) of ``message``. ``name`` is its identifier in snake case, ``words`` what that is made of."""
+
+    def __init__(self, field: Field, message: MessageDescription, enum: EnumDescription | None) -> None:
+        self.model, self.message, self.enum = field, message, enum
+        self.words = naming.words(field.identifier or field.name, message.node.vocabulary)
+        self.name = naming.snake(self.words)
+
+    @cached_property
+    def storage(self) -> Storage:
+        """The integer that holds the raw value (the bits of a float); of an enumeration, that of its type. None of bytes."""
+        if self.enum is not None:
+            return self.enum.storage
+        return Storage(holding(self.model.bits), self.model.signed)
+
+    @property
+    def is_narrow(self) -> bool:
+        """Whether `storage` holds raw values that the field can't."""
+        return self.model.type in ("uint", "int", "enum") and self.model.bits != self.storage.bits
+
+    @property
+    def fresh(self) -> int:
+        """The raw value in a new message, as a number: see `icdgen.describe.fresh`."""
+        return self.model.const or 0
+
+    @property
+    def pieces(self) -> tuple[layout.Piece, ...]:
+        """The runs of bits of the frame that make up a number."""
+        return layout.pieces(self.model, self.message.node)
+
+    @cached_property
+    def steps(self) -> steps.Steps | None:
+        """How the physical value is computed; None where that is the raw value."""
+        return steps.steps(self.model)
+
+    @property
+    def unit_name(self) -> str:
+        """What names of the physical value end in: the unit's identifier, or ``physical``."""
+        return self.model.unit.identifier if self.model.unit else "physical"
+
+    @property
+    def physical_name(self) -> str:
+        """``estimated_roll_angle_deg``"""
+        return f"{self.name}_{self.unit_name}"
+
+    @cached_property
+    def bounds(self) -> tuple[Bound, ...]:
+        """The limits, one by one."""
+        return bounds(self.model.limits)
+
+    @cached_property
+    def constants(self) -> tuple[Constant, ...]:
+        """The only valid value, values with a meaning, limits: all by name."""
+        vocabulary = self.message.node.vocabulary
+        return tuple(constants(self.model, self.name, self.physical_name, vocabulary))
+
+    @cached_property
+    def comment(self) -> Comment:
+        return field_comment(self.model)
+
+
+class Id(NamedTuple):
+    """An id of a message; ``name`` is ``id``, ``set_id`` or ``get_id``."""
+
+    name: str
+    value: int
+    comment: str
+
+
+class MessageDescription:
+    """A message (``model``) that ``node`` declares."""
+
+    def __init__(self, description: Description, message: Message, node: Node) -> None:
+        self._description, self.model, self.node = description, message, node
+        self.words = naming.words(message.identifier or message.name, node.vocabulary)
+        self.name = naming.snake(self.words)
+
+    @cached_property
+    def fields(self) -> tuple[FieldDescription, ...]:
+        """In the order of the ICD."""
+        enum = self._description.enum
+        return tuple(FieldDescription(f, self, enum(f.enum) if f.enum else None) for f in self.model.fields)
+
+    @cached_property
+    def ids(self) -> tuple[Id, ...]:
+        """The id, or the set id and the get id."""
+        message = self.model
+        found = (
+            ("id", message.id, f"Id of the {message.kind}."),
+            ("set_id", message.set_id, "Id of the telecommand that sets it."),
+            ("get_id", message.get_id, "Id of the telemetry that gets it."),
+        )
+        return tuple(Id(name, value, comment) for name, value, comment in found if value is not None)
+
+    @property
+    def telecommand_id_name(self) -> str:
+        """Name of the id under which it is sent: ``id`` or ``set_id``."""
+        return "id" if self.model.id is not None else "set_id"
+
+    @property
+    def telemetry_id_name(self) -> str:
+        """Name of the id under which it is requested: ``id`` or ``get_id``."""
+        return "id" if self.model.id is not None else "get_id"
+
+    @property
+    def is_narrow(self) -> bool:
+        """Whether a field of it may be given a raw value that does not fit."""
+        return any(field.is_narrow for field in self.fields)
+
+    @property
+    def has_floats(self) -> bool:
+        return any(field.type == "float" for field in self.model.fields)
+
+    @cached_property
+    def comment(self) -> Comment:
+        bits = self._description.node(self.node).log_bits
+        telemetry_id = self.model.telemetry_id
+        return message_comment(self.model, None if telemetry_id is None else bits.get(telemetry_id))
+
+
+class NodeDescription:
+    """A node (``model``) of the set."""
+
+    def __init__(self, description: Description, node: Node) -> None:
+        self._description, self.model, self.name = description, node, node.name
+
+    @cached_property
+    def messages(self) -> tuple[MessageDescription, ...]:
+        """Those that it declares."""
+        return tuple(map(self._description.message, self.model.messages))
+
+    @cached_property
+    def enums(self) -> tuple[EnumDescription, ...]:
+        """Those that it declares."""
+        return tuple(map(self._description.enum, self.model.enums))
+
+    @cached_property
+    def spoken(self) -> tuple[MessageDescription, ...]:
+        """All messages that it speaks: those of included nodes first."""
+        return tuple(map(self._description.message, self._description.icd.messages_of(self.model)))
+
+    @property
+    def telecommands(self) -> tuple[MessageDescription, ...]:
+        """Those of `spoken` that can be sent to it."""
+        return tuple(one for one in self.spoken if one.model.telecommand_id is not None)
+
+    @property
+    def telemetry(self) -> tuple[MessageDescription, ...]:
+        """Those of `spoken` that can be requested from it."""
+        return tuple(one for one in self.spoken if one.model.telemetry_id is not None)
+
+    @property
+    def is_linked(self) -> bool:
+        """Whether it is known how its messages travel."""
+        return bool(self._description.icd.protocol_of(self.model))
+
+    @cached_property
+    def log_bits(self) -> dict[int, int]:
+        """Telemetry id -> the bit of the log mask that selects it."""
+        return {row.id: row.bit for row in self.model.loggable}
+
+
+class Description:
+    """A set of ICDs. ``nodes`` stand in the order of the set: each after those that it includes."""
+
+    def __init__(self, icd: Icd) -> None:
+        self.icd = icd
+        self._enum_bits = enum_widths(icd)
+        self._messages: dict[tuple[str, str], MessageDescription] = {}
+        self._enums: dict[tuple[str, str], EnumDescription] = {}
+        self._nodes = {node.name: NodeDescription(self, node) for node in icd.nodes}
+        self.nodes = tuple(self._nodes.values())
+
+    @property
+    def id_bits(self) -> int:
+        """8 or 16: bits of the integer that holds every id."""
+        return 8 if all(id < 256 for n in self.icd.nodes for m in n.messages for id in m.ids) else 16
+
+    def node(self, node: str | Node) -> NodeDescription:
+        """The description of a node, by its name or of the node itself. Raises `KeyError`."""
+        return self._nodes[node if isinstance(node, str) else node.name]
+
+    def message(self, message: Message) -> MessageDescription:
+        """The description of a message, whoever speaks it."""
+        key = message.node, message.name
+        found = self._messages.get(key)
+        if found is None or found.model is not message:
+            found = self._messages[key] = MessageDescription(self, message, self.icd.node(message.node))
+        return found
+
+    def enum(self, enum: Enum) -> EnumDescription:
+        """The description of an enumeration, whoever uses it."""
+        key = enum.node, enum.name
+        found = self._enums.get(key)
+        if found is None or found.model is not enum:
+            found = self._enums[key] = EnumDescription(enum, self.icd.node(enum.node), self._enum_bits[key])
+        return found
+
+
+_kept: list[Description] = []
+
+
+def describe(icd: Icd) -> Description:
+    """The description of a set of ICDs. The last ones are kept, so that the backends of one run share theirs."""
+    for known in _kept:
+        if known.icd is icd:
+            return known
+    _kept[:] = [*_kept[-1:], Description(icd)]
+    return _kept[-1]
