@@ -85,7 +85,7 @@ class TestInput:
 
     def test_a_number_of_five_thousand_digits_is_no_message(self, icdgen, demo):
         result = icdgen("decode", "demo", "9" * 5000, "00", "--icd", demo)
-        assert result.status == 2 and "has no message" in result.err and len(result.err) < 2000
+        assert result.status == 2 and "no message of demo has the id" in result.err and len(result.err) < 2000
 
     def test_a_value_that_is_wrong_comes_with_a_remedy(self, icdgen, demo):
         assert "help: `icdgen show demo 'Set Roll'`" in icdgen("encode", "demo", "20", "roll=nan", "--icd", demo).err
