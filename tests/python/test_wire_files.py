@@ -10,17 +10,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from icdgen.protocol import ops
+from icdgen.protocol.facts import Facts
 from icdgen.vectors.wire import node as nodes
 from icdgen.vectors.wire.procedures import record
 from tests.python import packages
-from tests.python.wire import known, link
+from tests.python.wire import NODE, known, link
 
 KINDS = [
     {"do": "list"},
     {"do": "download", "bus": "uart", "type": 2, "counter": 1, "size": 130, "block": 80},
     {"do": "download", "bus": "i2c", "type": 2, "counter": 1, "block": 60},
     {"do": "download", "bus": "can", "type": 2, "counter": 2, "size": 0},
-    {"do": "upload", "destination": 3, "bytes": bytes(range(150)).hex(), "block": 80},
+    {"do": "upload", "node": "bootloader", "destination": 3, "bytes": bytes(range(150)).hex(), "block": 80},
     {"do": "erase", "type": 2, "counter": 1, "all": True},
     {"do": "format"},
 ]
@@ -31,8 +32,13 @@ def wire(shipped):
     return shipped.module("wire")
 
 
-def node_of(seed: int, bus: str, loss: float) -> nodes.FileNode:
-    node = nodes.FileNode(known(), bus, Random(seed), loss)
+def facts_of(request: dict) -> Facts:
+    """The facts of the node that the request is for."""
+    return known(request.get("node", NODE))
+
+
+def node_of(request: dict, seed: int, loss: float) -> nodes.FileNode:
+    node = nodes.FileNode(facts_of(request), request.get("bus", "uart"), Random(seed), loss)
     node.files.update({(2, 0): b"", (2, 1): bytes(range(130)), (2, 2): b"\x1f" * 41})
     return node
 
@@ -47,8 +53,8 @@ def compare(shipped, request: dict) -> dict:
 @given(st.integers(0, 1 << 32), st.sampled_from(KINDS), st.sampled_from([0.0, 0.1, 0.3, 0.6]))
 @settings(max_examples=60)
 def test_against_a_node_that_loses_things(shipped, seed, request, loss):
-    script, _ = record(known(), request, node_of(seed, request.get("bus", "uart"), loss))
-    compare(shipped, {"op": "file", "node": "cubeacp", **request, "script": script})
+    script, _ = record(facts_of(request), request, node_of(request, seed, loss))
+    compare(shipped, {"op": "file", "node": NODE, **request, "script": script})
 
 
 OUTCOMES = st.sampled_from(["done", "done", "done", "refused", "timeout"])
@@ -60,7 +66,7 @@ def test_against_any_outcome_at_any_time(shipped, data, request):
     """Each request has an outcome; a frame holds anything, and time goes on by leaps."""
     from icdgen.protocol.scripts import procedure_of
 
-    procedure, now, script = procedure_of(known(), request), 0, [{"at": 0}]
+    procedure, now, script = procedure_of(facts_of(request), request), 0, [{"at": 0}]
     asked = procedure.next(0)
     for _ in range(data.draw(st.integers(0, 40))):
         if procedure.result:
@@ -73,14 +79,14 @@ def test_against_any_outcome_at_any_time(shipped, data, request):
         elif asked is not None:
             row["event"] = {"event": data.draw(OUTCOMES)}
             if row["event"]["event"] == "done":
-                length = known().telemetry[asked.id].length if asked.kind == "telemetry" else 0
+                length = facts_of(request).telemetry[asked.id].length if asked.kind == "telemetry" else 0
                 frame = data.draw(st.lists(st.sampled_from([0, 0, 1, 2, 130, 255]), min_size=length, max_size=length))
                 row["event"]["bytes"] = bytes(frame).hex()
         if "event" in row:
             procedure.event(now, row["event"])
         asked = procedure.next(now) or (asked if "event" not in row else None)
         script.append(row)
-    compare(shipped, {"op": "file", "node": "cubeacp", **request, "script": script})
+    compare(shipped, {"op": "file", "node": NODE, **request, "script": script})
 
 
 def test_what_the_icd_does_not_describe_is_unsupported(shipped, wire):
