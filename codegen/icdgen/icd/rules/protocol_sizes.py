@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
-from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
@@ -67,6 +67,7 @@ def sizes_agree(ctx: Context) -> Iterator[Fault]:
             if isinstance(hole_map, Map):
                 yield from _product(hole_map, "bytes", "messages", "message_bytes")
                 yield from _hole_map(files, hole_map)
+        yield from _log_mask(ctx, node)
 
 
 def _product(section: Map, whole: str, count: str, part: str) -> Iterator[Fault]:
@@ -95,6 +96,23 @@ def _packets_left(can: Map, extended: Map) -> Iterator[Fault]:
     elif isinstance(left, int) and isinstance(room, int) and left >= room:
         message = f"byte {left} is outside a packet of {room} bytes"
         yield Fault(extended, extended.at("packets_left_byte"), message, "correct it or `max_data_bytes`")
+
+
+def _log_mask(ctx: Context, node: Node) -> Iterator[Fault]:
+    """Where logs carry their mask it has the mask's size: readers take so many bytes of it."""
+    size = ctx.protocol_of(node).get("log_mask", {}).get("bytes")
+    for section, key in (("telemetry_log", "header"), ("unsolicited_log", "message")):
+        rows = section_of(node, section)
+        for row in mappings(rows.get(key) if rows is not None else None):
+            given = row.get("bytes")
+            if (
+                row.get("role", row.get("name")) == "mask"
+                and isinstance(size, int)
+                and isinstance(given, int)
+                and given != size
+            ):
+                message = f"the mask has {counted(given, 'byte')} here, {size} by `log_mask`"
+                yield Fault(row, row.at("bytes"), message, "correct one of them")
 
 
 def _hole_map(files: Map, hole_map: Map) -> Iterator[Fault]:
