@@ -19,7 +19,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import yaml
 
 from icdgen.icd.model import Icd, Node
 from icdgen.loading import load
@@ -101,7 +100,7 @@ class Judge:
             self._write(mutant.owner, tree)
 
     def _write(self, name: str, tree: dict[str, Any]) -> None:
-        (self.folder / f"{name}.yaml").write_text(yaml.safe_dump(tree, sort_keys=False), encoding="utf-8")
+        (self.folder / f"{name}.yaml").write_text(json.dumps(tree), encoding="utf-8")  # which is YAML
 
     def _errors(self) -> set[tuple[str, str]]:
         found = load([self.folder]).findings

@@ -7,6 +7,7 @@ import random
 import subprocess
 
 from icdgen.backends.html import wire
+from icdgen.backends.python.objects.links import link_of
 from icdgen.protocol.facts import of
 from icdgen.recognize import read
 from icdgen.values.errors import BadHex
@@ -61,7 +62,8 @@ def facts(icd, id: int) -> tuple[dict, int]:
     known = of(icd, owner)
     message = known.telemetry[id]
     section = {"crc8": owner.protocol["crc8"]}
-    return wire.page_facts(message, wire.Wire(known, section, [wire.Speaker(known, section)])), message.length
+    link = link_of(icd, known)
+    return wire.page_facts(message, wire.Wire(known, section, link, [wire.Speaker(known, section, link)])), message.length
 
 
 def test_the_page_of_the_message_takes_every_way(shipped):
