@@ -19,7 +19,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-
 from icdgen.icd.model import Icd, Node
 from icdgen.loading import load
 from icdgen.protocol import facts
