@@ -63,7 +63,10 @@ def facts(icd, id: int) -> tuple[dict, int]:
     message = known.telemetry[id]
     section = {"crc8": owner.protocol["crc8"]}
     link = link_of(icd, known)
-    return wire.page_facts(message, wire.Wire(known, section, link, [wire.Speaker(known, section, link)])), message.length
+    return (
+        wire.page_facts(message, wire.Wire(known, section, link, [wire.Speaker(known, section, link)])),
+        message.length,
+    )
 
 
 def test_the_page_of_the_message_takes_every_way(shipped):
