@@ -48,7 +48,7 @@ def _member(fact: Fact, part: type) -> str:
     if part is Client and fact.kind is Kind.TIME:
         kind = "Number"  # users set it, in fractions if they like
     if fact.is_optional:
-        return f"    {fact.name}: {kind} | None = None"
+        return f"    {fact.name}: Optional[{kind}] = None"
     return f"    {fact.name}: {kind}" + (" = ()" if fact.default == () else "")
 
 

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
+from ._base import Buffer, FieldInfo, Message
 from ._enumeration import OpenEnum
 from ._errors import LengthError, RangeError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from ._base import Buffer, FieldInfo, Message
 
 _E = TypeVar("_E", bound=OpenEnum)
 new = object.__new__

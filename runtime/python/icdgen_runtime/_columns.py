@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from ._base import Buffer, FieldInfo, Message
 from ._codec import raw_range
 from ._errors import LengthError
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from ._base import Buffer, FieldInfo, Message
 
 _EXACT = 1 << 53  # integers below this are exact as 64-bit floats
 

@@ -4,10 +4,6 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing_extensions import Self
-
 _KEPT = 256  # unknown values below this are made once, so that `is` works
 
 
@@ -21,14 +17,14 @@ class OpenEnum(IntEnum):
     label: str
     """The manual's name, verbatim; empty for a value that it does not list."""
 
-    def __new__(cls, value: int, label: str = "") -> Self:
+    def __new__(cls, value: int, label: str = "") -> OpenEnum:  # noqa: PYI034
         self = int.__new__(cls, value)
         self._value_ = value
         self.label = label
         return self
 
     @classmethod
-    def _missing_(cls, value: object) -> Self | None:
+    def _missing_(cls, value: object) -> object:
         if not isinstance(value, int) or not 0 <= value < 1 << 64:
             return None
         self = int.__new__(cls, value)
@@ -39,7 +35,7 @@ class OpenEnum(IntEnum):
             cls._value2member_map_[int(value)] = self
         return self
 
-    def __reduce_ex__(self, protocol: object) -> tuple[type[Self], tuple[int]]:
+    def __reduce_ex__(self, protocol: object) -> tuple[type[OpenEnum], tuple[int]]:
         return type(self), (int(self),)
 
     def __str__(self) -> str:

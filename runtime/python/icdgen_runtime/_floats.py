@@ -8,12 +8,9 @@ from __future__ import annotations
 
 import math
 import struct
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from ._base import Buffer, Message
+from ._base import Buffer, Message
 
 _FLOAT32, _FLOAT64 = struct.Struct("<f"), struct.Struct("<d")
 _BITS32, _BITS64 = struct.Struct("<I"), struct.Struct("<Q")

@@ -4,17 +4,35 @@ from __future__ import annotations
 
 from importlib import import_module
 
+# Itself: what annotations name is loaded when they are evaluated.
+from . import _lazy  # noqa: PLW0406
 from ._errors import UnknownIdError
+
+__all__ = ["Any", "Buffer", "Iterator", "Message", "Messages", "attribute"]
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from typing import Any
 
-    from ._base import Message
+    from ._base import Buffer, Message
+else:
+    _NAMED = {
+        "Any": "typing",
+        "Buffer": "._base",
+        "Iterator": "collections.abc",
+        "Message": "._base",
+    }
+
+    def __getattr__(name):
+        if name not in _NAMED:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return getattr(import_module(_NAMED[name], __package__), name)
 
 
-def attribute(module: dict[str, Any], homes: dict[str, str], name: str) -> Any:
+def attribute(
+    module: dict[str, _lazy.Any], homes: dict[str, str], name: str
+) -> _lazy.Any:
     """The class ``name`` of the node ``module``, from the file that ``homes`` gives."""
     if name not in homes:
         raise AttributeError(f"module {module['__name__']!r} has no attribute {name!r}")
@@ -27,18 +45,18 @@ class Messages:
     """The messages of a node by id: ``TELEMETRY[146]`` is a class."""
 
     def __init__(
-        self, module: dict[str, Any], node: str, kind: str, names: dict[int, str]
+        self, module: dict[str, _lazy.Any], node: str, kind: str, names: dict[int, str]
     ) -> None:
         self._module, self._node, self._kind, self._names = module, node, kind, names
         self._loaded: dict[int, type[Message]] = {}
 
-    def __getitem__(self, id: int) -> type[Message]:
+    def __getitem__(self, id: int) -> type[_lazy.Message]:
         try:
             return self._loaded[id]
         except (KeyError, TypeError):
             return self._load(id)
 
-    def _load(self, id: int) -> type[Message]:
+    def _load(self, id: int) -> type[_lazy.Message]:
         if not isinstance(id, int) or id not in self._names:
             raise UnknownIdError(self._node, self._kind, id)
         name = self._names[id]
@@ -49,12 +67,12 @@ class Messages:
     def __contains__(self, id: object) -> bool:
         return isinstance(id, int) and id in self._names
 
-    def __iter__(self) -> Iterator[int]:
+    def __iter__(self) -> _lazy.Iterator[int]:
         return iter(self._names)
 
     def __len__(self) -> int:
         return len(self._names)
 
-    def items(self) -> Iterator[tuple[int, type[Message]]]:
+    def items(self) -> _lazy.Iterator[tuple[int, type[_lazy.Message]]]:
         """All ids and classes; loads them."""
         return ((id, self[id]) for id in self._names)

@@ -14,7 +14,6 @@ from .. import _lazy
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from .. import _base
     from ._link import LINK as LINK
     from ._types.advance_file_list_read_pointer import AdvanceFileListReadPointer as AdvanceFileListReadPointer
     from ._types.advance_log_pointer import AdvanceLogPointer as AdvanceLogPointer
@@ -193,12 +192,12 @@ TELEMETRY = _lazy.Messages(globals(), NAME, "telemetry", _TELEMETRY)
 """What can be requested, by id."""
 
 
-def decode_telecommand(id: int, data: _base.Buffer) -> _base.Message:
+def decode_telecommand(id: int, data: _lazy.Buffer) -> _lazy.Message:
     """The telecommand in ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELECOMMANDS[id].from_bytes(data)
 
 
-def decode_telemetry(id: int, data: _base.Buffer) -> _base.Message:
+def decode_telemetry(id: int, data: _lazy.Buffer) -> _lazy.Message:
     """The telemetry frame in ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELEMETRY[id].from_bytes(data)
 

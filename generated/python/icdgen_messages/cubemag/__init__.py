@@ -14,7 +14,6 @@ from .. import _lazy
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from .. import _base
     from ._types.deployment_status import DeploymentStatus as DeploymentStatus
     from ._types.mag_state import MagState as MagState
     from ._types.mnt_state import MntState as MntState
@@ -53,12 +52,12 @@ TELEMETRY = _lazy.Messages(globals(), NAME, "telemetry", _TELEMETRY)
 """What can be requested, by id."""
 
 
-def decode_telecommand(id: int, data: _base.Buffer) -> _base.Message:
+def decode_telecommand(id: int, data: _lazy.Buffer) -> _lazy.Message:
     """The telecommand in ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELECOMMANDS[id].from_bytes(data)
 
 
-def decode_telemetry(id: int, data: _base.Buffer) -> _base.Message:
+def decode_telemetry(id: int, data: _lazy.Buffer) -> _lazy.Message:
     """The telemetry frame in ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELEMETRY[id].from_bytes(data)
 

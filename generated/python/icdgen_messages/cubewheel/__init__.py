@@ -17,7 +17,6 @@ from .. import _lazy
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from .. import _base
     from ._types.motor_power import MotorPower as MotorPower
     from ._types.wheel_error_state import WheelErrorState as WheelErrorState
     from ._types.wheel_reference_speed import WheelReferenceSpeed as WheelReferenceSpeed
@@ -50,12 +49,12 @@ TELEMETRY = _lazy.Messages(globals(), NAME, "telemetry", _TELEMETRY)
 """What can be requested, by id."""
 
 
-def decode_telecommand(id: int, data: _base.Buffer) -> _base.Message:
+def decode_telecommand(id: int, data: _lazy.Buffer) -> _lazy.Message:
     """The telecommand in ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELECOMMANDS[id].from_bytes(data)
 
 
-def decode_telemetry(id: int, data: _base.Buffer) -> _base.Message:
+def decode_telemetry(id: int, data: _lazy.Buffer) -> _lazy.Message:
     """The telemetry frame in ``data``. Raises `UnknownIdError` and `LengthError`."""
     return TELEMETRY[id].from_bytes(data)
 

@@ -24,9 +24,6 @@ if TYPE_CHECKING:
     from .crc import crc16 as crc16
     from .errors import BusyError as BusyError
     from .errors import ChecksumError as ChecksumError
-    from .errors import FailedError as FailedError
-    from .errors import RefusedError as RefusedError
-    from .errors import ReplyTimeoutError as ReplyTimeoutError
     from .errors import TooLongError as TooLongError
     from .errors import UnsupportedError as UnsupportedError
     from .events import Done as Done
@@ -38,6 +35,9 @@ if TYPE_CHECKING:
     from .events import Refused as Refused
     from .events import Stray as Stray
     from .events import Timeout as Timeout
+    from .failures import FailedError as FailedError
+    from .failures import RefusedError as RefusedError
+    from .failures import ReplyTimeoutError as ReplyTimeoutError
     from .files import HoleMap as HoleMap
     from .files import IndexEntry as IndexEntry
     from .files import read_index as read_index
@@ -81,9 +81,6 @@ _HOMES = {
     "errors": (
         "BusyError",
         "ChecksumError",
-        "FailedError",
-        "RefusedError",
-        "ReplyTimeoutError",
         "TooLongError",
         "UnsupportedError",
     ),
@@ -98,6 +95,7 @@ _HOMES = {
         "Stray",
         "Timeout",
     ),
+    "failures": ("FailedError", "RefusedError", "ReplyTimeoutError"),
     "files": ("HoleMap", "IndexEntry", "read_index", "write_index"),
     "i2c": ("I2cTransfer", "i2c_read_length", "i2c_reply", "i2c_write"),
     "identity": ("Identity", "identify"),

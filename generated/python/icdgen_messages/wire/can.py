@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple, Optional
 
 from .._errors import RangeError
 from .errors import TooLongError, need
-
-if TYPE_CHECKING:
-    from .link import Can, CanKind, Extended, Link
+from .link import Can, CanKind, Extended, Link
 
 Found = Literal[
     "message", "duplicate", "incomplete", "malformed", "busy", "unknown_type"
@@ -45,7 +43,7 @@ class CanEvent(NamedTuple):
     event: Found
     id: int
     source: int
-    message: CanMessage | None = None
+    message: Optional[CanMessage] = None
     missing: int = 0
 
 
@@ -95,13 +93,13 @@ class _Joining:
     """A message of several packets; also after it is complete, to know duplicates."""
 
     def __init__(
-        self, message: CanMessage, count: int, length: int | None, now: float
+        self, message: CanMessage, count: int, length: Optional[int], now: float
     ) -> None:
         self.message, self.count, self.length = message, count, length
         self.last = now
         self.pieces: dict[int, bytes] = {}
         self.in_order = 0  # so many packets came last in order, from the first on
-        self.completed_by: int | None = None
+        self.completed_by: Optional[int] = None
 
     def came(self, position: int, now: float) -> None:
         """Notes a packet, be it a repeated one."""
@@ -131,7 +129,7 @@ class CanJoiner:
     """
 
     def __init__(
-        self, link: Link, address: int | None = None, senders: int = 4
+        self, link: Link, address: Optional[int] = None, senders: int = 4
     ) -> None:
         self._link, self._can = link, need(link.can, "can")
         self._address, self._senders = address, senders
@@ -240,7 +238,7 @@ class CanJoiner:
                 return True
         return False
 
-    def _length(self, head: CanMessage) -> int | None:
+    def _length(self, head: CanMessage) -> Optional[int]:
         """Bytes of the message, if the ICD knows it and it needs several packets."""
         if head.kind == "telecommand":
             sent = self._link.commands.get(head.id)

@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from .._base import Buffer
 from .errors import need
-
-if TYPE_CHECKING:
-    from .._base import Buffer
-    from .link import Link
+from .link import Link
 
 
 class Identity(NamedTuple):

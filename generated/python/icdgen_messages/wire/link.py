@@ -6,10 +6,9 @@ A part that the ICD does not describe is None.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, NamedTuple, Union
+from typing import Literal, NamedTuple, Optional, Union
 
-if TYPE_CHECKING:
-    from .._lazy import Messages
+from .._lazy import Messages
 
 Bus = Literal["uart", "i2c", "can"]
 CanKind = Literal[
@@ -101,7 +100,7 @@ class CrcForm(NamedTuple):
     """Whether the bits of the register are reversed at the end."""
     xor_out: int
     """What the register is combined with at the end."""
-    empty: int | None = None
+    empty: Optional[int] = None
     """Checksum of no bytes at all, where it is not what the algorithm gives."""
 
 
@@ -155,14 +154,14 @@ class Can(NamedTuple):
     parts: dict[str, CanPart]
     types: dict[CanKind, int]
     extended_types: dict[CanKind, int]
-    extended: Extended | None = None
+    extended: Optional[Extended] = None
 
 
 class LogBit(NamedTuple):
     """A bit of the log mask and its frame; an unassigned bit has no id."""
 
     bit: int
-    id: int | None
+    id: Optional[int]
     length: int
     name: str = ""
 
@@ -203,7 +202,7 @@ class LogFileForm(NamedTuple):
     """Where the milliseconds stand in an entry."""
     frames_at: int
     """Where in an entry the selected frames begin."""
-    file_type: int | None = None
+    file_type: Optional[int] = None
     """Type of such a file."""
 
 
@@ -233,7 +232,7 @@ class Index(NamedTuple):
     entry_bytes: int
     """Length of an entry."""
     fields: dict[str, tuple[int, int]]
-    file_type: int | None = None
+    file_type: Optional[int] = None
     """Type of such a file."""
 
 
@@ -259,8 +258,8 @@ class Step(NamedTuple):
     """A message that plays a part in a procedure, and its attributes by role."""
 
     fields: dict[str, str]
-    telecommand: int | None = None
-    telemetry: int | None = None
+    telecommand: Optional[int] = None
+    telemetry: Optional[int] = None
 
 
 class Files(NamedTuple):
@@ -309,8 +308,8 @@ class Link(NamedTuple):
 
     node: str
     order: Literal["little", "big"]
-    node_type: int | None
-    interface_version: int | None
+    node_type: Optional[int]
+    interface_version: Optional[int]
     longest: int
     """Bytes of the longest message of either direction, with id and checksum."""
     longest_data: int
@@ -326,24 +325,24 @@ class Link(NamedTuple):
     """Lengths of telemetry frames by id."""
     TELECOMMANDS: Messages
     TELEMETRY: Messages
-    framing: Framing | None = None
-    acknowledge: Acknowledge | None = None
-    polled: Polled | None = None
-    i2c_address: int | None = None
-    can: Can | None = None
-    checksum: Checksum | None = None
-    crc16: CrcForm | None = None
-    mask: LogMask | None = None
-    log_file: LogFileForm | None = None
-    log_message: LogMessageForm | None = None
-    time: dict[str, TimePart] | None = None
-    index_file: Index | None = None
-    hole_map: HoleMapForm | None = None
-    files: Files | None = None
-    program_copy: Operation | None = None
-    program_information: Operation | None = None
-    identification: Step | None = None
-    statistics: Step | None = None
-    boot_time: int | None = None
+    framing: Optional[Framing] = None
+    acknowledge: Optional[Acknowledge] = None
+    polled: Optional[Polled] = None
+    i2c_address: Optional[int] = None
+    can: Optional[Can] = None
+    checksum: Optional[Checksum] = None
+    crc16: Optional[CrcForm] = None
+    mask: Optional[LogMask] = None
+    log_file: Optional[LogFileForm] = None
+    log_message: Optional[LogMessageForm] = None
+    time: Optional[dict[str, TimePart]] = None
+    index_file: Optional[Index] = None
+    hole_map: Optional[HoleMapForm] = None
+    files: Optional[Files] = None
+    program_copy: Optional[Operation] = None
+    program_information: Optional[Operation] = None
+    identification: Optional[Step] = None
+    statistics: Optional[Step] = None
+    boot_time: Optional[int] = None
     assumptions: tuple[Assumption, ...] = ()
     """What the manual leaves open, and what is held of it."""

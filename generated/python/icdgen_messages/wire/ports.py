@@ -3,26 +3,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import Optional, Protocol
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import Protocol
 
-    class SerialPort(Protocol):
-        """What is asked of a serial port: what `serial.Serial` of pyserial has."""
+class SerialPort(Protocol):
+    """What is asked of a serial port: what `serial.Serial` of pyserial has."""
 
-        timeout: float | None
-        """How long a read waits, in seconds."""
+    timeout: Optional[float]
+    """How long a read waits, in seconds."""
 
-        @property
-        def in_waiting(self) -> int:
-            """Bytes that have come."""
-            ...
+    @property
+    def in_waiting(self) -> int:
+        """Bytes that have come."""
+        ...
 
-        def read(self, size: int = ..., /) -> bytes: ...
+    def read(self, size: int = ..., /) -> bytes: ...
 
-        def write(self, data: bytes, /) -> object: ...
+    def write(self, data: bytes, /) -> object: ...
 
 
 def serial_port(

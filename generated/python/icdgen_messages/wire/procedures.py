@@ -4,18 +4,14 @@ became of it."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union
+from collections.abc import Generator, Iterable
+from typing import Any, Literal, NamedTuple, Optional, Union
 
+from .._base import Message
 from .client import Request
 from .errors import need
-from .events import Done, Packet, Refused, Timeout
-
-if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable
-
-    from .._base import Message
-    from .events import Event, Outcome
-    from .link import Link, Step
+from .events import Done, Event, Outcome, Packet, Refused, Timeout
+from .link import Link, Step
 
 Result = Literal[
     "done", "refused", "timeout", "parameter", "length", "rounds", "checksum", "error"
@@ -39,8 +35,7 @@ class Ended(Exception):
 Wanted = Union[Request, Wait]
 Values = dict[str, Any]
 
-if TYPE_CHECKING:
-    Steps = Generator[Wanted, "Outcome | None", None]
+Steps = Generator[Wanted, Optional[Outcome], None]
 
 
 def one_of(numbers: Iterable[int]) -> str:
@@ -57,24 +52,24 @@ class Procedure:
 
     def __init__(self, link: Link) -> None:
         self.link = link
-        self.result: Result | None = None
+        self.result: Optional[Result] = None
         """None while it runs, then ``done`` or why it is not."""
         self._now: float = 0
-        self._wanted: Wanted | None = None
+        self._wanted: Optional[Wanted] = None
         self._is_asked = False
-        self._steps: Steps | None = None
+        self._steps: Optional[Steps] = None
 
     @property
-    def progress(self) -> tuple[int, int | None]:
+    def progress(self) -> tuple[int, Optional[int]]:
         """Bytes that are delivered, and bytes in all, if that is known."""
         return 0, None
 
     @property
-    def deadline(self) -> float | None:
+    def deadline(self) -> Optional[float]:
         """When `next` wants to be called again; None while an outcome is awaited."""
         return self._wanted.until if isinstance(self._wanted, Wait) else None
 
-    def next(self, now: float) -> Request | None:
+    def next(self, now: float) -> Optional[Request]:
         """The next request, once; None while there is nothing to send."""
         self._now = now
         if self._steps is None:
@@ -102,7 +97,7 @@ class Procedure:
     def _packet(self, number: int, data: bytes) -> None:
         """Takes a download packet."""
 
-    def _go_on(self, outcome: Outcome | None) -> None:
+    def _go_on(self, outcome: Optional[Outcome]) -> None:
         if self._steps is None:
             return
         self._wanted = None
@@ -122,7 +117,7 @@ class Procedure:
         raise NotImplementedError
 
     def _telecommand(
-        self, name: str, values: Values | None = None, repeat: bool = True
+        self, name: str, values: Optional[Values] = None, repeat: bool = True
     ) -> Request:
         """The telecommand of a step: a fresh message with values by role."""
         step = self._step(name)
@@ -132,14 +127,14 @@ class Procedure:
             setattr(message, step.fields[role], value)
         return Request("telecommand", id, message.to_bytes(), repeat)
 
-    def _ask(self, request: Request) -> Generator[Wanted, Outcome | None, Outcome]:
+    def _ask(self, request: Request) -> Generator[Wanted, Optional[Outcome], Outcome]:
         """The outcome of a request."""
         outcome = yield request
         if outcome is None:
             raise Ended("timeout")
         return outcome
 
-    def _must(self, request: Request) -> Generator[Wanted, Outcome | None, Done]:
+    def _must(self, request: Request) -> Generator[Wanted, Optional[Outcome], Done]:
         """The outcome of a request without which there is no going on."""
         outcome = yield from self._ask(request)
         if isinstance(outcome, Done):
@@ -147,14 +142,14 @@ class Procedure:
         raise Ended("refused" if isinstance(outcome, Refused) else "timeout")
 
     def _order(
-        self, name: str, values: Values | None = None, repeat: bool = True
-    ) -> Generator[Wanted, Outcome | None, None]:
+        self, name: str, values: Optional[Values] = None, repeat: bool = True
+    ) -> Generator[Wanted, Optional[Outcome], None]:
         """Sends the telecommand of a step, which must be executed."""
         yield from self._must(self._telecommand(name, values, repeat))
 
     def _frame(
         self, name: str
-    ) -> Generator[Wanted, Outcome | None, tuple[Values, bytes]]:
+    ) -> Generator[Wanted, Optional[Outcome], tuple[Values, bytes]]:
         """The frame of a step: its values by role, and its bytes."""
         step = self._step(name)
         id = need(step.telemetry, name)
@@ -170,8 +165,8 @@ class Procedure:
         wanted: bool,
         interval: str,
         timeout: float,
-        program: int | None = None,
-    ) -> Generator[Wanted, Outcome | None, tuple[Values, bytes]]:
+        program: Optional[int] = None,
+    ) -> Generator[Wanted, Optional[Outcome], tuple[Values, bytes]]:
         """The frame of a step as soon as the flag is as wanted, or tells an error.
 
         A frame that tells of which program it is must be of that one.

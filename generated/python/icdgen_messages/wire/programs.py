@@ -3,15 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Optional
 
 from .._errors import RangeError
 from .errors import need
-from .procedures import Ended, Procedure, one_of
-
-if TYPE_CHECKING:
-    from .link import Link, Operation, Step
-    from .procedures import Steps, Values
+from .link import Link, Operation, Step
+from .procedures import Ended, Procedure, Steps, Values, one_of
 
 
 class ProgramOperation(Procedure):
@@ -45,7 +42,7 @@ class ProgramOperation(Procedure):
         if self._told.get("error"):
             raise Ended("error")
 
-    def _value(self, role: str) -> int | None:
+    def _value(self, role: str) -> Optional[int]:
         found = self._told.get(role) if self.result == "done" else None
         return None if found is None else int(found)
 
@@ -71,11 +68,11 @@ class ProgramInformation(ProgramOperation):
         super().__init__(link, form, program)
 
     @property
-    def size(self) -> int | None:
+    def size(self) -> Optional[int]:
         """Bytes of the program; None also if the ICD has no such field."""
         return self._value("size")
 
     @property
-    def checksum(self) -> int | None:
+    def checksum(self) -> Optional[int]:
         """Its checksum; None also if the ICD has no such field."""
         return self._value("checksum")

@@ -4,23 +4,18 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, TypeVar
+from collections.abc import Callable
+from typing import Optional, TypeVar
 
-from .client import Client
-from .errors import FailedError, RefusedError, ReplyTimeoutError
-from .events import Done, Refused, Timeout
+from .._base import Message
+from .client import Client, Request
+from .events import Done, Event, Outcome, Refused, Timeout
+from .failures import FailedError, RefusedError, ReplyTimeoutError
+from .link import Link, Settings
+from .procedures import Procedure
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from .._base import Message
-    from .client import Request
-    from .events import Event, Outcome
-    from .link import Link, Settings
-    from .procedures import Procedure
-
-    M = TypeVar("M", bound=Message)
-    P = TypeVar("P", bound=Procedure)
+M = TypeVar("M", bound=Message)
+P = TypeVar("P", bound=Procedure)
 
 _LONGEST_WAIT = 1000.0  # ms in one go
 
@@ -31,7 +26,7 @@ class BusSession:
     def __init__(
         self,
         client: Client,
-        on_event: Callable[[Event], object] | None = None,
+        on_event: Optional[Callable[[Event], object]] = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.client = client
@@ -54,7 +49,9 @@ class BusSession:
         return self._outcome(self.client.start(self._now(), request))
 
     def run(
-        self, procedure: P, progress: Callable[[int, int | None], object] | None = None
+        self,
+        procedure: P,
+        progress: Optional[Callable[[int, Optional[int]], object]] = None,
     ) -> P:
         """Runs a procedure to its end; ``progress`` is told of bytes, and of how many.
 
@@ -68,12 +65,12 @@ class BusSession:
             self.client.cancel()  # else a port that fails leaves it busy
 
     def _driven(
-        self, procedure: P, progress: Callable[[int, int | None], object] | None
+        self, procedure: P, progress: Optional[Callable[[int, Optional[int]], object]]
     ) -> P:
         events: list[Event] = []
-        shown: tuple[int, int | None] | None = None
-        asked: Request | None = None
-        refused: Refused | None = None
+        shown: Optional[tuple[int, Optional[int]]] = None
+        asked: Optional[Request] = None
+        refused: Optional[Refused] = None
         left = 0
         while True:
             is_again = False
@@ -107,7 +104,7 @@ class BusSession:
             if not events:
                 events = self.wait(procedure.deadline)
 
-    def wait(self, until: float | None = None) -> list[Event]:
+    def wait(self, until: Optional[float] = None) -> list[Event]:
         """What happens next, by ``until`` at the latest (milliseconds of the clock).
 
         Without ``until`` it waits as long as the client wants to, and a second at most.
@@ -166,8 +163,8 @@ class Session(BusSession):
         write: Callable[[bytes], object],
         read: Callable[[float], bytes],
         crc: bool = False,
-        settings: Settings | None = None,
-        on_event: Callable[[Event], object] | None = None,
+        settings: Optional[Settings] = None,
+        on_event: Optional[Callable[[Event], object]] = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__(Client(link, "uart", crc, settings=settings), on_event, clock)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple, Optional
 
+from .._base import Buffer, Message
 from .._errors import IcdError, LengthError, UnknownIdError
-from .can import CanEvent, CanJoiner, CanMessage, can_split
+from .can import CanEvent, CanJoiner, CanMessage, CanPacket, can_split
 from .errors import BusyError, need
 from .events import (
     Done,
+    Event,
     LineError,
     Log,
     Malformed,
@@ -18,15 +20,9 @@ from .events import (
     Timeout,
 )
 from .i2c import I2cTransfer, i2c_read_length, i2c_reply, i2c_write
-from .link import Link
+from .link import Bus, Link, Polled, Settings
 from .logs import LogMessage
 from .uart import UartDecoder, uart_encode, uart_kind
-
-if TYPE_CHECKING:
-    from .._base import Buffer, Message
-    from .can import CanPacket
-    from .events import Event
-    from .link import Bus, Polled, Settings
 
 
 class Request(NamedTuple):
@@ -59,7 +55,7 @@ class Client:
         bus: Bus,
         crc: bool = False,
         address: int = 0,
-        settings: Settings | None = None,
+        settings: Optional[Settings] = None,
     ) -> None:
         self.link, self.bus = link, bus
         self.settings = settings or link.settings
@@ -67,8 +63,8 @@ class Client:
         self._checks_sent = form is not None and bus in form.telecommand_buses
         self._checks_frames = form is not None and bus in form.telemetry_buses
         self._address = address
-        self._decoder: UartDecoder | None = None
-        self._joiner: CanJoiner | None = None
+        self._decoder: Optional[UartDecoder] = None
+        self._joiner: Optional[CanJoiner] = None
         if bus == "uart":
             need(link.framing, "uart")
             self._decoder = UartDecoder(link)
@@ -86,7 +82,7 @@ class Client:
         self._until: float = 0
         self._is_written = False  # I2C: the telecommand; its acknowledge is polled
         self._give_up: float = 0  # when polling ends
-        self._late: tuple[int, float] | None = None  # id that may be answered again
+        self._late: Optional[tuple[int, float]] = None  # id that may be answered again
 
     @property
     def busy(self) -> bool:
@@ -94,7 +90,7 @@ class Client:
         return self._state != "idle"
 
     @property
-    def deadline(self) -> float | None:
+    def deadline(self) -> Optional[float]:
         """When `tick` wants to be called at the latest; None: not at all."""
         return self._until if self.busy else None
 
@@ -199,7 +195,7 @@ class Client:
                 events.append(_line_error(found))
         return events
 
-    def transferred(self, now: float, data: Buffer | None) -> list[Event]:
+    def transferred(self, now: float, data: Optional[Buffer]) -> list[Event]:
         """I2C: what was read (nothing after a write); None: the transaction failed.
 
         What a request owed that is over is `Stray`.
@@ -301,7 +297,7 @@ class Client:
         length = i2c_read_length(self.link, id, self._checks_frames)
         self._transfers.append(I2cTransfer(bytes((id,)), length))
 
-    def _polled(self, now: float, data: bytes | None) -> list[Event]:
+    def _polled(self, now: float, data: Optional[bytes]) -> list[Event]:
         """The acknowledge frame came, or did not."""
         if data is None:
             return self._pause(now)
@@ -370,7 +366,7 @@ class Client:
         return [Done(id, self._attempts, frame, message)]
 
     def _refused(
-        self, now: float, code: int | None, parameter: int | None = None
+        self, now: float, code: Optional[int], parameter: Optional[int] = None
     ) -> list[Event]:
         """The node refused it. After a wrong checksum it is sent again."""
         codes = {number: role for role, number in self.link.errors.items()}

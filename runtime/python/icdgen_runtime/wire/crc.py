@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from binascii import crc_hqx
 from functools import cache
-from typing import TYPE_CHECKING
 
+from .._base import Buffer
 from .errors import need
-from .link import CrcForm
-
-if TYPE_CHECKING:
-    from .._base import Buffer
-    from .link import Link
+from .link import CrcForm, Link
 
 
 class Crc:

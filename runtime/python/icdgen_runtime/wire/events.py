@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Union
+from typing import Optional, Union
 
-if TYPE_CHECKING:
-    from .._base import Message
-    from .logs import LogMessage
+from .._base import Message
+from .logs import LogMessage
+
+MessageClass = type[Message]
 
 
 @dataclass(frozen=True)
@@ -17,10 +18,10 @@ class Done:
     id: int
     attempts: int
     data: bytes = b""
-    type: type[Message] | None = None
+    type: Optional[MessageClass] = None
 
     @property
-    def message(self) -> Message | None:
+    def message(self) -> Optional[Message]:
         """The frame as a message; None for a telecommand."""
         return self.type.from_bytes(self.data) if self.type else None
 
@@ -35,9 +36,9 @@ class Refused:
 
     id: int
     attempts: int
-    code: int | None = None
-    reason: str | None = None
-    parameter: int | None = None
+    code: Optional[int] = None
+    reason: Optional[str] = None
+    parameter: Optional[int] = None
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ class LineError:
     """What the UART decoder or the CAN joiner found wrong; on CAN, with the id."""
 
     error: str
-    id: int | None = None
+    id: Optional[int] = None
 
 
 Outcome = Union[Done, Refused, Timeout]

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterable
+from typing import NamedTuple
 
 from .._errors import LengthError, RangeError
 from .errors import need
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from .link import Link
+from .link import Link
 
 
 class HoleMap:

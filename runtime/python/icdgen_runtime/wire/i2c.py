@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from .._errors import LengthError, UnknownIdError
 from .crc import Crc
 from .errors import ChecksumError, need
-
-if TYPE_CHECKING:
-    from .link import Link
+from .link import Link
 
 
 class I2cTransfer(NamedTuple):

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import Literal, NamedTuple, Optional
 
+from .._base import Buffer, Message
 from .._errors import LengthError, RangeError
 from .errors import UnsupportedError, need
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from .._base import Buffer, Message
-    from .link import Link, LogBit, LogMask
+from .link import Link, LogBit, LogMask
 
 
 class LogFrame(NamedTuple):
@@ -19,7 +16,7 @@ class LogFrame(NamedTuple):
     ``data`` is the whole slot."""
 
     bit: int
-    id: int | None
+    id: Optional[int]
     data: bytes
 
     def message(self, link: Link) -> Message:
@@ -80,9 +77,9 @@ class LogReader:
         self._layout = need(link.mask, "log_mask")
         self._order: Literal["little", "big"] = link.order
         self._rest = b""
-        self._pieces: list[tuple[int, int | None, int, int]] = []
+        self._pieces: list[tuple[int, Optional[int], int, int]] = []
         self._entry_bytes = 0
-        self.mask: bytes | None = None
+        self.mask: Optional[bytes] = None
         """The mask of the file; None as long as its header is incomplete."""
 
     @property
@@ -163,7 +160,7 @@ def _selected(layout: LogMask, mask: bytes) -> list[LogBit]:
 
 def _pieces(
     slots: Sequence[LogBit], layout: LogMask, start: int
-) -> list[tuple[int, int | None, int, int]]:
+) -> list[tuple[int, Optional[int], int, int]]:
     """Bit, id, begin and end of each frame."""
     pieces = []
     for number, slot in enumerate(slots):
@@ -173,7 +170,7 @@ def _pieces(
 
 
 def _frames(
-    pieces: Sequence[tuple[int, int | None, int, int]], data: bytes, start: int
+    pieces: Sequence[tuple[int, Optional[int], int, int]], data: bytes, start: int
 ) -> tuple[LogFrame, ...]:
     return tuple(
         [

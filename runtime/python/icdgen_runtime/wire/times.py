@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from calendar import monthrange
 from datetime import datetime
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple, Optional, Union
 
 from .._errors import RangeError
 from .errors import need
-
-if TYPE_CHECKING:
-    from .link import Link
+from .link import Link
 
 
 class DosTime(NamedTuple):
@@ -43,7 +41,7 @@ def dos_time_unpack(link: Link, value: int) -> DosTime:
     return DosTime(**parts)
 
 
-def dos_time_pack(link: Link, time: DosTime | datetime) -> int:
+def dos_time_pack(link: Link, time: Union[DosTime, datetime]) -> int:
     """The packed time; what is finer than its resolution is cut off.
 
     Raises `RangeError` for the first part that does not exist or does not fit, and
@@ -68,7 +66,7 @@ def dos_time_pack(link: Link, time: DosTime | datetime) -> int:
     return packed
 
 
-def _wrong(time: DosTime) -> str | None:
+def _wrong(time: DosTime) -> Optional[str]:
     """The first part that does not exist."""
     if not 1 <= time.month <= 12:
         return "month"

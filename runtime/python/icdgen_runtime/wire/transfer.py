@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Generator
+from typing import NamedTuple, Optional
 
 from .._errors import RangeError
 from .client import Request
 from .crc import crc16
 from .errors import TooLongError, need
-from .events import Done, Refused
+from .events import Done, Outcome, Refused
 from .files import HoleMap
-from .procedures import Ended, Procedure, Values, Wait, one_of
-from .times import dos_time_unpack
-
-if TYPE_CHECKING:
-    from collections.abc import Generator
-
-    from .events import Outcome
-    from .link import Bus, Link, Step
-    from .procedures import Steps, Wanted
-    from .times import DosTime
+from .link import Bus, Link, Step
+from .procedures import Ended, Procedure, Steps, Values, Wait, Wanted, one_of
+from .times import DosTime, dos_time_unpack
 
 
 class FileEntry(NamedTuple):
@@ -96,8 +90,8 @@ class Download(FileProcedure):
         bus: Bus,
         type: int,
         counter: int,
-        size: int | None = None,
-        block: int | None = None,
+        size: Optional[int] = None,
+        block: Optional[int] = None,
     ) -> None:
         super().__init__(link)
         self.size = size
@@ -119,7 +113,7 @@ class Download(FileProcedure):
         return b"".join(data for _, data in self.blocks)
 
     @property
-    def progress(self) -> tuple[int, int | None]:
+    def progress(self) -> tuple[int, Optional[int]]:
         return self._offset, self.size
 
     def _packet(self, number: int, data: bytes) -> None:
@@ -143,7 +137,7 @@ class Download(FileProcedure):
             if self.size is None and len(data) < length:
                 return
 
-    def _block(self, length: int) -> Generator[Wanted, Outcome | None, bytes]:
+    def _block(self, length: int) -> Generator[Wanted, Optional[Outcome], bytes]:
         """A block of so many bytes, or of less at the end of a file of unknown size."""
         numbers, rounds = self._files.numbers, 0
         while True:
@@ -167,7 +161,7 @@ class Download(FileProcedure):
             if not size:  # no packet, so that no round was made
                 rounds += 1
 
-    def _load(self, length: int) -> Generator[Wanted, Outcome | None, Values]:
+    def _load(self, length: int) -> Generator[Wanted, Optional[Outcome], Values]:
         """Has the node load a block; what its ready frame says."""
         self._got, self._count = {}, 0
         place = {**self._file, "offset": self._offset, "length": length}
@@ -238,7 +232,7 @@ class Upload(FileProcedure):
     """
 
     def __init__(
-        self, link: Link, destination: int, data: bytes, block: int | None = None
+        self, link: Link, destination: int, data: bytes, block: Optional[int] = None
     ) -> None:
         super().__init__(link)
         self._step("upload.initiate")
@@ -255,7 +249,7 @@ class Upload(FileProcedure):
         )
 
     @property
-    def progress(self) -> tuple[int, int | None]:
+    def progress(self) -> tuple[int, Optional[int]]:
         return self.sent, len(self._data)
 
     def _run(self) -> Steps:
@@ -298,7 +292,7 @@ class Upload(FileProcedure):
             if rounds == self._number("upload.rounds"):
                 raise Ended("checksum")
 
-    def _missing(self, count: int) -> Generator[Wanted, Outcome | None, list[int]]:
+    def _missing(self, count: int) -> Generator[Wanted, Optional[Outcome], list[int]]:
         """Numbers of the packets that the node has not."""
         form = need(self.link.hole_map, "file_transfer.hole_map")
         data = b""
@@ -309,7 +303,7 @@ class Upload(FileProcedure):
         whole = data.ljust(form.bytes, b"\0")
         return HoleMap.from_bytes(self.link, count, whole).missing()
 
-    def _commit(self, length: int) -> Generator[Wanted, Outcome | None, bool]:
+    def _commit(self, length: int) -> Generator[Wanted, Optional[Outcome], bool]:
         """Has the node keep the block; whether it could."""
         values = {
             "destination": self._destination,

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple, Optional
 
+from .._base import Buffer
 from .._errors import LengthError
 from .errors import need
-
-if TYPE_CHECKING:
-    from .._base import Buffer
-    from .link import Framing, Link
+from .link import Framing, Link
 
 Found = Literal["message", "unexpected_start", "protocol_error", "overrun", "empty"]
 Kind = Literal["reply", "acknowledge", "packet", "log", "other"]
@@ -86,7 +84,7 @@ class UartDecoder:
     wanted.
     """
 
-    def __init__(self, link: Link, limit: int | None = None) -> None:
+    def __init__(self, link: Link, limit: Optional[int] = None) -> None:
         self._framing = framing = need(link.framing, "uart")
         self._limit = link.longest if limit is None else limit
         self._buffer = bytearray()
