@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from icdgen.protocol import can, crc, ops, uart
-from icdgen.protocol.sections import CAN_WITH_DATA
+from icdgen.protocol.sections import CAN_KINDS, CAN_WITH_DATA
 from tests.python import packages
 from tests.python.wire import NOISE, known, link
 
@@ -69,7 +69,7 @@ def from_i2c(draw) -> dict:
 
 @st.composite
 def from_can(draw) -> dict:
-    kind = draw(st.sampled_from(can.KINDS))
+    kind = draw(st.sampled_from(CAN_KINDS))
     if kind in CAN_WITH_DATA:
         id, data = frame_of(draw)
     else:
