@@ -100,7 +100,8 @@ def _packets_left(can: Map, extended: Map) -> Iterator[Fault]:
 
 def _log_mask(ctx: Context, node: Node) -> Iterator[Fault]:
     """Where logs carry their mask it has the mask's size: readers take so many bytes of it."""
-    size = ctx.protocol_of(node).get("log_mask", {}).get("bytes")
+    mask = ctx.protocol_of(node).get("log_mask")
+    size = mask.get("bytes") if isinstance(mask, dict) else None
     for section, key in (("telemetry_log", "header"), ("unsolicited_log", "message")):
         rows = section_of(node, section)
         for row in mappings(rows.get(key) if rows is not None else None):
