@@ -20,7 +20,10 @@ def test_no_summary_of_a_command_is_cut_off(width):
     )
     text = " ".join(result.stdout.partition("Commands:")[2].partition("Languages:")[0].split())
     assert "..." not in text
-    for words in ("those of icdgen.toml, else those shipped.", "on the wire, in meaning, in generated names, in words only."):
+    for words in (
+        "those of icdgen.toml, else those shipped.",
+        "on the wire, in meaning, in generated names, in words only.",
+    ):
         assert words in text
 
 
