@@ -98,7 +98,7 @@ def is_identifier(ctx: Context) -> Iterator[Fault]:
     for language, _, identifiers in declared(ctx):
         for one in identifiers:
             text = one.text
-            if not (text.isidentifier() and text.isascii() or _is_file(text)):
+            if not ((text.isidentifier() and text.isascii()) or _is_file(text)):
                 found.add(language, one)
     for one, _, texts in found:
         each = ((quote(text) if text else "nothing", listing(langs)) for text, langs in texts.items())
