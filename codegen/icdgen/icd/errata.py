@@ -24,7 +24,8 @@ class Applied:
 
     def about(self, item: object) -> tuple[Erratum, ...]:
         """The entries, then the notes, that concern the object read from this mapping."""
-        return tuple(sorted(self.of.get(id(item), ()), key=lambda erratum: erratum.is_note))
+        found = self.of.get(id(item))
+        return tuple(sorted(found, key=lambda erratum: erratum.is_note)) if found else ()
 
 
 def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> Applied:
