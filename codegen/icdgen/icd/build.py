@@ -121,6 +121,7 @@ class Builder:
             summary=item.get("summary", ""),
             acknowledge=item.get("acknowledge", True) is True,
             expects_reset=item.get("acknowledge") == "reset",
+            hazard=item.get("hazard", ""),
             assumptions=tuple((key, str(why)) for key, why in (item.get("assumptions") or {}).items()),
             contains=tuple(self.each("contains", lambda p: model.Part(p["message"], p["at"]), item)),
             node=self.name,

@@ -187,7 +187,7 @@ class _Reader:
             fields=tuple(self.field(field) for field in item["fields"]), id=get("id"), set_id=get("set_id"),
             get_id=get("get_id"), identifier=get("identifier"), group=get("group", ""), table=get("table"),
             page=get("page"), summary=get("summary", ""), acknowledge=get("acknowledge", True) is True,
-            expects_reset=get("acknowledge") == "reset",
+            expects_reset=get("acknowledge") == "reset", hazard=get("hazard", ""),
             contains=tuple(model.Part(part["message"], part["offset"]) for part in get("contains", ())), node=node,
             errata=self.about(item), source=item,
         )  # fmt: skip
