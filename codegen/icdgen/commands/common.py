@@ -31,6 +31,21 @@ class _Path(click.Path):
 PATH = _Path(path_type=Path)
 
 
+class _Seconds(click.FloatRange):
+    """Seconds, up to a day. That neither `nan` nor `inf` is a time, click's range does not notice."""
+
+    name = "seconds"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        seconds: float = click.FLOAT.convert(value, param, ctx)
+        if not 0 <= seconds <= 86400:
+            self.fail(f"{value} is not in the range 0<=x<=86400.", param, ctx)
+        return seconds
+
+
+SECONDS = _Seconds(0, 86400)
+
+
 def known_languages() -> str:
     """The words for ``--lang``: ours, then those of plug-ins with their packages."""
     from icdgen import backends

@@ -245,8 +245,8 @@ def at(source: Map, keys: tuple[str, ...]) -> Place:
     """Where the first key stands that is there; the mapping itself if none is."""
     for key in keys:
         for name in (key, *_SHOWN.get(key, ())):
-            if name in source.values_at:
-                return source.values_at[name]
+            if name in source.spots:
+                return source.at(name)
     return source.place
 
 

@@ -26,7 +26,7 @@ from icdgen.icd.rules.wording import quote
 
 @rule("DIF401", "node", "message", "field", "enum", "member", severity="note")
 def summary_changed(pair: Pair, ctx: Context) -> Iterator[Found]:
-    for key in ("summary", "title"):
+    for key in ("summary", "title", "hazard"):
         old, new = getattr(pair.old, key, ""), getattr(pair.new, key, "")
         if old != new:
             verb = "is new" if not old else "is gone" if not new else "says otherwise"
