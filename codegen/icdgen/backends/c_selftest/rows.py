@@ -94,7 +94,7 @@ class Dispatcher(NamedTuple):
     name: str
     id_type: str
     lengths: list[str]
-    count: int
+    id_count: int
 
 
 class EnumRow(NamedTuple):

@@ -44,12 +44,9 @@ def _uses(node: Node) -> Iterator[Use]:
 
 def _is_id(value: object) -> bool:
     """Whether it is a number or bytes: the entry may be broken."""
-    rows = value if isinstance(value, list) else [value]
-    return (
-        bool(rows)
-        and all(isinstance(one, int) and one >= 0 for one in rows)
-        and (rows is not value or all(one <= 255 for one in rows))
-    )
+    if isinstance(value, list):
+        return bool(value) and all(isinstance(one, int) and 0 <= one <= 255 for one in value)
+    return isinstance(value, int) and value >= 0
 
 
 @rule("ICD055")
