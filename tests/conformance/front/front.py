@@ -50,7 +50,7 @@ class Front:
 
     def route(self, node: int, kind: str, id: int) -> tuple[tuple[int, int, int], dict[str, Any] | None]:
         """Node, direction and id that lead to a message, and what is known of it: None if the ICD has none there."""
-        if not 0 <= id < 1 << self.plan["id_bits"]:
+        if not 0 <= id < 1 << self.plan["nodes"][node]["id_bits"]:
             raise Refusal("unknown-id")
         found = self._routes[node].get((kind, id))
         if found is None and kind == "configuration":

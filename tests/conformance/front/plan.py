@@ -15,11 +15,11 @@ def plan(icd: Icd) -> dict[str, Any]:
     every = [message for node in description.nodes for message in node.messages]
     places = {(one.model.node, one.model.name): place for place, one in enumerate(every)}
     return {
-        "id_bits": description.id_bits,
         "messages": [_message(one.model) for one in every],
         "nodes": [
             {
                 "name": node.name,
+                "id_bits": node.id_bits,
                 "speaks": [places[one.model.node, one.model.name] for one in node.spoken],
                 "enums": [enum.model.name for enum in node.enums],
                 "link": _link(icd, node.model) if node.is_linked else None,

@@ -89,7 +89,7 @@ class CTesteeBackend:
         yield PurePosixPath("testee_nodes.c"), render("nodes.c.j2", origin=origin(), nodes=nodes, linked=linked)
         yield PurePosixPath("testee_ops.c"), render("ops.c.j2", origin=origin(), linked=bool(linked))
         for node in description.nodes:
-            values = _Rows(node).all() | {"id_type": f"uint{description.id_bits}_t"}
+            values = _Rows(node).all()
             yield PurePosixPath(f"nodes/{node.name}.c"), render("node.c.j2", origin=origin(node.model), **values)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
@@ -112,6 +112,7 @@ class _Rows:
         ]
         return {
             "node": node.name,
+            "id_type": f"uint{node.id_bits}_t",
             "messages": [self.message(message) for message in node.spoken],
             "enums": [_enum(enum) for enum in dict.fromkeys(node.enums) | used],
             "own_enums": [_enum(enum) for enum in node.enums],
