@@ -140,15 +140,16 @@ def _stretches(found: list[Line], keyed: list[int], torn: bool) -> list[tuple[in
 
 
 def _first_start(found: list[Line], keyed: list[int], gaps: list[float], usual: float, torn: bool) -> int:
-    """Lines above the first key belong to its row where the key stands in the middle of its row's height."""
+    """Lines above the first key belong to its row where the key stands in the middle of its row's height, unless one of
+    the gaps above it is as wide as those that part the rows below it."""
     first = keyed[0]
     if first == 0:
         return 0
     widest = max(range(first), key=lambda i: gaps[i])
-    if gaps[widest] > 1.25 * usual and (widest > 0 or torn):
+    parting = median(max(gaps[before:here]) for before, here in itertools.pairwise(keyed))
+    if gaps[widest] > max(1.25 * usual, 0.8 * parting) and (widest > 0 or torn):
         return widest + 1
-    after = (keyed[1] if len(keyed) > 1 else len(found)) - first - 1
-    return 0 if after >= first else first
+    return 0 if keyed[1] - first - 1 >= first else first
 
 
 def _start(found: list[Line], before: int, here: int, gaps: list[float], start: int) -> int:
