@@ -49,7 +49,7 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
         yield page(CHANGES, "changes.html.j2", **changes.values(relations, previous))
     for node in icd.nodes:
         yield page(relations.links.node(node.name), "node.html.j2", **nodes.values(relations, node))
-        shown = [messages.values(relations, node, message) for message in node.messages]
+        shown = [messages.values(relations, node, message, render) for message in node.messages]
         for before, one, after in zip([None, *shown], shown, [*shown[1:], None], strict=False):
             yield page(one["url"], "message.html.j2", before=before, after=after, **one)
         yield page(relations.links.printed(node.name), "print.html.j2", shown=shown, **nodes.values(relations, node))

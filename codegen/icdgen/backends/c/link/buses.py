@@ -47,8 +47,8 @@ class BusTables(FactTables):
     def crc(self, name: str, one: Crc) -> str:
         """The initialiser of a CRC without its braces; the table for whole bytes is one of its own."""
         table = "NULL"
-        if 8 <= one.width <= 16:
-            entries = [f"{value:#0{2 + -(-one.width // 4)}x}u," for value in _table(one)]
+        if one.width <= 16:
+            entries = [f"{value:#0{2 + -(-one.width // 4)}x}u," for value in crc_table(one)]
             table = self.add(f"{name}_table[]", "uint16_t", lines(entries))
         facts = (row.partition(", /*")[0] for row in self.facts(name, one))
         return ", ".join([*facts, table])
@@ -62,13 +62,14 @@ class BusTables(FactTables):
         return "NULL" if one is None else self.add("crc16", TYPES[Crc], [self.crc("crc16", one)])
 
 
-def _table(one: Crc) -> list[int]:
+def crc_table(one: Crc) -> list[int]:
     """What each byte, first bit on top, makes of a register of zeros."""
     top, mask = 1 << one.width - 1, (1 << one.width) - 1
     table = []
     for byte in range(256):
-        register = byte << one.width - 8
-        for _ in range(8):
-            register = register << 1 & mask ^ (one.polynomial if register & top else 0)
+        register = 0
+        for position in reversed(range(8)):
+            out = bool(register & top) != bool(byte >> position & 1)
+            register = register << 1 & mask ^ (one.polynomial if out else 0)
         table.append(register)
     return table
