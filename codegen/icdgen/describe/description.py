@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from icdgen import layout, naming
 from icdgen.describe import steps
@@ -13,6 +13,9 @@ from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.storage import Storage, holding
 from icdgen.icd.model import Enum, Field, Icd, Message, Node
+
+if TYPE_CHECKING:
+    from icdgen.describe.links import LinkDescription
 
 
 class FieldDescription:
@@ -170,6 +173,16 @@ class NodeDescription:
     def is_linked(self) -> bool:
         """Whether it is known how its messages travel."""
         return bool(self._description.icd.protocol_of(self.model))
+
+    @cached_property
+    def link(self) -> LinkDescription | None:
+        """How its messages travel; None if that is not known."""
+        if not self.is_linked:
+            return None
+        from icdgen.describe.links import LinkDescription  # the rules about names need none of it
+        from icdgen.protocol import facts
+
+        return LinkDescription(facts.of(self._description.icd, self.model))
 
     @cached_property
     def log_bits(self) -> dict[int, int]:

@@ -18,10 +18,10 @@ from icdgen.backends.lines import STEP
 from icdgen.backends.origin import origin
 from icdgen.describe import EnumDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.comments import sentence, words
-from icdgen.icd.model import Icd, Node
+from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
-    from icdgen.protocol.facts import Facts
+    from icdgen.describe.links import LinkDescription
     from icdgen.render import Renderer
 
 _MAX_ENUMERATOR = 32767
@@ -38,21 +38,20 @@ class CBackend:
         """Every header, the support header first, then node by node."""
         first = f"/* {origin()} */\n"
         yield PurePosixPath("icdgen.h"), first + header("icdgen.h", {}, render)
-        links = {node.name: _facts(icd, node) for node in icd.nodes if icd.protocol_of(node)}
-        if links:
-            from icdgen.backends.c.link import step_bytes
-
-            made = {"wire/sizes.h": render("sizes.h.j2", step_bytes=step_bytes(links.values()))}
-            yield PurePosixPath("icdgen_wire.h"), first + header("icdgen_wire.h", made, render)
         description = describe(icd)
+        links = [node.link for node in description.nodes if node.link]
+        if links:
+            step_bytes = max(1, *(link.longest_step for link in links))
+            made = {"wire/sizes.h": render("sizes.h.j2", step_bytes=step_bytes)}
+            yield PurePosixPath("icdgen_wire.h"), first + header("icdgen_wire.h", made, render)
         for node in description.nodes:
             folder = PurePosixPath(node.name)
             if node.enums:
                 yield folder / "enums.h", render("enums.h.j2", **_enums(node))
             for message in node.messages:
                 yield folder / f"{message.name}.h", render("message.h.j2", **_message(message))
-            if node.name in links:
-                yield folder / "link.h", render("link.h.j2", **_link(node, links[node.name]))
+            if node.link:
+                yield folder / "link.h", render("link.h.j2", **_link(node, node.link))
             yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", **_node(node, description.id_bits))
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
@@ -102,14 +101,8 @@ def _message(message: MessageDescription) -> dict[str, object]:
     }
 
 
-def _facts(icd: Icd, node: Node) -> Facts:
-    from icdgen.protocol import facts
-
-    return facts.of(icd, node)
-
-
-def _link(node: NodeDescription, known: Facts) -> dict[str, object]:
-    from icdgen.backends.c.link import LinkTables, aliases, sizes
+def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
+    from icdgen.backends.c import links
 
     title = words(node.model.title)
     return {
@@ -118,9 +111,9 @@ def _link(node: NodeDescription, known: Facts) -> dict[str, object]:
         "guard": _guard(node.name, "link"),
         "about": comment(["@file", f"{title}: how its messages travel."]),
         "title": prose(title),
-        "constants": sizes(known),
-        "aliases": aliases(node.messages),
-        "tables": LinkTables(known).all(),
+        "constants": links.sizes(link),
+        "aliases": links.aliases(node.messages),
+        "tables": links.tables(link),
     }
 
 
