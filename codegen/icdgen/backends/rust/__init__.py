@@ -15,6 +15,7 @@ from icdgen.describe import describe
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
+    from icdgen.describe.links import LinkDescription
     from icdgen.render import Renderer
 
 CRATE = "icd"
@@ -39,7 +40,8 @@ class RustBackend:
         common: dict[str, object] = {"origin": origin(), "version": __version__, "crate": self.crate}
         description = describe(icd)
         id_bits = description.id_bits
-        wired = any(node.is_linked for node in description.nodes)
+        links = [node.link for node in description.nodes if node.link]
+        wired = bool(links)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         yield PurePosixPath("src/lib.rs"), render(
             "lib.rs.j2", nodes=[nodes.Summary(node) for node in icd.nodes], wired=wired, **common
@@ -63,23 +65,26 @@ class RustBackend:
                 text = render("message.rs.j2", m=values, node=node.name, wired=wired, **shared)
                 yield folder / f"{message.name}.rs", text
         if wired:
-            yield from _wire(icd, render, common)
+            yield from _wire(links, render, common)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that the crate declares, by scope."""
         return declared_names(describe(icd))
 
 
-def _wire(icd: Icd, render: Renderer, common: dict[str, object]) -> Iterator[tuple[PurePosixPath, str]]:
+def _wire(
+    described: list[LinkDescription], render: Renderer, common: dict[str, object]
+) -> Iterator[tuple[PurePosixPath, str]]:
     """How the messages travel."""
-    from icdgen.backends.rust import wire
+    from icdgen.backends.rust import links
 
     yield from _runtime("src/wire", render)
     folder = PurePosixPath(LINKS)
-    layer = wire.Wire(icd)
-    yield folder / "mod.rs", render("links.rs.j2", links=layer.links, sizes=layer.sizes, **common)
-    for link in layer.links:
-        yield folder / f"{link.node}.rs", render("node_link.rs.j2", link=link, origin=origin(icd.node(link.node)))
+    nodes = [link.facts.node for link in described]
+    yield folder / "mod.rs", render("links.rs.j2", nodes=nodes, sizes=links.sizes(described), **common)
+    for node, link in zip(nodes, described, strict=True):
+        text = render("node_link.rs.j2", link=links.values(link), origin=origin(node))
+        yield folder / f"{node.name}.rs", text
 
 
 def _runtime(folder: str, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
