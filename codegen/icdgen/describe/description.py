@@ -182,7 +182,7 @@ class NodeDescription:
         from icdgen.describe.links import LinkDescription  # the rules about names need none of it
         from icdgen.protocol import facts
 
-        return LinkDescription(facts.of(self._description.icd, self.model))
+        return LinkDescription(facts.of(self._description.icd, self.model), self._description.message)
 
     @cached_property
     def log_bits(self) -> dict[int, int]:

@@ -5,16 +5,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from icdgen import codec, layout
+from icdgen import codec
 from icdgen.describe.fresh import fresh_values
-from icdgen.icd.model import CONFIGURATION, Field, Message
+from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol.declared import Fact, facts_of
 from icdgen.protocol.facts import Can, Facts, Index, Step, TimePart
+
+if TYPE_CHECKING:
+    from icdgen.describe.description import FieldDescription, MessageDescription
 
 ROLES = frozenset(
     "all block_size busy bytes checksum counter destination error id ignore_hole_map interface_version length node_type number "
@@ -31,20 +34,24 @@ INDEX_PARTS = ("type", "counter", "checksum", "size", "time", "meta")
 
 
 class Place(NamedTuple):
-    """Where the field of a role stands."""
+    """The field that plays a role in a procedure."""
 
     role: str
-    field: Field
-    pieces: tuple[layout.Piece, ...]
+    field: FieldDescription
 
 
 @dataclass(frozen=True, slots=True)
 class StepDescription:
-    """A message that plays a part in a procedure. ``places``: its fields that have a role, in the order of the ICD."""
+    """A message that plays a part in a procedure, and its fields that have a role there, in the order of the ICD."""
 
     message: Message
-    places: tuple[Place, ...]
+    fields: tuple[Place, ...]
     fresh: bytes  # the frame before values are put into it
+
+    @property
+    def places(self) -> list[Place]:
+        """The fields with one of `ROLES`."""
+        return [one for one in self.fields if one.role in ROLES]
 
 
 class SentMessage(NamedTuple):
@@ -57,23 +64,6 @@ class SentMessage(NamedTuple):
     def is_setting(self) -> bool:
         """Whether it sets what can be got back, so that it may be sent again."""
         return self.message.kind == CONFIGURATION
-
-
-class MapPiece(NamedTuple):
-    """A message that carries a piece of the hole map."""
-
-    message: Message
-    field: Field
-
-    @property
-    def at(self) -> int:
-        """The byte at which the piece begins."""
-        return self.field.at // 8
-
-    @property
-    def bytes(self) -> int:
-        """Bytes of the piece."""
-        return self.field.bits // 8
 
 
 class Assumptions:
@@ -102,8 +92,8 @@ class Assumptions:
 class LinkDescription:
     """How the messages of a node travel; ``facts`` is what its ICD says."""
 
-    def __init__(self, facts: Facts) -> None:
-        self.facts = facts
+    def __init__(self, facts: Facts, describe: Callable[[Message], MessageDescription]) -> None:
+        self.facts, self._describe = facts, describe
 
     @property
     def telecommands(self) -> list[SentMessage]:
@@ -139,11 +129,11 @@ class LinkDescription:
         return index if index and set(INDEX_PARTS) <= set(index.fields) else None
 
     @property
-    def map_pieces(self) -> list[MapPiece]:
-        """The messages that carry the hole map."""
+    def map_pieces(self) -> list[FieldDescription]:
+        """The fields that carry the pieces of the hole map, each of its message."""
         form = self.facts.hole_map
-        messages = form.messages if form else ()
-        return [MapPiece(one, field) for one in messages for field in one.fields if form and field.name == form.field]
+        fields = [field for one in form.messages for field in self._describe(one).fields] if form else []
+        return [field for field in fields if form and field.model.name == form.field]
 
     @cached_property
     def polled(self) -> StepDescription | None:
@@ -159,11 +149,12 @@ class LinkDescription:
 
     def step(self, step: Step) -> StepDescription:
         """A message that plays a part in a procedure."""
-        node, message = self.facts.node, step.message
-        fields = {field.name: field for field in message.fields}
-        known = ((role, fields[name]) for role, name in step.fields.items() if role in ROLES and name in fields)
-        places = (Place(role, field, layout.pieces(field, node)) for role, field in known)
-        return StepDescription(message, tuple(places), codec.encode(node, message, fresh_values(message)))
+        message = self._describe(step.message)
+        fields = {field.model.name: field for field in message.fields}
+        found = tuple(Place(role, fields[name]) for role, name in step.fields.items() if name in fields)
+        return StepDescription(
+            step.message, found, codec.encode(message.node, step.message, fresh_values(step.message))
+        )
 
     @property
     def joined_bytes(self) -> int:

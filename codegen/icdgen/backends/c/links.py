@@ -179,8 +179,8 @@ class _Tables:
     def step(self, name: str, step: StepDescription) -> str:
         """The initialiser of a step without its braces; its places and its fresh frame are tables of their own."""
         rows = [
-            Row(f"{{ICD_ROLE_{one.role.upper()}, {one.field.at}u, {one.field.bits}u}}", plain(one.field.name))
-            for one in step.places
+            Row(f"{{ICD_ROLE_{role.upper()}, {field.model.at}u, {field.model.bits}u}}", plain(field.model.name))
+            for role, field in step.places
         ]
         places = self.array(f"{name}_places", "icd_place_t", rows)
         fresh = "NULL"
@@ -264,11 +264,11 @@ class _Tables:
         return self.part("index_entry", form, "index_file", *rows)
 
     def hole_map(self) -> str:
-        pieces = self.link.map_pieces
         rows = []
-        for one in pieces:
-            ids = f"{or_none(one.message.telecommand_id)}, {or_none(one.message.telemetry_id)}"
-            rows.append(Row(f"{{{ids}, {one.message.length}u, {one.at}u}}", plain(one.message.name)))
+        for field in self.link.map_pieces:
+            message = field.message.model
+            ids = f"{or_none(message.telecommand_id)}, {or_none(message.telemetry_id)}"
+            rows.append(Row(f"{{{ids}, {message.length}u, {field.model.at // 8}u}}", plain(message.name)))
         messages = self.array("hole_maps", "icd_hole_map_message_t", rows)
         made = Row(f"{len(rows)}u, {messages}", "messages")
         return self.part("hole_map", self.known.hole_map, "file_transfer.hole_map", made)

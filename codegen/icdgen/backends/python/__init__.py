@@ -59,10 +59,12 @@ class PythonBackend:
                 origin=origin(node.model, with_digest=True),
                 **nodes.values(node, description),
             )
-            if node.is_linked:
-                yield folder / "_link.py", render("link.py.j2", **first, **links.values(icd, node.model))
+            title = prose(node.model.title)
+            if node.link:
+                link = links.literal(node.link)
+                yield folder / "_link.py", render("link.py.j2", **first, title=title, link=link)
             folder /= names.TYPES
-            yield folder / "__init__.py", render("types.py.j2", **first, title=prose(node.model.title))
+            yield folder / "__init__.py", render("types.py.j2", **first, title=title)
             for enum in node.enums:
                 path = folder / f"{names.module_name(enum)}.py"
                 yield path, render("enum.py.j2", **first, **nodes.enum_values(enum))

@@ -9,13 +9,13 @@ from icdgen.backends.literals import Brackets, Item, written
 from icdgen.backends.rust.facts import member_name, type_name, value_of
 from icdgen.backends.rust.literals import Expression, flat, flat_rows, part, rows, some, spelled, struct
 from icdgen.backends.rust.text import doc, integer, prose, string
+from icdgen.describe import FieldDescription
 from icdgen.describe.comments import sentence
 from icdgen.describe.links import (
     CAN_PARTS,
     INDEX_PARTS,
     Assumptions,
     LinkDescription,
-    Place,
     SentMessage,
     StepDescription,
 )
@@ -202,20 +202,14 @@ class _Literal:
         )
 
     def hole_map(self) -> Brackets | None:
-        pieces = [(one, one.message.telecommand_id, one.message.telemetry_id) for one in self.description.map_pieces]
-        messages = [
-            flat(
-                "MapMessage",
-                set_id=set_id,
-                get_id=get_id,
-                length=one.message.length,
-                piece=flat("Span", at=one.at, bytes=one.bytes),
-            )
-            for one, set_id, get_id in pieces
-            if set_id is not None and get_id is not None
-        ]
-        form = self.facts.hole_map if len(messages) == len(pieces) else None
-        return self.struct(form, "file_transfer.hole_map", part("messages", rows(messages)))
+        messages = []
+        for field in self.description.map_pieces:
+            one = field.message.model
+            if one.telecommand_id is None or one.telemetry_id is None:
+                return None
+            ids = {"set_id": one.telecommand_id, "get_id": one.telemetry_id}
+            messages.append(flat("MapMessage", **ids, length=one.length, piece=_span(field)))
+        return self.struct(self.facts.hole_map, "file_transfer.hole_map", part("messages", rows(messages)))
 
 
 def _ids(ids: Direction) -> Brackets:
@@ -231,16 +225,23 @@ def _can_types(types: dict[str, int]) -> Brackets:
     return struct("CanTypes", *(part(name, some(types.get(name))) for name in CAN_KINDS))
 
 
-def _place(place: Place) -> Expression:
+def _span(field: FieldDescription) -> Brackets:
+    """Where bytes stand."""
+    return flat("Span", at=field.model.at // 8, bytes=field.model.bits // 8)
+
+
+def _place(field: FieldDescription) -> Expression:
     """Where a number stands."""
-    return flat_rows(flat("Piece", byte=one.byte, shift=one.shift, bits=one.bits, at=one.at) for one in place.pieces)
+    return flat_rows(flat("Piece", **one._asdict()) for one in field.pieces)
 
 
 def _polled(step: StepDescription | None) -> Brackets | None:
     if step is None:
         return None
     return struct(
-        "Polled", part("frame", integer(step.message.ids[0])), *(part(one.role, _place(one)) for one in step.places)
+        "Polled",
+        part("frame", integer(step.message.ids[0])),
+        *(part(one.role, _place(one.field)) for one in step.places),
     )
 
 
@@ -250,13 +251,12 @@ def _step(step: StepDescription | None, direction: str) -> Brackets | None:
     if step is None or id is None:
         return None
     places, payload = [], None
-    for place in step.places:
-        field = place.field
-        if field.type == "bytes":
-            payload = flat("Span", at=field.at // 8, bytes=field.bits // 8)
-        elif place.role not in _ONLY_POLLED and field.bits <= _NUMBER_BITS:
-            role = Item(f"link::Role::{camel(tuple(place.role.split('_')))}")
-            places.append(Brackets("(", (role, Item(_place(place))), ")", True))
+    for role, field in step.places:
+        if field.model.type == "bytes":
+            payload = _span(field)
+        elif role not in _ONLY_POLLED and field.model.bits <= _NUMBER_BITS:
+            name = Item(f"link::Role::{camel(tuple(role.split('_')))}")
+            places.append(Brackets("(", (name, Item(_place(field))), ")", True))
     return struct(
         "Step",
         part("id", integer(id)),
