@@ -42,7 +42,7 @@ def test_its_frames_are_recognized(icdgen, tmp_path):
     icdgen("init", "battery")
     from icdgen.loading import load
 
-    (one,) = recognize(load([tmp_path / "icd"]).icd, "1F 7F 81 01 03 10 27 88 13 1F FF")
+    (one,) = recognize(load([tmp_path / "icd"]).icd, "10 02 81 01 03 10 10 27 88 13 10 03")
     assert [row.text for row in one.frame.rows] == ["Normal", "true", "true", "100", "5000"]
 
 

@@ -71,8 +71,10 @@ class FieldDescription:
     @cached_property
     def constants(self) -> tuple[Constant, ...]:
         """The only valid value, values with a meaning, limits: all by name."""
-        vocabulary = self.message.node.vocabulary
-        return tuple(constants(self.model, self.name, self.physical_name, vocabulary))
+        field, vocabulary = self.model, self.message.node.vocabulary
+        if field.const is None and not field.special and field.limits is None:
+            return ()
+        return tuple(constants(field, self.name, self.physical_name, vocabulary))
 
     @cached_property
     def comment(self) -> Comment:

@@ -152,6 +152,7 @@ class Message:
     summary: str = ""
     acknowledge: bool = True
     expects_reset: bool = False  # not acknowledged because the node restarts instead
+    hazard: str = ""  # what is lost, or cannot be undone, once it is sent
     assumptions: tuple[tuple[str, str], ...] = ()  # key and reason of what is assumed
     contains: tuple[Part, ...] = ()
     node: str = ""  # name of the node that declares it

@@ -61,7 +61,7 @@ def _locate(tree: Map, path: list[Any]) -> tuple[Map, Map, Place]:
     holder, owner, place = tree, tree, tree.place
     for step in path:
         holder = owner
-        place = node.items_at[step] if isinstance(node, Seq) else node.at(step)
+        place = node.item_at(step) if isinstance(node, Seq) else node.at(step)
         node = node[step]
         if isinstance(node, Map):
             owner = node
@@ -84,7 +84,7 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
         return [Finding(CODE, message, place, f"add `{missing}:`" + (f", {hint}" if hint else ""))]
     if name == "additionalProperties":
         known = list(rule.get("properties", {}))
-        return [_unknown_key(key, known, owner.keys_at[key]) for key in kind.unexpected if key in owner.keys_at]
+        return [_unknown_key(key, known, owner.key_at(key)) for key in kind.unexpected if key in owner.spots]
     if name == "type":
         wanted = rule.get("type", "")
         message = f"{what} must be {_TYPES.get(wanted, wanted)}, not {_describe(error.instance)}"

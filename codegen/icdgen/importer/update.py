@@ -14,7 +14,7 @@ from icdgen.importer import emit
 
 # What people add to the manual's facts.
 _OURS = {
-    "message": ("identifier", "summary", "acknowledge", "contains", "assumptions"),
+    "message": ("identifier", "summary", "acknowledge", "hazard", "contains", "assumptions"),
     "field": ("identifier", "summary", "special", "min", "max", "above", "below", "bitfields"),
     "enumeration": ("identifier", "summary"),
     "member": ("identifier", "summary"),

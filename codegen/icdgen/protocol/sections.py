@@ -83,7 +83,7 @@ class Polled:
 class Crc:
     """Parameters of a CRC in the notation of the usual catalogues."""
 
-    width: int = number("width", "bits of the checksum", 1, 64, holds=U32)
+    width: int = number("width", "bits of the checksum", 1, 32, holds=U32)
     polynomial: int = code("polynomial", "generator polynomial, most significant bit first, without the leading term")
     init: int = code("init", "value of the register at the beginning")
     reflect_in: bool = flag("reflect_in", "whether each byte enters least significant bit first")

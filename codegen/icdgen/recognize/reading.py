@@ -58,8 +58,7 @@ class Reading:
     @property
     def has_wrong_constant(self) -> bool:
         """Whether a field that has a constant holds something else."""
-        rows = self.frame.rows if self.frame else ()
-        return any(row.field.const is not None and row.raw != row.field.const for row in rows)
+        return self.frame is not None and bool(self.frame.wrong_constants)
 
     def noted(self, *remarks: str) -> Reading:
         """The same, with further remarks."""

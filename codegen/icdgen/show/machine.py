@@ -59,6 +59,7 @@ def _message(message: Message) -> _Object:
         page=message.page,
         summary=message.summary,
         acknowledge=None if message.acknowledge else "reset" if message.expects_reset else False,
+        hazard=message.hazard,
         contains=[{"message": part.message, "offset": part.at} for part in message.contains],
         **_ids(message.errata),
     ) | {"fields": [_field(f) for f in message.fields]}

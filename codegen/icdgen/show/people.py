@@ -127,6 +127,7 @@ def _message(icd: Icd, message: Message, width: int | None) -> str:
         ),
     ]
     lines = [f"{node.name}: {message.name}", "; ".join(filter(None, facts)), message.summary]
+    lines += [f"Dangerous: {message.hazard}"] if message.hazard else []
     lines += [f"From bit {part.at} it repeats {part.message}." for part in message.contains]
     text = _lines(lines, width)
     table = field_table(message, width)

@@ -228,8 +228,8 @@ class _Tables:
     def crc(self, name: str, one: Crc) -> str:
         """The initialiser of a CRC without its braces; the table for whole bytes is one of its own."""
         table = "NULL"
-        if 8 <= one.width <= 16:
-            entries = (f"{value:#0{2 + -(-one.width // 4)}x}u" for value in _crc_of_bytes(one))
+        if one.width <= 16:
+            entries = (f"{value:#0{2 + -(-one.width // 4)}x}u" for value in crc_table(one))
             table = self.numbers(f"{name}_table", "uint16_t", entries, 8)
         return f"{self.values(name, one)}, {table}"
 
@@ -293,13 +293,14 @@ def _message(one: SentMessage, flags: str) -> Row:
     return Row(f"{{{one.id}u, {flags}, {one.message.length}u}}", plain(one.message.name))
 
 
-def _crc_of_bytes(one: Crc) -> list[int]:
+def crc_table(one: Crc) -> list[int]:
     """What each byte, first bit on top, makes of a register of zeros."""
     top, mask = 1 << one.width - 1, (1 << one.width) - 1
     table = []
     for byte in range(256):
-        register = byte << one.width - 8
-        for _ in range(8):
-            register = register << 1 & mask ^ (one.polynomial if register & top else 0)
+        register = 0
+        for position in reversed(range(8)):
+            out = bool(register & top) != bool(byte >> position & 1)
+            register = register << 1 & mask ^ (one.polynomial if out else 0)
         table.append(register)
     return table

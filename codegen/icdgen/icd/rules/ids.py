@@ -85,6 +85,16 @@ def ids_of_kind(ctx: Context) -> Iterator[Fault]:
                 yield Fault(message.source, message.source.at(key), text, f"remove it: {message.kind} has {names}")
 
 
+@rule("ICD065")
+def only_what_is_sent(ctx: Context) -> Iterator[Fault]:
+    for message, _ in ctx.messages:
+        if message.kind == TELEMETRY:
+            for key in ("acknowledge", "hazard"):
+                if key in message.source:
+                    text = f"`{key}` says something of what is sent, and {quote(message.name)} is telemetry"
+                    yield Fault(message.source, message.source.at(key), text, "remove it, or correct `kind`")
+
+
 def _ranges(ctx: Context, node: Node) -> dict[str, tuple[int, int]]:
     """First and last id of each direction, where the protocol section `message_id` gives them."""
     section = ctx.protocol_of(node).get("message_id")

@@ -15,7 +15,6 @@ from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, listing, quote
 
 BYTE = 255
-CRC_WIDTHS = (8, 32)  # that generated code computes
 TIME_BITS = 32  # of a packed time, at most
 TIME_PARTS = ("year", "month", "day", "hour", "minute", "second")
 ROLES = ("type", "channel", "source", "destination")  # parts of a CAN identifier
@@ -143,15 +142,10 @@ def _byte(owner: Map, key: str, what: str) -> Iterator[Fault]:
 
 
 def _checksums(node: Node) -> Iterator[Fault]:
-    least, most = CRC_WIDTHS
     for name in ("crc8", "crc16"):
         crc = section_of(node, name)
         width = crc.get("width") if crc is not None else None
         if crc is None or not isinstance(width, int):
-            continue
-        if not least <= width <= most:
-            message = f"a CRC of {count(width, 'bit')}: those of {least} to {most} bits can be generated"
-            yield Fault(crc, crc.at("width"), message, "correct `width`, or leave the section out")
             continue
         for key in ("polynomial", "init", "xor_out", "empty", "check"):
             value = crc.get(key)

@@ -105,7 +105,7 @@ def named_buses_exist(ctx: Context) -> Iterator[Fault]:
             buses = section.get("buses") if section is not None else None
             if section is None or not isinstance(buses, Seq):
                 continue
-            for bus, place in zip(buses, buses.items_at, strict=True):
+            for bus, place in buses.placed():
                 if isinstance(bus, str) and not any(_has(ctx, one, bus) for one in users):
                     yield Fault(section, place, f"the protocol has no section `{bus}`", f"add it, or remove `{bus}`")
 

@@ -119,6 +119,6 @@ def _values(section: Map, key: str, kind: type[T]) -> Iterator[tuple[T, Place]]:
     """The value of a key, or each of its values, with its place."""
     value = section.get(key)
     if isinstance(value, Seq):
-        yield from ((v, p) for v, p in zip(value, value.items_at, strict=True) if isinstance(v, kind))
+        yield from ((v, p) for v, p in value.placed() if isinstance(v, kind))
     elif isinstance(value, kind):
         yield value, section.at(key)

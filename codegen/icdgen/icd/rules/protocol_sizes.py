@@ -139,4 +139,4 @@ def assumptions_are_about_something(ctx: Context) -> Iterator[Fault]:
         for key in assumptions:
             if key == "assumptions" or key not in owner:
                 message = f"`{key}` is said to be assumed, but there is no such key beside it"
-                yield Fault(owner, assumptions.keys_at[key], message, "name a key of this section")
+                yield Fault(owner, assumptions.key_at(key), message, "name a key of this section")
