@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from icdgen import layout, naming
 from icdgen.describe import steps
@@ -13,9 +13,6 @@ from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.storage import Storage, holding
 from icdgen.icd.model import Enum, Field, Icd, Message, Node
-
-if TYPE_CHECKING:
-    from icdgen.describe.links import LinkDescription
 
 
 class FieldDescription:
@@ -180,16 +177,6 @@ class NodeDescription:
     def id_bits(self) -> int:
         """Those of the set: see `Description.id_bits`."""
         return self._description.id_bits
-
-    @cached_property
-    def link(self) -> LinkDescription | None:
-        """How its messages travel; None if that is not known."""
-        if not self.is_linked:
-            return None
-        from icdgen.describe.links import LinkDescription  # the rules about names need none of it
-        from icdgen.protocol import facts
-
-        return LinkDescription(facts.of(self._description.icd, self.model), self._description.message)
 
     @cached_property
     def log_bits(self) -> dict[int, int]:

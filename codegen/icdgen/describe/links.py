@@ -5,19 +5,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from icdgen import codec
+from icdgen.describe.description import Description, FieldDescription
 from icdgen.describe.fresh import fresh_values
 from icdgen.icd.model import CONFIGURATION, Message
+from icdgen.protocol import facts as protocol_facts
 from icdgen.protocol.declared import Fact, facts_of
 from icdgen.protocol.facts import Can, Facts, Index, Step, TimePart
-
-if TYPE_CHECKING:
-    from icdgen.describe.description import FieldDescription, MessageDescription
 
 ROLES = frozenset(
     "all block_size busy bytes checksum counter destination error id ignore_hole_map interface_version length node_type number "
@@ -89,11 +88,17 @@ class Assumptions:
         return [(section, key, self.why(section, key)) for section, key in [*self._untold]]
 
 
+def links_of(description: Description) -> dict[str, LinkDescription]:
+    """The links of the nodes of which it is known how their messages travel, by the names of the nodes."""
+    linked = (node for node in description.nodes if node.is_linked)
+    return {one.name: LinkDescription(description, protocol_facts.of(description.icd, one.model)) for one in linked}
+
+
 class LinkDescription:
     """How the messages of a node travel; ``facts`` is what its ICD says."""
 
-    def __init__(self, facts: Facts, describe: Callable[[Message], MessageDescription]) -> None:
-        self.facts, self._describe = facts, describe
+    def __init__(self, description: Description, facts: Facts) -> None:
+        self.facts, self._describe = facts, description.message
 
     @property
     def telecommands(self) -> list[SentMessage]:

@@ -16,7 +16,7 @@ from icdgen.backends.c.statement import head
 from icdgen.backends.c.text import comment, described, literal, noted, prose
 from icdgen.backends.lines import STEP
 from icdgen.backends.origin import origin
-from icdgen.describe import EnumDescription, MessageDescription, NodeDescription, describe
+from icdgen.describe import Description, EnumDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.comments import sentence, words
 from icdgen.icd.model import Icd
 
@@ -39,9 +39,9 @@ class CBackend:
         first = f"/* {origin()} */\n"
         yield PurePosixPath("icdgen.h"), first + header("icdgen.h", {}, render)
         description = describe(icd)
-        links = [node.link for node in description.nodes if node.link]
+        links = _links(description)
         if links:
-            step_bytes = max(1, *(link.longest_step for link in links))
+            step_bytes = max(1, *(link.longest_step for link in links.values()))
             made = {"wire/sizes.h": render("sizes.h.j2", step_bytes=step_bytes)}
             yield PurePosixPath("icdgen_wire.h"), first + header("icdgen_wire.h", made, render)
         for node in description.nodes:
@@ -50,8 +50,8 @@ class CBackend:
                 yield folder / "enums.h", render("enums.h.j2", **_enums(node))
             for message in node.messages:
                 yield folder / f"{message.name}.h", render("message.h.j2", **_message(message))
-            if node.link:
-                yield folder / "link.h", render("link.h.j2", **_link(node, node.link))
+            if node.name in links:
+                yield folder / "link.h", render("link.h.j2", **_link(node, links[node.name]))
             yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", **_node(node, description.id_bits))
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
@@ -99,6 +99,12 @@ def _message(message: MessageDescription) -> dict[str, object]:
             "icd_status_t ", f"{name}_encode", f"const {name}_t *ICDGEN_RESTRICT message", buffer, "size_t capacity"
         ),
     }
+
+
+def _links(description: Description) -> dict[str, LinkDescription]:
+    from icdgen.describe.links import links_of  # the rules about names need none of it
+
+    return links_of(description)
 
 
 def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:

@@ -11,11 +11,10 @@ from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
 from icdgen.backends.rust import names
 from icdgen.backends.rust.declared_names import declared_names
-from icdgen.describe import describe
+from icdgen.describe import Description, describe
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
-    from icdgen.describe.links import LinkDescription
     from icdgen.render import Renderer
 
 CRATE = "icd"
@@ -40,8 +39,7 @@ class RustBackend:
         common: dict[str, object] = {"origin": origin(), "version": __version__, "crate": self.crate}
         description = describe(icd)
         id_bits = description.id_bits
-        links = [node.link for node in description.nodes if node.link]
-        wired = bool(links)
+        wired = any(node.is_linked for node in description.nodes)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         yield PurePosixPath("src/lib.rs"), render(
             "lib.rs.j2", nodes=[nodes.Summary(node) for node in icd.nodes], wired=wired, **common
@@ -65,26 +63,23 @@ class RustBackend:
                 text = render("message.rs.j2", m=values, node=node.name, wired=wired, **shared)
                 yield folder / f"{message.name}.rs", text
         if wired:
-            yield from _wire(links, render, common)
+            yield from _wire(description, render, common)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that the crate declares, by scope."""
         return declared_names(describe(icd))
 
 
-def _wire(
-    described: list[LinkDescription], render: Renderer, common: dict[str, object]
-) -> Iterator[tuple[PurePosixPath, str]]:
+def _wire(description: Description, render: Renderer, common: dict[str, object]) -> Iterator[tuple[PurePosixPath, str]]:
     """How the messages travel."""
     from icdgen.backends.rust import links
+    from icdgen.describe.links import links_of
 
     yield from _runtime("src/wire", render)
-    folder = PurePosixPath(LINKS)
-    nodes = [link.facts.node for link in described]
-    yield folder / "mod.rs", render("links.rs.j2", nodes=nodes, sizes=links.sizes(described), **common)
-    for node, link in zip(nodes, described, strict=True):
-        text = render("node_link.rs.j2", link=links.values(link), origin=origin(node))
-        yield folder / f"{node.name}.rs", text
+    folder, found = PurePosixPath(LINKS), links_of(description)
+    yield folder / "mod.rs", render("links.rs.j2", nodes=list(found), sizes=links.sizes(found.values()), **common)
+    for name, link in found.items():
+        yield folder / f"{name}.rs", render("node_link.rs.j2", link=links.values(link), origin=origin(link.facts.node))
 
 
 def _runtime(folder: str, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection
 from typing import NamedTuple
 
 from icdgen.backends.literals import Brackets, Item, written
@@ -53,7 +53,7 @@ class Sizes(NamedTuple):
     packets: int
 
 
-def sizes(links: Iterable[LinkDescription]) -> Sizes:
+def sizes(links: Collection[LinkDescription]) -> Sizes:
     """The most that any node needs."""
     known = [link.facts for link in links]
     return Sizes(

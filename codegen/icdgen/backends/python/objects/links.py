@@ -23,7 +23,7 @@ def link_of(icd: Icd, known: Facts) -> Link:
         "TELECOMMANDS": ModelMessages(node, "telecommand", known.telecommands, description),
         "TELEMETRY": ModelMessages(node, "telemetry", known.telemetry, description),
     }
-    made = _object(call(LinkDescription(known, description.message)), names)
+    made = _object(call(LinkDescription(description, known)), names)
     assert isinstance(made, Link)
     return made
 
