@@ -18,7 +18,7 @@ NOT_STATED = "not stated"
 
 def tree(node: NodeParts, document: Document, profile: Profile, prose: bool, troubles: list[Trouble]) -> dict[str, Any]:
     """The ICD of a node as plain mappings and lists, in the order of the manual."""
-    made: dict[str, Any] = {"icdgen": 1, "node": _head(node, document, profile)}
+    made: dict[str, Any] = {"icdgen": 1, "node": head(node, document, profile)}
     if node.include:
         made["include"] = node.include
     if units := _units(node, troubles):
@@ -51,13 +51,14 @@ def _announced(messages: list[dict[str, Any]]) -> dict[str, str]:
     return made
 
 
-def _head(node: NodeParts, document: Document, profile: Profile) -> dict[str, Any]:
-    head = {"name": node.name, "title": node.title or node.name, **profile.data["node"]}
+def head(node: NodeParts, document: Document, profile: Profile) -> dict[str, Any]:
+    """The section `node` of the ICD."""
+    found = {"name": node.name, "title": node.title or node.name, **profile.data["node"]}
     title = document.title or re.split(r"[/\\]", document.file)[-1]
-    head["source"] = {"document": title}
+    found["source"] = {"document": title}
     if node.words is not None:
-        head |= node.words.head
-    return head
+        found |= node.words.head
+    return found
 
 
 def _source(table: Table) -> dict[str, Any]:
