@@ -34,6 +34,7 @@ _COMMANDS = {
     "send": "send",
 }
 _DEFAULT = "generate"
+_WHOLE = 10_000  # characters of a sentence
 
 
 class _Commands(click.Group):
@@ -54,6 +55,13 @@ class _Commands(click.Group):
             _refuse_mistyped(args[0])
             args = [_DEFAULT, *args]
         return super().parse_args(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The first sentence of each command, whole: click cuts it off at the width of the terminal."""
+        found = ((name, self.get_command(ctx, name)) for name in self.list_commands(ctx))
+        rows = [(name, command.get_short_help_str(_WHOLE)) for name, command in found if command is not None]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         from icdgen.commands.common import known_languages
@@ -155,8 +163,9 @@ def _drop_unwritten_output() -> None:
 
 
 def _complain(message: str, help: str = "") -> None:
-    text = f"icdgen: error: {message}" + (f"\n  help: {help}" if help else "")
+    lines = [f"icdgen: error: {line}" for line in message.split("\n")]
+    lines += [f"  help: {line}" for line in help.split("\n") if line]
     try:
-        click.echo("\n".join(shown(line) for line in text.split("\n")), err=True)
+        click.echo("\n".join(map(shown, lines)), err=True)
     except OSError:
         return  # there is nobody left to tell

@@ -26,12 +26,10 @@ def disk(tmp_path):
     (tmp_path / "disk.yaml").write_text(DEVICE)
 
 
-@pytest.mark.parametrize(
-    ("language", "page"), [("c", "erase"), ("python", "disk"), ("rust", "disk"), ("html", "erase")]
-)
-def test_every_language_and_the_site_say_it(icdgen, tmp_path, disk, language, page):
+@pytest.mark.parametrize("language", ["c", "python", "rust", "html"])
+def test_every_language_and_the_site_say_it(icdgen, tmp_path, disk, language):
     assert icdgen("--lang", language, "--out", "out", "disk.yaml").status == 0
-    texts = [path.read_text() for path in (tmp_path / "out").rglob(f"*{page}*") if path.is_file()]
+    texts = [path.read_text() for path in (tmp_path / "out").rglob("*") if path.suffix in (".h", ".py", ".rs", ".html")]
     assert any(WORDS in " ".join(text.split()) for text in texts)
 
 

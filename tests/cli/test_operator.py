@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import subprocess
 import sys
 import time
@@ -135,3 +136,20 @@ def test_a_lost_line_ends_a_counted_monitor_with_no_answer():
         first.kill()
         out, err = watching.communicate(timeout=30)
     assert watching.returncode == 1 and out.rstrip().endswith("no answer") and err.count("trying again") == 1
+
+
+def test_several_values_are_set_at_once_as_encode_takes_them(icdgen):
+    words = (
+        "--set",
+        "146",
+        "roll=1.5",
+        "pitch=-2.25",
+        "--set",
+        "Satellite Position (LLH)",
+        "latitude=48.1",
+        "longitude=11.6",
+    )
+    with simulator("--tcp", "0", *words, "--node", "cubeacp") as (place, _):
+        shown = icdgen("monitor", "cubeacp", "146", "150", "-p", place, "--once", "--format", "json").out
+    angles, position = ([one["value"] for one in json.loads(line)["fields"]] for line in shown.splitlines())
+    assert (angles, position) == ([1.5, -2.25, 0.0], [48.1, 11.6, 0.0])

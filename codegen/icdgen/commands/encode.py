@@ -33,7 +33,9 @@ def encode(
     form: str,
     raw: bool,
 ) -> None:
-    """Encode a message from physical values: icdgen encode wheels "Set Speed" x=100 y=-100 z=0
+    """Encode a message from physical values.
+
+    For instance: icdgen encode wheels "Set Speed" x=100 y=-100 z=0
 
     NODE may be left out where there is one only.
     """

@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 @click.option("--yes", "-y", is_flag=True, help="Send also what is dangerous, without asking.")
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, form: str, **options: Any) -> None:
-    """Send one telecommand and wait for its acknowledge: icdgen send wheels "Set Speed" x=100 --port tcp://host:4000
+    """Send one telecommand and wait for its acknowledge.
+
+    For instance: icdgen send wheels "Set Speed" x=100 --port tcp://host:4000
 
     NODE may be left out where there is one only. What the ICD calls dangerous (its `hazard`) is shown and asked about first;
     without a terminal to ask on it is only sent with --yes. Exit status: 0 acknowledged (or sent, if it is never acknowledged),

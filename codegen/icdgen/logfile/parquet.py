@@ -103,8 +103,8 @@ class Decoder:
         import pyarrow as pa
 
         plan, count = self.plan, len(data) // self.plan.entry_bytes
-        seconds = _whole(data, plan.entry_bytes, plan.seconds[0], plan.seconds[1], plan.little)
-        rest = _whole(data, plan.entry_bytes, plan.milliseconds[0], plan.milliseconds[1], plan.little)
+        seconds = _whole(data, plan.entry_bytes, plan.seconds[0], plan.seconds[1], plan.order == "little")
+        rest = _whole(data, plan.entry_bytes, plan.milliseconds[0], plan.milliseconds[1], plan.order == "little")
         time = pa.array(seconds.astype(np.int64) * 1000 + rest, pa.int64()).cast(self.schema.field(0).type)
         arrays = [time, *(reader.read(data, count) for reader in self.columns)]
         return pa.RecordBatch.from_arrays(arrays, schema=self.schema)

@@ -24,7 +24,6 @@ from icdgen.sim.line import Line
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import File, Storage
 from icdgen.values import find_node, numbers
-from icdgen.values.errors import BadValue
 from icdgen.values.find import is_part
 
 Way = tuple[Any, ...]  # name of a function of `serve`, and what it is given
@@ -74,10 +73,7 @@ def build(icd: Icd, name: str | None, options: Options) -> tuple[Line, control.C
     steps = control.read(options.script, icd, node) if options.script else []
     controlled = control.Control(icd, node, line, steps)
     for message, text in options.values:
-        key, equals, value = text.partition("=")
-        if not equals:
-            raise BadValue(f"`{text}` is not of the form field=value", "for instance --set 'Message' speed=100")
-        controlled.set(message, key, value)
+        controlled.assign(message, text)
     return line, controlled
 
 

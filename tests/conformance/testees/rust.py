@@ -100,7 +100,7 @@ class NodeEntry:
             yield Route(ways[id.name], f"{path}::{id.name.upper()}", path)
 
     def _message(self, message: MessageDescription) -> MessageEntry:
-        ids = ", ".join(f"Self::{id.name.upper()} as u16" for id in message.ids)
+        ids = ", ".join(f"Self::{id.name.upper()} as u32" for id in message.ids)
         encode = "self.try_to_bytes().map(Vec::from)" if message.is_narrow else "Ok(Vec::from(self.to_bytes()))"
         return MessageEntry(self._path(message), ids, encode, [_field(field) for field in message.fields])
 
