@@ -11,21 +11,22 @@ from icdgen.backends.c import accessors, bits, constants, decoding, encoding, na
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import header
-from icdgen.backends.c.statement import call, head
+from icdgen.backends.c.statement import call, define, head
 from icdgen.backends.c.text import comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
 from icdgen.describe.comments import sentence, words
+from icdgen.describe.numbers import byte_count
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
     from icdgen.describe.links import LinkDescription
     from icdgen.render import Renderer
 
-_FUNCTIONS = {
-    one.__name__: one
-    for one in (comment, described, literal, prose, head, call, names.stem, names.constant, names.enumerator)
-}
+_SPELLING = (
+    byte_count, call, comment, define, described, head, literal, prose, names.constant, names.enumerator, names.stem,
+)  # fmt: skip
+_FUNCTIONS = {function.__name__: function for function in _SPELLING}
 """What templates spell names and text with."""
 
 
