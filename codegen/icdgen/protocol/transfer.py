@@ -14,7 +14,8 @@ from icdgen import codec
 from icdgen.protocol import crc, files
 from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Request
 from icdgen.protocol.errors import RangeError, TooLongError
-from icdgen.protocol.facts import UART, Facts, Step, need
+from icdgen.protocol.facts import Facts, need
+from icdgen.protocol.sections import UART, Step
 
 OUTCOMES = ("done", "refused", "timeout")
 

@@ -11,7 +11,8 @@ from icdgen.describe import describe
 from icdgen.icd.model import CONFIGURATION, Icd, Message, Node
 from icdgen.protocol import facts as read
 from icdgen.protocol.declared import facts_of
-from icdgen.protocol.facts import Client, Crc, Facts, HoleMap, LogFile, LogMessage, Step
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import Crc, HoleMap, LogFile, LogMessage, Settings, Step
 
 TYPES = "link"  # the module that declares the types of the facts
 
@@ -24,7 +25,7 @@ def values(icd: Icd, node: Node) -> dict[str, object]:
 
 # Types whose names in generated code are not those of the facts.
 _TYPES = {
-    Client: "Settings",
+    Settings: "Settings",
     Crc: "CrcForm",
     LogFile: "LogFileForm",
     LogMessage: "LogMessageForm",

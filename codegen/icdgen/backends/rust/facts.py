@@ -6,13 +6,24 @@ from icdgen.backends.rust.literals import Optional, Part, Raw, Rows, Struct, fla
 from icdgen.backends.rust.text import mask
 from icdgen.backends.rust.wire_steps import step
 from icdgen.protocol.declared import Fact, Kind, facts_of
-from icdgen.protocol.facts import Client, Crc, Facts, HoleMap, Index, Operation, Step
-from icdgen.protocol.reading import BUSES
-from icdgen.protocol.sections import Download, Erasure, Listing, Upload
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import (
+    BUSES,
+    Crc,
+    Download,
+    Erasure,
+    HoleMap,
+    Index,
+    Listing,
+    Operation,
+    Settings,
+    Step,
+    Upload,
+)
 
 # Types whose names in generated code are not those of the facts.
 _TYPES: dict[type, str] = {
-    Client: "Settings", Crc: "CrcForm", Index: "IndexForm", HoleMap: "HoleMapForm", Listing: "ListForm",
+    Settings: "Settings", Crc: "CrcForm", Index: "IndexForm", HoleMap: "HoleMapForm", Listing: "ListForm",
     Download: "DownloadForm", Upload: "UploadForm", Erasure: "ErasureForm", Operation: "OperationForm",
 }  # fmt: skip
 

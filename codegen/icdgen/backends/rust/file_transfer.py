@@ -5,8 +5,8 @@ from __future__ import annotations
 from icdgen.backends.rust.facts import struct
 from icdgen.backends.rust.literals import Optional, Part, Rows, Struct, flat
 from icdgen.backends.rust.wire_steps import field_of
-from icdgen.protocol.facts import BUSES, Facts
-from icdgen.protocol.sections import PROCEDURES
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import BUSES, PROCEDURES
 
 
 def files(known: Facts) -> Struct | None:

@@ -14,6 +14,7 @@ from icdgen.describe.comments import sentence
 from icdgen.icd.model import CONFIGURATION, Icd, Message
 from icdgen.protocol import facts
 from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import Direction
 
 REASONS = {
     "none": "NoError",
@@ -159,7 +160,7 @@ def _link(known: Facts) -> Struct:
     )
 
 
-def _ids(ids: facts.Direction) -> Struct:
+def _ids(ids: Direction) -> Struct:
     return flat("Ids", first=ids.first, last=ids.last)
 
 

@@ -7,7 +7,8 @@ from icdgen.backends.rust.literals import Optional, Part, Raw, Rows, Struct, fla
 from icdgen.describe.fresh import fresh_values
 from icdgen.icd.model import Field, Message
 from icdgen.naming import camel
-from icdgen.protocol.facts import Facts, Step
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import Step
 
 ROLES = frozenset(
     (

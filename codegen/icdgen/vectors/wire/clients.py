@@ -10,7 +10,8 @@ from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol import can, i2c, uart
 from icdgen.protocol import logs as log_files
-from icdgen.protocol.facts import CAN, I2C, UART, Facts
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import CAN, I2C, UART
 
 Requests = Iterator[tuple[str, dict[str, Any]]]
 

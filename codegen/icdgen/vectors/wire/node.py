@@ -8,7 +8,8 @@ from typing import Any
 from icdgen import codec
 from icdgen.protocol import crc, files
 from icdgen.protocol.client import TELECOMMAND, Request
-from icdgen.protocol.facts import UART, Facts, Step
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import UART, Step
 
 
 class FileNode:

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from icdgen import codec
-from icdgen.protocol.facts import Facts, Operation
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import Operation
 
 Requests = Iterator[tuple[str, dict[str, Any]]]
 

@@ -7,8 +7,9 @@ from random import Random
 from typing import Any
 
 from icdgen.protocol import transfer
-from icdgen.protocol.facts import UART, Facts
+from icdgen.protocol.facts import Facts
 from icdgen.protocol.scripts import LONGEST, procedure_of
+from icdgen.protocol.sections import UART
 from icdgen.vectors.wire.node import FileNode
 from icdgen.vectors.wire.operations import neighbours
 

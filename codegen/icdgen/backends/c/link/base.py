@@ -10,7 +10,8 @@ from icdgen.backends.c.link.rows import aligned, lines, or_none
 from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP
 from icdgen.describe.fresh import fresh_values
-from icdgen.protocol.facts import CAN, I2C, UART, Facts, Step
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import CAN, I2C, UART, Step
 
 BUSES = (UART, I2C, CAN)
 _ROLES = frozenset(

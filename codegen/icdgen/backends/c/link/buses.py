@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from icdgen.backends.c.link.facts import TYPES, FactTables
 from icdgen.backends.c.link.rows import lines, row_of
-from icdgen.protocol.facts import Crc, Step
-from icdgen.protocol.sections import CAN_KINDS
+from icdgen.protocol.sections import CAN_KINDS, Crc, Step
 
 _CAN_BYTES = 8
 _MOST_PACKETS = 256
