@@ -196,7 +196,7 @@ class LogFile:
 class LogMessage:
     """The unsolicited form of a log. Places count from the id."""
 
-    id: int = number("id", "id of such messages", holds=BYTE)
+    id: int = number("id", "id of such messages", most=BYTE)
     mask_at: int = octets("", "where the mask stands")
     frames_at: int = octets("frames_byte", "where the selected frames begin, counted from the id", 0)
 
