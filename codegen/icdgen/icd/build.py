@@ -8,7 +8,7 @@ from fractions import Fraction
 from itertools import chain
 from typing import Any, TypeVar
 
-from icdgen.icd import division, formula, model
+from icdgen.icd import division, formula, model, wire_ids
 from icdgen.icd.errata import Applied
 from icdgen.icd.located import Map
 from icdgen.icd.units import STANDARD, Unit
@@ -56,6 +56,7 @@ class Builder:
             summary=head.get("summary", ""),
             byte_order=head["byte_order"],
             bit_order=head["bit_order"],
+            id_bits=head.get("id_bits", wire_ids.DEFAULT_BITS),
             messages=tuple(self.each("messages", self.message)),
             enums=enums,
             node_type=head.get("node_type"),
@@ -111,9 +112,9 @@ class Builder:
             kind=item["kind"],
             length=item["length"],
             fields=tuple(chain.from_iterable(self.each("fields", self.fields, item))),
-            id=item.get("id"),
-            set_id=item.get("set_id"),
-            get_id=item.get("get_id"),
+            id=_id(item, "id"),
+            set_id=_id(item, "set_id"),
+            get_id=_id(item, "get_id"),
             identifier=item.get("identifier"),
             group=item.get("group", ""),
             table=where.get("table"),
@@ -171,10 +172,14 @@ class Builder:
 
     def loggable(self, item: Map) -> model.Loggable:
         errata = self.applied.about(item)
-        return model.Loggable(item["bit"], item["id"], item.get("name", ""), errata, item)
+        return model.Loggable(item["bit"], wire_ids.number(item["id"]), item.get("name", ""), errata, item)
 
     def missing(self, item: Map) -> model.Missing:
-        return model.Missing(item["kind"], item["id"], item["name"], item["why"])
+        return model.Missing(item["kind"], wire_ids.number(item["id"]), item["name"], item["why"])
+
+
+def _id(item: Map, key: str) -> int | None:
+    return wire_ids.number(item[key]) if key in item else None
 
 
 def scale(text: str | None) -> formula.Scale | None:

@@ -219,6 +219,7 @@ class Node:
     errata: tuple[Erratum, ...] = ()  # all entries of its overlay, in order, then all notes
     digest: str = ""  # SHA-256 over the file, its overlay and what it includes
     file: str = ""
+    id_bits: int = 8  # of every id that it speaks; sent as whole bytes, the most significant first
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
 

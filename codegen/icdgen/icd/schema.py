@@ -87,7 +87,8 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
         return [_unknown_key(key, known, owner.key_at(key)) for key in kind.unexpected if key in owner.spots]
     if name == "type":
         wanted = rule.get("type", "")
-        message = f"{what} must be {_TYPES.get(wanted, wanted)}, not {_describe(error.instance)}"
+        words = " or ".join(_TYPES.get(one, one) for one in ([wanted] if isinstance(wanted, str) else wanted))
+        message = f"{what} must be {words}, not {_describe(error.instance)}"
     elif name in ("enum", "const"):
         message = f"{what} cannot be {_describe(error.instance)}"
         help = remedies.of_value(str(path[-1]) if path else "", error.instance) or help
@@ -102,6 +103,8 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
         message = f"{what} cannot be {_describe(error.instance)}"
     elif name in ("minItems", "minProperties"):
         message = f"{what} is empty"
+    elif name == "maxItems":
+        message = f"{what} has more than {rule[name]} entries"
     elif name == "dependentRequired":
         message = f"{what} lacks a key that another of its keys needs"
         help = "`held` needs `printed`, and `printed` needs `where`"

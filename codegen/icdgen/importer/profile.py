@@ -224,7 +224,17 @@ class Add(Protocol):
     def __call__(self, message: str, place: Place, help: str = ...) -> None: ...
 
 
-_NODE_KEYS = {"name", "title", "summary", "node_type", "interface_version", "byte_order", "bit_order", "source"}
+_NODE_KEYS = {
+    "name",
+    "title",
+    "summary",
+    "node_type",
+    "interface_version",
+    "byte_order",
+    "bit_order",
+    "id_bits",
+    "source",
+}
 _SELECTORS = {"match": list, "tables": list, "group": int, "include": list}
 
 

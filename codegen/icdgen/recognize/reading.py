@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
 from icdgen.protocol.facts import Facts
 from icdgen.values.find import KINDS, describe
@@ -18,6 +19,11 @@ class Speaker:
 
     node: Node
     facts: Facts
+
+    def taken_apart(self, body: bytes) -> tuple[int, bytes] | None:
+        """The id that bytes begin with, and the rest; None if there are too few."""
+        size = wire_ids.size(self.node.id_bits)
+        return (wire_ids.number(body[:size]), body[size:]) if len(body) >= size else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -81,6 +81,7 @@ class Dispatcher(NamedTuple):
     """A dispatcher of the node."""
 
     name: str
+    id_type: str
     routes: list[Route]
 
 
@@ -147,7 +148,7 @@ class _Rows:
             Route(names.constant(one, id), str(one.model.kind == CONFIGURATION).lower(), names.stem(one))
             for one, id in messages
         ]
-        return Dispatcher(f"{self.node.name}_{direction}", routes)
+        return Dispatcher(f"{self.node.name}_{direction}", f"uint{self.node.id_bits}_t", routes)
 
     def enum(self, enum: EnumDescription) -> EnumRow:
         return EnumRow(names.stem(enum), literal(enum.model.name), f"UINT{enum.storage.bits}_MAX")

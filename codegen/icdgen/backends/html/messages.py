@@ -12,6 +12,7 @@ from icdgen.backends.html.usage import snippets
 from icdgen.describe import describe
 from icdgen.describe.errata import errata_of_message
 from icdgen.describe.fresh import fresh_values
+from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ def _plan(
         **plan.message_plan(message, node),
         "enums": enums,
         "drawing": picture.plan if picture else None,
-        "wire": wire.page_facts(message, travels),
+        "wire": {**wire.page_facts(message, travels), "id_bytes": wire_ids.size(node.id_bits)},
     }
 
 

@@ -15,6 +15,7 @@ from icdgen.icd import model, source
 from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.units import STANDARD, Unit
+from icdgen.icd.wire_ids import DEFAULT_BITS
 
 if TYPE_CHECKING:
     from jsonschema_rs import ValidationError
@@ -155,7 +156,8 @@ class _Reader:
                 model.Loggable(r["bit"], r["id"], r.get("name", ""), self.about(r), r) for r in item["loggable"]
             ),
             missing=tuple(model.Missing(m["kind"], m["id"], m["name"], m["why"]) for m in get("missing", ())),
-            errata=tuple(self.errata.values()), digest=get("digest", ""), file=item.place.file, source=item,
+            errata=tuple(self.errata.values()), digest=get("digest", ""), file=item.place.file,
+            id_bits=get("id_bits", DEFAULT_BITS), source=item,
         )  # fmt: skip
 
     def included(self, names: list[str]) -> list[model.Node]:

@@ -206,7 +206,7 @@ impl Telecommand {
             CopyProgramToInternalFlash::ID => {
                 Self::CopyProgramToInternalFlash(CopyProgramToInternalFlash::from_bytes(bytes)?)
             }
-            _ => return Err(Error::UnknownId { id: u16::from(id) }),
+            _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
 
@@ -531,7 +531,7 @@ impl Telemetry {
             CopyToInternalFlashProgress::ID => {
                 Self::CopyToInternalFlashProgress(CopyToInternalFlashProgress::from_bytes(bytes)?)
             }
-            _ => return Err(Error::UnknownId { id: u16::from(id) }),
+            _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
 

@@ -246,7 +246,7 @@ impl Telecommand {
             HoleMap6::SET_ID => Self::HoleMap6(HoleMap6::from_bytes(bytes)?),
             HoleMap7::SET_ID => Self::HoleMap7(HoleMap7::from_bytes(bytes)?),
             HoleMap8::SET_ID => Self::HoleMap8(HoleMap8::from_bytes(bytes)?),
-            _ => return Err(Error::UnknownId { id: u16::from(id) }),
+            _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
 
@@ -508,7 +508,7 @@ impl Telemetry {
             HoleMap6::GET_ID => Self::HoleMap6(HoleMap6::from_bytes(bytes)?),
             HoleMap7::GET_ID => Self::HoleMap7(HoleMap7::from_bytes(bytes)?),
             HoleMap8::GET_ID => Self::HoleMap8(HoleMap8::from_bytes(bytes)?),
-            _ => return Err(Error::UnknownId { id: u16::from(id) }),
+            _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
 

@@ -697,7 +697,7 @@ impl Telecommand {
             InertialPointingReferenceVector::SET_ID => {
                 Self::InertialPointingReferenceVector(InertialPointingReferenceVector::from_bytes(bytes)?)
             }
-            _ => return Err(Error::UnknownId { id: u16::from(id) }),
+            _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
 
@@ -1598,7 +1598,7 @@ impl Telemetry {
             InertialPointingReferenceVector::GET_ID => {
                 Self::InertialPointingReferenceVector(InertialPointingReferenceVector::from_bytes(bytes)?)
             }
-            _ => return Err(Error::UnknownId { id: u16::from(id) }),
+            _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
 

@@ -13,7 +13,7 @@ typedef struct {
     const testee_node_t *node;
     const testee_dispatcher_t *dispatcher;
     const testee_message_t *message;
-    uint8_t id;
+    uint32_t id;
     void *any;   /* a value of the dispatcher */
     void *value; /* the message in it */
 } talk_t;

@@ -26,7 +26,7 @@ const testee_node_t *node_named(json_text_t name)
     return NULL;
 }
 
-static bool pick_route(talk_t *talk, const testee_dispatcher_t *dispatcher, uint8_t id, bool configuration)
+static bool pick_route(talk_t *talk, const testee_dispatcher_t *dispatcher, uint32_t id, bool configuration)
 {
     size_t i;
     for (i = 0; dispatcher != NULL && i < dispatcher->route_count; i++) {
@@ -60,11 +60,11 @@ bool find_message(talk_t *talk)
     if (talk->node == NULL) {
         return refuse(talk, "unknown-node");
     }
-    if (id->too_large || id->magnitude > UINT8_MAX || (id->negative && id->magnitude != 0u)) {
+    if (id->too_large || id->magnitude > UINT32_MAX || (id->negative && id->magnitude != 0u)) {
         return refuse(talk, "unknown-id");
     }
-    found = (telecommand && pick_route(talk, talk->node->telecommand, (uint8_t)id->magnitude, configuration)) ||
-        (telemetry && pick_route(talk, talk->node->telemetry, (uint8_t)id->magnitude, configuration));
+    found = (telecommand && pick_route(talk, talk->node->telecommand, (uint32_t)id->magnitude, configuration)) ||
+        (telemetry && pick_route(talk, talk->node->telemetry, (uint32_t)id->magnitude, configuration));
     if (!found) {
         return refuse(talk, "unknown-id");
     }

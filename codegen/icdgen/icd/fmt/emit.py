@@ -1,4 +1,4 @@
-"""Trees -> canonical YAML; over an existing file the vendor's facts are replaced and everything else is kept."""
+"""Plain trees, as they are made in memory -> canonical YAML."""
 
 from __future__ import annotations
 
@@ -7,9 +7,19 @@ from typing import Any
 from icdgen.icd import source
 from icdgen.icd.fmt import format_text, kinds, write
 from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
-from icdgen.importer.icd_trees import Spelled
 
 SCHEMA_LINE = "# yaml-language-server: $schema=https://raw.githubusercontent.com/icdgen/icdgen/main/codegen/icdgen/icd/schema.json"
+
+
+class Spelled(int):
+    """A number with the way it is written: ``0x5A``."""
+
+    spelling: str
+
+    def __new__(cls, spelling: str) -> Spelled:
+        made = super().__new__(cls, int(spelling, 16) if "x" in spelling.lower() else int(spelling))
+        made.spelling = spelling
+        return made
 
 
 def text(tree: dict[str, Any], header: list[str] | None = None) -> str:
