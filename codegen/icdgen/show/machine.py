@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from icdgen.describe.bounds import bounds
+from icdgen.icd.located import plain
 from icdgen.icd.model import Enum, Erratum, Field, Icd, Limits, Loggable, Member, Message, Node
 
 FORMAT = 1
@@ -33,15 +34,15 @@ def to_json(icd: Icd) -> _Object:
 
 
 @cache
-def plain(kind: Any) -> tuple[str, ...]:
+def as_they_are(kind: Any) -> tuple[str, ...]:
     """The attributes of a class of the model that are shown as they are, under their own names."""
     found = (one.name for one in fields(kind) if one.type in _PLAIN)
     return tuple(name for name in found if name not in _OTHERWISE.get(kind, ()))
 
 
-def _as_they_are(one: Any) -> _Object:
+def _attributes(one: Any) -> _Object:
     kind: Any = type(one)
-    values = {name: getattr(one, name) for name in plain(kind)}
+    values = {name: getattr(one, name) for name in as_they_are(kind)}
     return {name: value for name, value in values.items() if value != _defaults(kind).get(name)}
 
 
@@ -52,12 +53,12 @@ def _defaults(kind: Any) -> dict[str, object]:
 
 def _node(node: Node) -> _Object:
     return _present(
-        **_as_they_are(node),
+        **_attributes(node),
         document=dict(node.document),
         vocabulary=list(node.vocabulary),
         units=[_present(**unit._asdict()) for unit in node.units],
         protocol=node.protocol,
-        missing=[_as_they_are(one) for one in node.missing],
+        missing=[_attributes(one) for one in node.missing],
         errata=_errata(node, is_note=False),
         notes=_errata(node, is_note=True),
     ) | {
@@ -70,7 +71,7 @@ def _node(node: Node) -> _Object:
 
 def _message(message: Message) -> _Object:
     return _present(
-        **_as_they_are(message),
+        **_attributes(message),
         acknowledge=None if message.acknowledge else "reset" if message.expects_reset else False,
         contains=[{"message": part.message, "offset": part.at} for part in message.contains],
         **_ids(message.errata),
@@ -80,14 +81,14 @@ def _message(message: Message) -> _Object:
 def _field(field: Field) -> _Object:
     scale = field.scale
     return _present(
-        **_as_they_are(field),
+        **_attributes(field),
         offset=field.at,
         enum=field.enum.name if field.enum else None,
         unit=field.unit.symbol if field.unit else None,
         scale=str(scale.factor) if scale else None,
         scale_offset=str(scale.offset) if scale and scale.offset else None,
         formula=field.formula if scale else None,
-        special=[_as_they_are(one) for one in field.special],
+        special=[_attributes(one) for one in field.special],
         limits=_limits(field.limits),
         **_ids(field.errata),
     )
@@ -98,7 +99,7 @@ def _enum(enum: Enum) -> _Object:
 
 
 def _row(one: Enum | Member | Loggable) -> _Object:
-    return _present(**_as_they_are(one), **_ids(one.errata))
+    return _present(**_attributes(one), **_ids(one.errata))
 
 
 def _limits(limits: Limits | None) -> dict[str, str] | None:
@@ -113,11 +114,11 @@ def _errata(node: Node, is_note: bool) -> list[_Object]:
             places.setdefault(erratum.id, []).append(place)
     return [
         _present(
-            **_as_they_are(e),
+            **_attributes(e),
             **{"what" if is_note else "why": e.why},
             tables=list(e.tables),
-            printed=_plain(dict(e.printed)),
-            held=_plain(dict(e.held)),
+            printed=plain(dict(e.printed)),
+            held=plain(dict(e.held)),
             places=places.get(e.id, []),
         )
         | ({} if is_note else {"changes": e.changes})
@@ -145,12 +146,6 @@ def _ids(errata: tuple[Erratum, ...]) -> dict[str, list[str]]:
         "errata": [erratum.id for erratum in errata if not erratum.is_note],
         "notes": [erratum.id for erratum in errata if erratum.is_note],
     }
-
-
-def _plain(value: object) -> object:
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    return [_plain(item) for item in value] if isinstance(value, list) else value
 
 
 def _present(**items: object) -> _Object:

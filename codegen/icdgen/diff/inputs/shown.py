@@ -14,7 +14,7 @@ from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError
 from icdgen.icd import model, source
 from icdgen.icd.formula import Scale
-from icdgen.icd.located import Map, Seq
+from icdgen.icd.located import Map, Seq, plain
 from icdgen.icd.units import STANDARD, Unit
 from icdgen.show import machine
 
@@ -131,14 +131,14 @@ class _Reader:
     """One node, after those that it includes."""
 
     def __init__(self, before: list[model.Node]) -> None:
-        self.before = {node.name: node for node in before}
+        self.before = before
         self.enums: dict[str, model.Enum] = {}
         self.units: dict[str, Unit] = dict(STANDARD)
         self.errata: dict[str, model.Erratum] = {}
 
     def node(self, item: Map) -> model.Node:
         get = item.get
-        for node in self.included(item["includes"]):
+        for node in model.closure(self.before, item["includes"]):
             self.enums.update((enum.name, enum) for enum in node.enums)
             self.units.update((unit.symbol, unit) for unit in node.units)
         units = tuple(Unit(u["symbol"], u["identifier"], u["quantity"], u.get("summary", "")) for u in get("units", ()))
@@ -154,22 +154,13 @@ class _Reader:
             includes=tuple(item["includes"]),
             vocabulary=tuple(get("vocabulary", ())),
             units=units,
-            protocol=_plain(get("protocol", {})),
+            protocol=plain(get("protocol", {})),
             loggable=tuple(self.row(model.Loggable, row) for row in item["loggable"]),
             missing=tuple(model.Missing(**_as_it_is(model.Missing, one)) for one in get("missing", ())),
             errata=tuple(self.errata.values()),
             file=item.place.file,
             source=item,
         )
-
-    def included(self, names: list[str]) -> list[model.Node]:
-        wanted, queue = set(), list(names)
-        while queue:
-            name = queue.pop()
-            if name in self.before and name not in wanted:
-                wanted.add(name)
-                queue += self.before[name].includes
-        return [node for name, node in self.before.items() if name in wanted]
 
     def about(self, item: Map) -> tuple[model.Erratum, ...]:
         return tuple(self.errata[id] for key in ("errata", "notes") for id in item.get(key, ()) if id in self.errata)
@@ -209,7 +200,7 @@ class _Reader:
 
 
 def _as_it_is(kind: object, item: Map) -> dict[str, Any]:
-    return {name: item[name] for name in machine.plain(kind) if name in item}
+    return {name: item[name] for name in machine.as_they_are(kind) if name in item}
 
 
 def _scale(item: Map) -> Scale | None:
@@ -232,9 +223,3 @@ def _erratum(item: Map) -> model.Erratum:
         changes=item.get("changes", False),
         is_note=is_note,
     )
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    return [_plain(item) for item in value] if isinstance(value, list) else value
