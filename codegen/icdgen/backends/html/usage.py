@@ -34,6 +34,11 @@ def snippets(message: MessageDescription) -> list[Snippet]:
     return [Snippet(name, key, "\n".join(make(message, shown))) for name, key, make in languages]
 
 
+def names(message: MessageDescription) -> list[tuple[str, str]]:
+    """Language and the name of the message's type in it."""
+    return [("C", f"{stem(message)}_t"), ("Python", camel(message.words)), ("Rust", type_name(message))]
+
+
 _Maker = Callable[[MessageDescription, FieldDescription | None], list[str]]
 
 
