@@ -14,26 +14,13 @@ from icdgen import __version__
 from icdgen.errors import UserError
 from icdgen.reports.excerpt import shown
 
-# Name -> module in ``icdgen.commands``; the module has a click command of the same name.
-_COMMANDS = {
-    "generate": "generate",
-    "init": "init",
-    "check": "check",
-    "fmt": "fmt",
-    "rule": "rule",
-    "show": "show",
-    "units": "units",
-    "docs": "docs",
-    "decode": "decode",
-    "encode": "encode",
-    "diff": "diff",
-    "import": "import_",
-    "sim": "sim",
-    "log": "log",
-    "monitor": "monitor",
-    "send": "send",
-}
+# Each is a module in ``icdgen.commands`` with a click command of the same name; `import` cannot be one in Python.
+_COMMANDS = (
+    "generate", "init", "check", "fmt", "rule", "show", "units", "docs", "decode", "encode", "diff", "import", "sim", "log",
+    "monitor", "send",
+)  # fmt: skip
 _DEFAULT = "generate"
+_WHOLE = 10_000  # characters of a sentence
 
 
 class _Commands(click.Group):
@@ -45,8 +32,8 @@ class _Commands(click.Group):
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         if name not in _COMMANDS:
             return None
-        module = import_module(f"icdgen.commands.{_COMMANDS[name]}")
-        command: click.Command = getattr(module, f"{name}_" if iskeyword(name) else name)
+        python = f"{name}_" if iskeyword(name) else name
+        command: click.Command = getattr(import_module(f"icdgen.commands.{python}"), python)
         return command
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -54,6 +41,13 @@ class _Commands(click.Group):
             _refuse_mistyped(args[0])
             args = [_DEFAULT, *args]
         return super().parse_args(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The first sentence of each command, whole: click cuts it off at the width of the terminal."""
+        found = ((name, self.get_command(ctx, name)) for name in self.list_commands(ctx))
+        rows = [(name, command.get_short_help_str(_WHOLE)) for name, command in found if command is not None]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         from icdgen.commands.common import known_languages
@@ -155,8 +149,9 @@ def _drop_unwritten_output() -> None:
 
 
 def _complain(message: str, help: str = "") -> None:
-    text = f"icdgen: error: {message}" + (f"\n  help: {help}" if help else "")
+    lines = [f"icdgen: error: {line}" for line in message.split("\n")]
+    lines += [f"  help: {line}" for line in help.split("\n") if line]
     try:
-        click.echo("\n".join(shown(line) for line in text.split("\n")), err=True)
+        click.echo("\n".join(map(shown, lines)), err=True)
     except OSError:
         return  # there is nobody left to tell

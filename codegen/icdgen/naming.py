@@ -18,10 +18,17 @@ _HUMPS = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z0-9])(?=[A-Z][a-z])")
 @lru_cache(maxsize=1 << 18)
 def words(name: str, vocabulary: tuple[str, ...] = ()) -> tuple[str, ...]:
     """Lower-case words of a name: ``TcErrorReason`` -> ``('tc', 'error', 'reason')``. Empty if nothing is left."""
-    longest_first = sorted(vocabulary, key=len, reverse=True)
+    text = name if name.isascii() else unicodedata.normalize("NFKD", name)
+    longest_first = sorted([word for word in vocabulary if word in text], key=len, reverse=True)
     found: list[str] = []
-    for chunk in _SEPARATORS.split(unicodedata.normalize("NFKD", name)):
-        found += _split(chunk, longest_first)
+    for chunk in _SEPARATORS.split(text):
+        lower = chunk.lower()
+        if longest_first:
+            found += _split(chunk, longest_first)
+        elif lower[1:] != chunk[1:]:
+            found += (part.lower() for part in _HUMPS.split(chunk) if part)
+        elif lower:
+            found.append(lower)
     return tuple(found)
 
 

@@ -74,9 +74,9 @@ class Renderer:
             ) from error
 
     def runtime_files(self, folder: str = ".") -> list[str]:
-        """The files of the backend's runtime below ``folder``, as paths within the runtime."""
-        found = (path for path in (self._runtime / folder).rglob("*") if path.is_file() and path.suffix != ".pyc")
-        return sorted(path.relative_to(self._runtime).as_posix() for path in found)
+        """The sources of the backend's runtime below ``folder``, as paths within the runtime; nothing that tools left there."""
+        found = (path.relative_to(self._runtime) for path in (self._runtime / folder).rglob("*") if path.is_file())
+        return sorted(path.as_posix() for path in found if not any(map(_is_left_by_tools, path.parts)))
 
     def source(self, file: str) -> str:
         """The text of a file of the runtime. Raises `UserError` if the user's own in its place cannot be read."""
@@ -90,6 +90,10 @@ class Renderer:
             except (OSError, UnicodeDecodeError) as error:
                 raise UserError(f"{path}: {error}", "mend the file") from None
         return (self._runtime / file).read_text(encoding="utf-8")
+
+
+def _is_left_by_tools(name: str) -> bool:
+    return name.startswith(".") or name in ("__pycache__", "target")
 
 
 def _where(error: Exception, template: str) -> str:

@@ -55,7 +55,7 @@
 #include "common/link.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-#define COMMON_ICD_DIGEST "b07a3f592e6d6715"
+#define COMMON_ICD_DIGEST "7bb2ab51d9f372bf"
 
 /** Any telemetry of Common messages: the member of `as` that goes with the id. */
 typedef struct {

@@ -130,7 +130,7 @@
 #include "cubeacp/link.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-#define CUBEACP_ICD_DIGEST "cfd63c0ac865e505"
+#define CUBEACP_ICD_DIGEST "a9d84cd5a4771470"
 /** What the node answers when asked for its type. */
 #define CUBEACP_NODE_TYPE 10u
 /** Version of the interface that it reports. */

@@ -323,19 +323,20 @@ static void message(run_t *run)
 
 static void dispatcher(run_t *run, const icdgen_selftest_dispatcher_t *one)
 {
-    uint16_t id;
+    uint16_t i;
     memset(run->node->buffer, 0, run->node->buffer_size);
-    for (id = 0; id <= UINT8_MAX; id++) {
-        const bool known = one->lengths[id] >= 0;
+    for (i = 0; i < one->id_count; i++) {
+        const uint32_t id = one->ids[i].id;
+        const bool known = one->ids[i].length >= 0;
         size_t length = 0;
-        run->vector = id;
-        check(run, one->length((uint8_t)id, &length) == (known ? ICD_OK : ICD_ERROR_UNKNOWN_ID), "dispatcher", "id");
-        check(run, !known || length == (size_t)one->lengths[id], "dispatcher", "length");
+        run->vector = i;
+        check(run, one->length(id, &length) == (known ? ICD_OK : ICD_ERROR_UNKNOWN_ID), "dispatcher", "id");
+        check(run, !known || length == (size_t)one->ids[i].length, "dispatcher", "length");
         check(
-            run, one->decode((uint8_t)id, run->node->buffer, length) == (known ? ICD_OK : ICD_ERROR_UNKNOWN_ID),
-            "dispatcher", "decode");
+            run, one->decode(id, run->node->buffer, length) == (known ? ICD_OK : ICD_ERROR_UNKNOWN_ID), "dispatcher",
+            "decode");
         check(
-            run, !known || one->decode((uint8_t)id, run->node->buffer, length + 1u) == ICD_ERROR_LENGTH, "dispatcher",
+            run, !known || one->decode(id, run->node->buffer, length + 1u) == ICD_ERROR_LENGTH, "dispatcher",
             "wrong length");
     }
 }

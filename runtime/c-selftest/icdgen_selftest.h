@@ -107,11 +107,18 @@ typedef struct {
     icd_status_t (*encode)(const void *message, uint8_t *buffer, size_t capacity);
 } icdgen_selftest_message_t;
 
-/** The dispatcher of a direction: the length under each id, -1 where the id is unknown. */
+/** An id and the length of the message that has it, -1 where the id is unknown. */
 typedef struct {
-    const int32_t *lengths;
-    icd_status_t (*length)(uint8_t id, size_t *length);
-    icd_status_t (*decode)(uint8_t id, const uint8_t *buffer, size_t length);
+    uint32_t id;
+    int32_t length;
+} icdgen_selftest_id_t;
+
+/** The dispatcher of a direction, and the ids that it is asked for. */
+typedef struct {
+    const icdgen_selftest_id_t *ids;
+    uint16_t id_count;
+    icd_status_t (*length)(uint32_t id, size_t *length);
+    icd_status_t (*decode)(uint32_t id, const uint8_t *buffer, size_t length);
 } icdgen_selftest_dispatcher_t;
 
 /** A value of an enumeration and its name; NULL if it has none. */

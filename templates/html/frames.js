@@ -82,9 +82,13 @@ const icdgenFrames = (() => {
     throw new Error("the end of the message is missing");
   }
 
+  /** The id that bytes begin with: its most significant byte comes first. */
+  const idOf = (wire, bytes) => bytes.slice(0, wire.id_bytes || 1).reduce((id, byte) => id * 256 + byte, 0);
+
   /** The data in what was pasted, and remarks about what was around it. Throws an Error where it cannot be this message. */
   function unwrap(wire, length, bytes) {
     const remarks = [];
+    const size = wire.id_bytes || 1;
     let data = bytes;
     const body = unframed(wire, bytes);
     if (body) {
@@ -97,9 +101,9 @@ const icdgenFrames = (() => {
     if (data.length === length + 1 && checked(data, id)) {
       remarks.push("CRC is right");
       data = data.slice(0, length);
-    } else if (!body && data.length === length + 1 && wire.ids.includes(data[0])) {
-      remarks.push(`id ${data[0]} removed`);
-      data = data.slice(1);
+    } else if (!body && data.length === length + size && wire.ids.includes(idOf(wire, data))) {
+      remarks.push(`id ${idOf(wire, data)} removed`);
+      data = data.slice(size);
     } else if (!body && data.length === length + 2 && wire.ids.includes(data[0]) && checked(data.slice(1), data[0])) {
       remarks.push(`id ${data[0]} removed`, "CRC is right");
       data = data.slice(1, -1);

@@ -93,7 +93,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
 
   function ofBody(index, talking, body) {
     const found = byId(index, talking, body);
-    if (!found.length) throw whyNone(index, talking, body[0], body.slice(1));
+    if (!found.length) throw whyNone(index, talking, body);
     const one = decided(found, `a frame with id ${body[0]}`);
     return { ...one, remarks: [`framing with id ${body[0]} removed`, ...one.remarks] };
   }
@@ -105,12 +105,12 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
     const withId = byId(index, talking, data);
     const plain = byLength(index, talking, data);
     if (withId.length) {
-      const one = decided(withId, `${data.length} bytes that begin with the id ${data[0]}`);
+      const one = decided(withId, `${data.length} bytes that begin with the id ${withId[0].id}`);
       const others = plain.filter((other) => other.key !== one.key);
-      return noted(one, `id ${data[0]} removed`, ...(others.length ? [`without an id in front it could be ${named(others)}`] : []));
+      return noted(one, `id ${one.id} removed`, ...(others.length ? [`without an id in front it could be ${named(others)}`] : []));
     }
     if (plain.length) return noted({ ...decided(plain, `${data.length} bytes without an id`), id: null }, "found by its length alone");
-    throw whyNone(index, talking, data[0], data.slice(1));
+    throw whyNone(index, talking, data);
   }
 
   function byId(index, talking, body) {
@@ -133,7 +133,9 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
   const directions = (speaker) => [["telecommand", speaker.telecommands], ["telemetry", speaker.telemetry]];
 
   function* ofSpeaker(index, speaker, body) {
-    const [id, data] = [body[0], body.slice(1)];
+    const apart = takenApart(speaker, body);
+    if (!apart) return;
+    const [id, data] = apart;
     for (const [what, ids] of directions(speaker)) {
       if (ids[id] === undefined) continue;
       const read = withChecksum(index, speaker, what, id, ids[id], data);
@@ -146,6 +148,12 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
       const told = `error ${error}${speaker.errors[error] ? ` (${speaker.errors[error]})` : ""}`;
       yield noted(reading(index, speaker, "acknowledge", speaker.telecommands[body[idAt]], body[idAt]), told);
     }
+  }
+
+  /** The id that bytes begin with, and the rest; null if there are too few. */
+  function takenApart(speaker, body) {
+    const size = speaker.id_bytes;
+    return body.length < size ? null : [body.slice(0, size).reduce((id, byte) => id * 256 + byte, 0), body.slice(size)];
   }
 
   const lengthOf = (index, number) => index.messages[number][2];
@@ -205,7 +213,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
       return new Error(`${waiting.count - waiting.pieces.size} of ${waiting.count} packets of the message with id ${waiting.id} are missing`);
     }
     const [told] = joined.messages;
-    if (told) return whyNone(index, [speaker], told.id, told.data);
+    if (told) return whyNone(index, [speaker], Uint8Array.from([told.id, ...told.data]));
     return new Error(`the packet with identifier 0x${given[0].id.toString(16).toUpperCase().padStart(8, "0")} is none of ${speaker.title}`);
   }
 
@@ -229,18 +237,24 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
     return [...best.values()];
   }
 
-  function whyNone(index, talking, id, data) {
+  function whyNone(index, talking, body) {
+    const apart = talking.map((speaker) => [speaker, takenApart(speaker, body)]).filter(([, both]) => both);
     const known = new Map(
-      talking.flatMap((speaker) =>
-        directions(speaker).filter(([, ids]) => ids[id] !== undefined).map(([what, ids]) => [`${what} ${ids[id]}`, [speaker, ids[id]]]),
+      apart.flatMap(([speaker, [id, data]]) =>
+        directions(speaker).filter(([, ids]) => ids[id] !== undefined).map(([what, ids]) => [`${what} ${ids[id]}`, { speaker, number: ids[id], id, data }]),
       ),
     );
-    if (!known.size) return new Error(`no message has the id ${id} (0x${id.toString(16).toUpperCase().padStart(2, "0")})`);
-    for (const [speaker, number] of known.values()) {
+    if (!apart.length) return new Error("bytes are missing: not even the id is complete");
+    if (!known.size) {
+      const ids = new Set(apart.map(([, [id]]) => `${id} (0x${id.toString(16).toUpperCase().padStart(2, "0")})`));
+      return new Error(`no message has the id ${[...ids].join(" or ")}`);
+    }
+    for (const { speaker, number, id, data } of known.values()) {
       const right = checksum(speaker, lengthOf(index, number), id, data);
       if (right !== undefined) return new Error(`${index.messages[number][0]}: as CRC ${frames.hex([right])} would be right, not ${frames.hex(data.slice(-1))}`);
     }
-    const told = [...known.values()].map(([, number]) => `${index.messages[number][0]} has ${lengthOf(index, number)} bytes`);
+    const told = [...known.values()].map(({ number }) => `${index.messages[number][0]} has ${lengthOf(index, number)} bytes`);
+    const [{ id, data }] = known.values();
     return new Error(`${told.join(" or ")}, ${data.length} given after the id ${id}`);
   }
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import NamedTuple
 
+from icdgen.vectors.ids import worth_asking
 from tests.conformance.compare import Maybe
 
 DIRECTIONS = ("telecommand", "telemetry", "configuration")
@@ -143,7 +144,7 @@ def node_cases(data: dict) -> Iterator[Case]:
     yield node_itself(data)
     for direction in DIRECTIONS:
         known = data["ids"][direction]
-        for id in (*range(256), 256, 65535, 65536, -1):
+        for id in (*worth_asking(map(int, known)), 65535, 65536, -1):
             if str(id) in known:
                 request = {"op": "constants", "node": node, "kind": direction, "id": id}
                 yield Case(f"{direction} {id}", request, {"ok": True, "name": known[str(id)], ...: ...})

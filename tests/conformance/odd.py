@@ -64,6 +64,22 @@ messages:
       - {at: 65, bits: 7, name: C, type: int}
 """
 
+WIDE = """\
+icdgen: 1
+node: {name: wide, title: Wide ids, byte_order: little, bit_order: lsb0, id_bits: 32}
+messages:
+  - name: Wide
+    id: [0x12, 0x34, 0x56, 0x78]
+    kind: telemetry
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: A, type: uint}
+  - {name: Lowest byte of it, id: 0x78, kind: telemetry, length: 0}
+  - {name: Lowest half of it, id: 0x5678, kind: telemetry, length: 0}
+  - {name: Without its highest bit, id: 0x7FFFFFFF, kind: telecommand, length: 0}
+  - {name: All ones, set_id: 0xFFFFFFFF, get_id: 0xFFFFFFFF, kind: configuration, length: 0}
+"""
+
 EMPTY = """\
 icdgen: 1
 node: {name: empty, title: No messages, byte_order: little, bit_order: lsb0}
@@ -72,6 +88,6 @@ node: {name: empty, title: No messages, byte_order: little, bit_order: lsb0}
 
 def write(folder: Path) -> Path:
     """The folder, with the ICDs in it."""
-    for name, text in (("shared", SHARED), ("mixed", MIXED), ("other", OTHER), ("empty", EMPTY)):
+    for name, text in (("shared", SHARED), ("mixed", MIXED), ("other", OTHER), ("wide", WIDE), ("empty", EMPTY)):
         (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
     return folder

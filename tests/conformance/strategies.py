@@ -48,17 +48,38 @@ def icds(draw) -> dict[str, dict]:
     """One to three ICDs by node name; later ones may include the first."""
     trees: dict[str, dict] = {}
     names = Names(draw, set())  # a node that includes another must not repeat its names
+    shared = draw(_ids())  # of nodes that speak each other's messages
     for number in range(draw(st.integers(1, 3))):
         name = f"n{number}"
-        tree = draw(_icd(name, names, first_id=number * 60))
-        if number and draw(st.booleans()):
+        includes = bool(number) and draw(st.booleans())
+        tree = draw(_icd(name, names, shared if not number or includes else draw(_ids()), first_id=number * 60))
+        if includes:
             tree["include"] = ["n0.yaml"]
         trees[name] = tree
     return trees
 
 
+@dataclass(frozen=True)
+class Ids:
+    """The ids of a node: ``bits`` wide, with ``above`` in the bits above the lowest byte; some written as bytes."""
+
+    bits: int
+    above: int
+    as_bytes: bool
+
+    def __call__(self, low: int) -> int | list[int]:
+        id = self.above << 8 | low
+        return list(id.to_bytes((self.bits + 7) // 8, "big")) if self.as_bytes and low % 2 else id
+
+
 @st.composite
-def _icd(draw, name: str, names: Names, first_id: int) -> dict:
+def _ids(draw) -> Ids:
+    bits = draw(st.sampled_from((8, 8, 11, 16, 24, 29, 32)))
+    return Ids(bits, draw(st.integers(0, (1 << bits - 8) - 1)), draw(st.booleans()))
+
+
+@st.composite
+def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
     enums = [draw(_enum(Names(draw, set()), f"E{name}{number}")) for number in range(draw(st.integers(1, 3)))]
     orders = {
         "byte_order": draw(st.sampled_from(("little", "big"))),
@@ -70,19 +91,21 @@ def _icd(draw, name: str, names: Names, first_id: int) -> dict:
         fields, length = draw(_fields(enums if number else enums + enums, straight))
         message = {**names.one("message"), "kind": draw(st.sampled_from(("telecommand", "telemetry", "configuration")))}
         if message["kind"] == "configuration":
-            message |= {"set_id": first_id + number, "get_id": first_id + 20 - number}
+            message |= {"set_id": ids(first_id + number), "get_id": ids(first_id + 20 - number)}
         else:
-            message["id"] = first_id + number if message["kind"] == "telecommand" else first_id + 40 + number
+            message["id"] = ids(first_id + number + (0 if message["kind"] == "telecommand" else 40))
         message["length"] = length
         if fields:
             message["fields"] = fields
         messages.append(message)
-    messages.append(_uses_all(names.one("message"), enums, first_id + 59))
+    messages.append(_uses_all(names.one("message"), enums, ids(first_id + 59)))
     node = {"name": name, "title": draw(st.sampled_from(("Plain", 'Odd "*/ {{ \\'))), **orders}
+    if ids.bits != 8:
+        node["id_bits"] = ids.bits
     return {"icdgen": 1, "node": node, "enums": enums, "messages": messages}
 
 
-def _uses_all(names: dict, enums: list[dict], id: int) -> dict:
+def _uses_all(names: dict, enums: list[dict], id: int | list[int]) -> dict:
     """A message with a field of each enumeration, so that none is unused."""
     fields, at = [], 3
     for number, enum in enumerate(enums):

@@ -146,7 +146,7 @@ def findings_of(icd: str, overlay: str) -> list:
         (top / "errata" / "demo.yaml").write_text(overlay, encoding="utf-8")
         loaded = load([top])
     for form in reports.FORMATS:
-        assert reports.render(form, loaded.findings, loaded.texts) or not loaded.findings
+        assert reports.get(form)(loaded.findings, loaded.texts) or not loaded.findings
     return loaded.findings
 
 

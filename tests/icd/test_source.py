@@ -36,14 +36,14 @@ def shown(place: Place) -> str:
 
 
 def test_values_and_keys_know_their_places(tree):
-    assert (shown(tree.keys_at["icdgen"]), shown(tree.at("icdgen"))) == ("icdgen", "1")
+    assert (shown(tree.key_at("icdgen")), shown(tree.at("icdgen"))) == ("icdgen", "1")
     assert shown(tree["node"].at("title")) == '"A \\"title\\""'
     message = tree["messages"][0]
     assert shown(message.at("name")) == "Größe 温度"
     assert shown(message.at("length")) == "0x10"
     first, second = message["fields"]
     assert (shown(first.at("bits")), shown(second.at("at"))) == ("16", "-1.50")
-    assert shown(message["fields"].items_at[1]) == "{"
+    assert shown(message["fields"].item_at(1)) == "{"
 
 
 def test_a_mapping_knows_where_it_begins(tree):
@@ -61,7 +61,7 @@ def test_numbers_texts_and_absent_values_are_what_they_look_like(tree):
 
 def test_a_byte_order_mark_at_the_beginning_moves_nothing():
     tree = source.parse(b"\xef\xbb\xbficdgen: 1\n", "demo.yaml")
-    assert tree.keys_at["icdgen"] == Place("demo.yaml", 1, 1, 6)
+    assert tree.key_at("icdgen") == Place("demo.yaml", 1, 1, 6)
 
 
 @pytest.mark.parametrize(

@@ -61,6 +61,12 @@ def test_an_id_that_the_format_cannot_hold_is_one_line_of_the_report(tmp_path):
     assert "its id 263 (0x107) is above 255" in found(result, "IMP037")[0]
 
 
+def test_a_profile_makes_room_for_wide_ids(tmp_path):
+    text = f"5 Telemetry\n\nNAV-PVT (0x01 0x07)\n\n{FIELDS}\nSlow (0x21)\n\n{FIELDS}"
+    _, tree = read(tmp_path, text, "node: {id_bits: 16}\n")
+    assert [m["id"] for m in tree["messages"]] == [263, 33] and tree["node"]["id_bits"] == 16
+
+
 def test_one_heading_gives_its_id_to_one_table(tmp_path):
     result, tree = read(tmp_path, f"5 Telemetry\n\n5.1 Motor State (0x21)\n\n{FIELDS}\nAnd further:\n\n{FIELDS}")
     assert len(tree["messages"]) == 1

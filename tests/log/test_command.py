@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from random import Random
 
 import pytest
 
@@ -23,12 +24,39 @@ def test_a_log_is_listed(write, everything, known):
         assert slot.name in result.stdout
 
 
-def test_what_can_hardly_be_a_log_is_doubted(tmp_path, write, known):
-    text = tmp_path / "README.md"
-    text.write_bytes(b"telemetry of zebras, yaks and antelopes " * 100 + b"\0" * 1000)
-    listed, converted = icdgen(text), icdgen(text, "--format", "csv")
+def test_what_cannot_be_a_log_is_refused(tmp_path, known):
+    header = known.log_file.header_bytes
+    for name, data, why in (
+        ("README.md", b"telemetry of zebras, yaks and antelopes " * 100, "its entries have no times"),
+        ("random.bin", Random(1).randbytes(5000), "its entries have no times"),
+        ("ones.bin", b"\xff" * (header + 5000), "its entries have no times"),
+    ):
+        (tmp_path / name).write_bytes(data)
+        for words in ((), ("--out", tmp_path / "out.csv")):
+            result = icdgen(tmp_path / name, *words)
+            assert result.returncode == 2 and f"{name} is no log of cubeacp: {why}" in result.stderr, result
+    assert not (tmp_path / "out.csv").exists()
+
+
+def test_a_damaged_entry_makes_it_no_other_file(write, everything, known):
+    path, _ = write(everything, 5)
+    data = bytearray(path.read_bytes())
+    at = known.log_file.header_bytes
+    data[at : at + 20] = b"\xff" * 20
+    path.write_bytes(data)
+    assert icdgen(path).returncode == 0
+
+
+def test_what_can_hardly_be_a_log_is_doubted(tmp_path, write, everything, known):
+    path, _ = write(everything, 3)
+    data, size = path.read_bytes(), known.log_file.header_bytes
+    entry = (len(data) - size) // 3
+    path.write_bytes(data[:size] + data[-entry:] + data[size:-entry])
+    path.with_name("zeros.bin").write_bytes(bytes(5000))
+    assert "the mask selects no frame; is this a log of cubeacp?" in icdgen(path.with_name("zeros.bin")).stdout
+    listed, converted = icdgen(path), icdgen(path, "--format", "csv")
     for said in (listed.stdout, converted.stderr):
-        assert "bits that no frame has; is this a log of cubeacp?" in said
+        assert "1 bit that no frame has; is this a log of cubeacp?" in said
         assert "the last entry is older than the first; is this a log of cubeacp?" in said
     bits = sorted(known.mask.bits)[:2]
     mask = sum(1 << (bit ^ 7 if known.mask.msb0 else bit) for bit in bits).to_bytes(known.mask.size, "little")

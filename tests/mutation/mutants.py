@@ -25,7 +25,7 @@ _OTHER_TYPES = {
     "float": ("uint", "int", "bytes"),
     "bytes": ("uint", "int"),
 }
-_HEAD = ("title", "byte_order", "bit_order", "node_type", "interface_version")
+_HEAD = ("title", "byte_order", "bit_order", "id_bits", "node_type", "interface_version")
 _NUMBER_KEYS = ("formula", "formula_for", "unit", "special", "min", "max", "above", "below", "const")
 
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from icdgen.diagnostics import Finding, Place
-from icdgen.reports import render
+from icdgen.reports import get
 from icdgen.reports.excerpt import WIDTH, Lines, excerpt, printable
 from tests.reports.findings import ERROR, NOTE, TEXTS, WARNING
 
@@ -17,11 +17,11 @@ def shown(line: int, column: int, length: int, text: str | None = None) -> list[
     texts = TEXTS if text is None else {"icd/demo.yaml": text}
     found = Finding("ICD020", "wrong", Place("icd/demo.yaml", line, column, length))
     gutter = len(str(line)) + 3
-    return [row[gutter:] for row in render("text", [found], texts).splitlines()[2:4]]
+    return [row[gutter:] for row in get("text")([found], texts).splitlines()[2:4]]
 
 
 def test_a_finding_as_it_is_printed():
-    assert render("text", [ERROR], TEXTS) == (
+    assert get("text")([ERROR], TEXTS) == (
         "icd/demo.yaml:2:7: error[ICD020]: `Voltage` is 100% wrong: it ends, alas\n"
         "  |\n"
         "2 | node: {name: demo}\n"
@@ -33,12 +33,12 @@ def test_a_finding_as_it_is_printed():
 
 
 def test_the_last_line_counts():
-    assert render("text", [], TEXTS) == "no findings\n"
-    assert render("text", [ERROR, ERROR, WARNING, NOTE], TEXTS).endswith("\n2 errors, 1 warning, 1 note in 2 files\n")
+    assert get("text")([], TEXTS) == "no findings\n"
+    assert get("text")([ERROR, ERROR, WARNING, NOTE], TEXTS).endswith("\n2 errors, 1 warning, 1 note in 2 files\n")
 
 
 def test_without_the_text_there_is_no_excerpt():
-    assert render("text", [NOTE], {}).splitlines() == [
+    assert get("text")([NOTE], {}).splitlines() == [
         "a b/größe,1:2.yaml:7:3: note[ICD999]: no such rule",
         "  = help: two\\x0alines",
         "",
@@ -49,9 +49,9 @@ def test_without_the_text_there_is_no_excerpt():
 def test_colour_changes_nothing_but_colour():
     import re
 
-    coloured = render("text", [ERROR, WARNING, NOTE], TEXTS, colour=True)
+    coloured = get("text")([ERROR, WARNING, NOTE], TEXTS, colour=True)
     assert "\x1b[1;31m^^^^^^^^^^^^\x1b[0m" in coloured
-    assert re.sub("\x1b\\[[0-9;]*m", "", coloured) == render("text", [ERROR, WARNING, NOTE], TEXTS)
+    assert re.sub("\x1b\\[[0-9;]*m", "", coloured) == get("text")([ERROR, WARNING, NOTE], TEXTS)
 
 
 def test_tabs_become_blanks_in_the_line_and_before_the_caret():
@@ -87,7 +87,7 @@ def test_the_caret_is_under_its_character_wherever_the_window_is(column):
 
 def test_a_place_past_the_end_of_its_line_or_file_does_no_harm():
     assert shown(6, 50, 3) == ["last", "    ^"]
-    assert render("text", [Finding("ICD001", "wrong", Place("icd/demo.yaml", 99))], TEXTS).count("\n") == 3
+    assert get("text")([Finding("ICD001", "wrong", Place("icd/demo.yaml", 99))], TEXTS).count("\n") == 3
 
 
 def test_lines_end_where_yaml_ends_them():
@@ -98,13 +98,13 @@ def test_lines_end_where_yaml_ends_them():
 def test_nothing_in_an_icd_can_act_upon_the_terminal():
     hostile = "\x1b[2J\x07\u202e\u2066\r\n\x00\x9b"
     finding = Finding("ICD020", hostile, Place(f"a{hostile}", 1, 1, 3), hostile)
-    text = render("text", [finding], {f"a{hostile}": hostile * 5})
+    text = get("text")([finding], {f"a{hostile}": hostile * 5})
     assert not set(text) & set(hostile) - {"[", "2", "J", "\n"}
     assert printable(hostile) == "\\x1b[2J\\x07\\u202e\\u2066\\x0d\\x0a\\x00\\x9b"
 
 
 def test_a_message_of_ten_thousand_characters_is_cut():
-    assert len(render("text", [ERROR._replace(message="x" * 10_000)], TEXTS)) < 1_500
+    assert len(get("text")([ERROR._replace(message="x" * 10_000)], TEXTS)) < 1_500
 
 
 @given(

@@ -7,7 +7,9 @@
 int main(int argc, char **argv)
 {
     static const uint8_t digits[] = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
+    static uint16_t table[256];
     icd_crc_form_t form = {0};
+    icd_crc_form_t zero = {0};
     icd_crc_t crc;
     if (argc != 7) {
         return 2;
@@ -21,6 +23,16 @@ int main(int argc, char **argv)
     icd_crc_init(&crc, &form);
     icd_crc_feed(&crc, digits, 4);
     icd_crc_feed(&crc, digits + 4, 5);
+    if (icd_crc_result(&crc) != icd_crc(&form, digits, sizeof digits)) {
+        return 1;
+    }
+    zero.width = form.width;
+    zero.polynomial = form.polynomial;
+    for (unsigned i = 0; i < 256u; ++i) {
+        const uint8_t byte = (uint8_t)i;
+        table[i] = (uint16_t)icd_crc(&zero, &byte, 1);
+    }
+    form.table = form.width <= 16u ? table : NULL; /* its rows have 16 bits */
     if (icd_crc_result(&crc) != icd_crc(&form, digits, sizeof digits)) {
         return 1;
     }

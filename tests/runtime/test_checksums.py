@@ -10,6 +10,9 @@ from typing import NamedTuple
 
 import pytest
 
+from icdgen.backends.c import links
+from icdgen.protocol import crc
+from icdgen.protocol.sections import Crc
 from tests.conftest import ROOT
 from tests.rust.tools import Toolchain, run
 
@@ -31,6 +34,10 @@ class Catalogued(NamedTuple):
 
 
 CATALOGUE = [
+    Catalogued("CRC-3/GSM", 3, 0x3, 0x0, 0, 0, 0x7, 0x4),
+    Catalogued("CRC-5/EPC-C1G2", 5, 0x09, 0x09, 0, 0, 0x00, 0x00),
+    Catalogued("CRC-5/USB", 5, 0x05, 0x1F, 1, 1, 0x1F, 0x19),
+    Catalogued("CRC-7/MMC", 7, 0x09, 0x00, 0, 0, 0x00, 0x75),
     Catalogued("CRC-8/SMBUS", 8, 0x07, 0x00, 0, 0, 0x00, 0xF4),
     Catalogued("CRC-8/MAXIM-DOW", 8, 0x31, 0x00, 1, 1, 0x00, 0xA1),
     Catalogued("CRC-8/I-432-1", 8, 0x07, 0x00, 0, 0, 0x55, 0xA1),
@@ -55,6 +62,17 @@ def test_python(one):
     command = [sys.executable, "-B", "-c", code, json.dumps(one[1:7])]
     done = subprocess.run(command, cwd=RUNTIME / "python", check=True, capture_output=True, text=True)
     assert int(done.stdout) == one.check
+
+
+@pytest.mark.parametrize("one", CATALOGUE, ids=lambda one: one.name)
+def test_the_reference(one):
+    assert crc.compute(Crc(*one[1:4], bool(one.reflect_in), bool(one.reflect_out), one.xor_out), DIGITS) == one.check
+
+
+@pytest.mark.parametrize("width, polynomial", [(3, 0x3), (7, 0x09), (12, 0x80F), (32, 0x04C11DB7)])
+def test_the_tables_of_generated_c(width, polynomial):
+    plain = Crc(width, polynomial, 0, False, False, 0)
+    assert links.crc_table(plain) == [crc.compute(plain, bytes([byte])) for byte in range(256)]
 
 
 @pytest.fixture(scope="module")

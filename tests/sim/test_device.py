@@ -260,6 +260,9 @@ def test_strict_refuses_what_no_enumeration_has():
     ("options", "text"),
     [
         ((), "it is not said which node is meant"),
+        (("--tcp", "0", "--node", "cubeacp", "--set", "146", "roll=1", "pitch"), "`pitch` is not of the form"),
+        (("--tcp", "0", "--node", "cubeacp", "--set", "146", "roll=1", "salt=1"), "has no field `salt`"),
+        (("--tcp", "0", "--node", "cubeacp", "roll=1"), "unexpected extra argument"),
         (("--tcp", "0", "--node", "cubemag"), "does not say how messages of cubemag are framed"),
         (("--tcp", "0"), "it is not said which node is meant"),
         (("--tcp", "0", "--node", "cubeacp", "--fault", "rain=1"), "is no fault"),
@@ -317,7 +320,7 @@ def test_monitor_and_send_from_the_outside():
         assert "Estimated Roll Angle" in table and "1.25  deg" in table
         sent = icdgen("send", "cubeacp", "Set Wheel Speed", "x=1", "y=2", "z=3", "--port", place)
         assert (sent.returncode, sent.stdout) == (0, "Set Wheel Speed: acknowledged\n")
-        refused = icdgen("send", "cubeacp", "Format SD card", "magic=1", "--raw", "--port", place)
+        refused = icdgen("send", "cubeacp", "Format SD card", "magic=1", "--raw", "--yes", "--port", place)
         assert refused.returncode == 1 and "refused: Incorrect Parameter (code 3)" in refused.stderr
         other = icdgen("monitor", "bootloader", "--port", place, "--once")
         assert "the device says node type 10" in other.stderr

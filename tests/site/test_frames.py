@@ -87,6 +87,15 @@ WIRE = {
 }  # fmt: skip
 
 
+def test_an_id_of_several_bytes_comes_off():
+    wire = {"ids": [0x0135], "id": 0x0135, "id_bytes": 2, "crc": []}
+    found = node(
+        "([wire, texts]) => texts.map((text) => [...frames.unwrap(wire, 2, frames.parseHex(text)).data])",
+        [wire, ["01 35 aa bb", "aa bb", "01 36 aa bb", "35 aa bb"]],
+    )
+    assert found == [[0xAA, 0xBB], [0xAA, 0xBB], [0x01, 0x36, 0xAA, 0xBB], [0x35, 0xAA, 0xBB]]
+
+
 @pytest.mark.parametrize("plain_id", [False, True])
 @pytest.mark.parametrize("covers_id", [False, True])
 def test_framing_is_that_of_the_generator(shipped, plain_id, covers_id):

@@ -5,17 +5,20 @@ from __future__ import annotations
 import subprocess
 import sys
 
+from icdgen import backends
 from icdgen.backends.html import usage
 from icdgen.describe import describe
+from icdgen.render import Renderer
 from tests.conftest import ROOT
 from tests.site.conftest import program
 
 GENERATED = ROOT / "generated"
+RENDER = Renderer.of(backends.get("html"))
 
 
 def snippets(icd, key: str) -> list[str]:
     messages = [message for node in describe(icd).nodes for message in node.messages]
-    return [one.text for message in messages for one in usage.snippets(message) if one.key == key]
+    return [one.text for message in messages for one in usage.snippets(message, RENDER) if one.key == key]
 
 
 def indented(text: str, prefix: str = "    ") -> str:
@@ -46,7 +49,7 @@ def test_the_python_of_every_message_runs(shipped, tmp_path):
     parts = ["sent = []", "def send(id, frame): sent.append((id, frame))"]
     for node in describe(shipped).nodes:
         for message in node.messages:
-            text = next(one.text for one in usage.snippets(message) if one.key == "python")
+            text = next(one.text for one in usage.snippets(message, RENDER) if one.key == "python")
             parts += [f"buffer = bytes({message.model.length})", text]
     source = tmp_path / "usage.py"
     source.write_text("\n".join([*parts, "print(len(sent))"]), "utf-8")

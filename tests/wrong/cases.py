@@ -24,4 +24,4 @@ def report(case: Path) -> str:
     """What `icdgen check` prints about it, run in its folder."""
     with chdir(case.parent):
         loaded = load([Path(case.name)])
-    return reports.render("text", loaded.findings, loaded.texts)
+    return reports.get("text")(loaded.findings, loaded.texts)

@@ -23,7 +23,7 @@ def check(tmp_path, monkeypatch):
         path.write_text(text, encoding="utf-8")
         started = time.perf_counter()
         loaded = load([path.relative_to(tmp_path)])
-        printed = reports.render("text", loaded.findings, loaded.texts)
+        printed = reports.get("text")(loaded.findings, loaded.texts)
         assert time.perf_counter() - started < 2
         assert len(printed) < longest
         return [(f.code, f.message) for f in loaded.findings]

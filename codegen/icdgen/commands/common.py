@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TextIO, TypeVar
 
 import click
 
@@ -29,6 +29,21 @@ class _Path(click.Path):
 
 
 PATH = _Path(path_type=Path)
+
+
+class _Seconds(click.FloatRange):
+    """Seconds, up to a day. That neither `nan` nor `inf` is a time, click's range does not notice."""
+
+    name = "seconds"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        seconds: float = click.FLOAT.convert(value, param, ctx)
+        if not 0 <= seconds <= 86400:
+            self.fail(f"{value} is not in the range 0<=x<=86400.", param, ctx)
+        return seconds
+
+
+SECONDS = _Seconds(0, 86400)
 
 
 def known_languages() -> str:
@@ -85,12 +100,27 @@ def load_or_exit(icds: tuple[Path, ...]) -> Loaded:
     return loaded
 
 
+def in_colour(stream: TextIO | None) -> bool:
+    """Whether whoever reads the stream sees colours."""
+    return stream is not None and stream.isatty() and "NO_COLOR" not in os.environ
+
+
+def write_file(path: Path, text: str, help: str) -> None:
+    """Writes a whole file or nothing; a link stays one. Raises `UserError`."""
+    from icdgen.generation.write import replace
+
+    try:
+        replace(Path(os.path.realpath(path)), text.encode("utf-8"))
+    except OSError as error:
+        raise UserError(f"cannot write {path}: {error.strerror}", help) from None
+
+
 def print_findings(findings: list[Finding], texts: dict[str, str], form: str, err: bool = False) -> None:
     """Prints a report in one of ``reports.FORMATS``."""
     from icdgen import reports
 
     stream = sys.stderr if err else sys.stdout
-    colour = form == "text" and stream is not None and stream.isatty() and "NO_COLOR" not in os.environ
+    colour = form == "text" and in_colour(stream)
     report = reports.get(form)
     text = report(findings, texts, colour=True) if colour else report(findings, texts)
     click.echo(text, err=err, nl=bool(text) and not text.endswith("\n"), color=colour or None)

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from icdgen.commands.common import PATH, chosen, print_findings
+from icdgen.commands.common import PATH, chosen, in_colour, print_findings, write_file
 from icdgen.diagnostics import Findings
+from icdgen.diff import reports
 from icdgen.errors import UserError
 
 if TYPE_CHECKING:
     from icdgen.diff.accepted import Acceptance
     from icdgen.diff.report import Report
 
-_FORMATS = ("text", "markdown", "json", "sarif", "github", "html")
 _LAYERS = ("wire", "meaning", "source", "text", "additions")
 
 
@@ -31,7 +31,7 @@ def _asked(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -
 
 @click.command()
 @click.argument("sides", nargs=-1, required=True, metavar="OLD [NEW]")
-@click.option("--format", "form", type=click.Choice(_FORMATS), default="text", show_default=True)
+@click.option("--format", "form", type=click.Choice(reports.FORMATS), default="text", show_default=True)
 @click.option("--out", "-o", type=PATH, help="File to write the report to (default: standard output).")
 @click.option(
     "--fail-on",
@@ -108,17 +108,11 @@ def _acceptances(path: Path | None) -> list[Acceptance]:
 
 def _write(made: Report, form: str, out: Path | None, everything: bool) -> None:
     from icdgen import tables
-    from icdgen.diff import reports
 
     stream = sys.stdout if out is None else None
-    colour = form == "text" and stream is not None and stream.isatty() and "NO_COLOR" not in os.environ
+    colour = form == "text" and in_colour(stream)
     text = reports.get(form)(made, colour, tables.width_of(stream), everything)
     if out is None:
         click.echo(text, nl=False, color=colour or None)
-        return
-    from icdgen.generation.write import replace
-
-    try:
-        replace(out, text.encode("utf-8"))
-    except OSError as error:
-        raise UserError(f"cannot write {out}: {error.strerror}", "name a file in a folder that is there") from None
+    else:
+        write_file(out, text, "name a file in a folder that is there")

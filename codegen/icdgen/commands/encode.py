@@ -21,26 +21,29 @@ _FORMAT = click.option("--format", "form", type=click.Choice(["text", "json"]), 
 
 
 @click.command()
-@click.argument("node")
-@click.argument("message")
-@click.argument("assignments", nargs=-1, metavar="[FIELD=VALUE]...")
+@click.argument("words", nargs=-1, required=True, metavar="[NODE] MESSAGE [FIELD=VALUE]...")
 @icd_option
 @_KIND
 @_FORMAT
 @click.option("--raw", is_flag=True, help="Values are raw values, and are not held against limits.")
 def encode(
-    node: str,
-    message: str,
-    assignments: tuple[str, ...],
+    words: tuple[str, ...],
     icds: tuple[Path, ...],
     kind: str | None,
     form: str,
     raw: bool,
 ) -> None:
-    """Encode a message of NODE from physical values: icdgen encode wheels "Set Speed" x=100 y=-100 z=0."""
+    """Encode a message from physical values.
+
+    For instance: icdgen encode wheels "Set Speed" x=100 y=-100 z=0
+
+    NODE may be left out where there is one only.
+    """
     from icdgen import values
 
-    _print(values.encode(load_or_exit(icds).icd, node, message, list(assignments), raw=raw, kind=kind), form)
+    icd = load_or_exit(icds).icd
+    node, message, assignments = values.find_frame(icd, words)
+    _print(values.encode(icd, node.name, message, assignments, raw=raw, kind=kind), form)
 
 
 def _print(frame: Frame, form: str) -> None:

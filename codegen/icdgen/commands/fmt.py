@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from icdgen.commands.common import chosen, icd_arguments, print_findings, say
+from icdgen.commands.common import chosen, icd_arguments, print_findings, say, write_file
 from icdgen.diagnostics import Findings
 from icdgen.errors import UserError
 
@@ -20,7 +20,6 @@ from icdgen.errors import UserError
 )
 def fmt(icds: tuple[Path, ...], check: bool) -> None:
     """Write ICD files and errata overlays in the canonical layout; comments are kept."""
-    from icdgen.generation.write import replace
     from icdgen.icd import source
     from icdgen.icd.fmt import format_text
 
@@ -43,10 +42,7 @@ def fmt(icds: tuple[Path, ...], check: bool) -> None:
             status = 1
             say(f"{path}: not in the canonical layout")
             continue
-        try:
-            replace(Path(os.path.realpath(path)), formatted.encode("utf-8"))
-        except OSError as error:
-            raise UserError(f"cannot write {path}: {error.strerror}", "make it writable, or use --check") from None
+        write_file(path, formatted, "make it writable, or use --check")
         say(f"{path}: formatted")
     sys.exit(status)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import sys
 from collections.abc import Callable, Iterator
@@ -12,9 +11,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from icdgen.commands.common import PATH, print_findings, say
+from icdgen.commands.common import PATH, in_colour, print_findings, say, write_file
 from icdgen.diagnostics import Findings
-from icdgen.errors import UserError
 
 if TYPE_CHECKING:
     from icdgen.importer.profile import Profile
@@ -119,8 +117,7 @@ def _explore(result: Result, vocabulary: Profile, form: str) -> None:
 def _say(result: Result, dry_run: bool) -> None:
     from icdgen.importer import console
 
-    colour = sys.stdout is not None and sys.stdout.isatty() and "NO_COLOR" not in os.environ
-    if colour:
+    if in_colour(sys.stdout):
         click.echo(console.report(result, True), color=True)
     else:
         say(console.report(result))
@@ -155,13 +152,9 @@ def _refuse(error: Findings, manual: Path, form: str) -> None:
 
 
 def _write_page(page: Path, result: Result) -> None:
-    from icdgen.generation.write import replace
     from icdgen.importer import html
 
-    try:
-        replace(Path(os.path.realpath(page)), html.report(result).encode("utf-8"))
-    except OSError as error:
-        raise UserError(f"cannot write {page}: {error.strerror}", "choose another place with --report") from None
+    write_file(page, html.report(result), "choose another place with --report")
 
 
 def _next_step(result: Result) -> None:

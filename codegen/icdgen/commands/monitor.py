@@ -11,25 +11,27 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from icdgen.commands.common import icd_option, load_or_exit, say
+from icdgen.commands.common import SECONDS, icd_option, load_or_exit, say
 from icdgen.link.options import session_options
 
 if TYPE_CHECKING:
-    from icdgen.link.live import Monitor
+    from icdgen_runtime.wire.session import BusSession
+
+    from icdgen.link.live import Monitor, Screen
+
+_SHORTEST_PAUSE = 0.1  # s between two attempts to reach a line that is gone
 
 
 @click.command()
-@click.argument("node")
-@click.argument("messages", nargs=-1, metavar="[MESSAGE]...")
+@click.argument("words", nargs=-1, metavar="[NODE] [MESSAGE]...")
 @session_options
 @icd_option
-@click.option("--every", type=click.FloatRange(0), default=1.0, show_default=True, help="Seconds between two rounds.")
+@click.option("--every", type=SECONDS, default=1.0, show_default=True, help="Seconds between two rounds.")
 @click.option("--count", type=click.IntRange(1), metavar="N", help="End after N rounds.")
 @click.option("--once", is_flag=True, help="Short for --count 1.")
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 def monitor(
-    node: str,
-    messages: tuple[str, ...],
+    words: tuple[str, ...],
     icds: tuple[Path, ...],
     every: float,
     count: int | None,
@@ -39,49 +41,83 @@ def monitor(
 ) -> None:
     """Show live telemetry of NODE as a table: MESSAGEs by id or name, default the identification.
 
-    Frames that the device sends of its own accord (logs) are shown as well. On a terminal the table stays in its place; in a
-    pipe each round is printed; --format json prints an object for each frame. Exit status: 1 if a frame was not answered in
-    the last round.
+    NODE may be left out where there is one only. Frames that the device sends of its own accord (logs) are shown as well. On a
+    terminal the table stays in its place; in a pipe each round is printed; --format json prints an object for each frame. A line
+    that is lost is taken up again as soon as it is there. Exit status: 1 if a frame was not answered in the last round.
     """
-    from icdgen_runtime.wire.client import Request
-
+    from icdgen import values
     from icdgen.link.live import Monitor, Screen
     from icdgen.link.options import open_session, stranger
+    from icdgen.link.ports import PortError
 
     icd = load_or_exit(icds).icd
-    watched = Monitor(icd, node, messages)
-    rounds = 1 if once else count
-    with open_session(icd, watched.known, **options, on_event=watched.event) as session:
-        strange = stranger(session)
-        if strange:
-            say(f"icdgen: {strange}", err=True)
-        live = form == "text" and sys.stdout is not None and sys.stdout.isatty() and rounds != 1
-        with Screen(watched, live) as screen:
-            number = 0
-            while True:
-                number += 1
-                begin = time.monotonic()
-                for message in watched.messages:
-                    assert message.telemetry_id is not None
-                    watched.took(message, session.start(Request("telemetry", message.telemetry_id)))
-                    screen.show()
-                if form == "json":
-                    _print_json(watched)
-                elif not live:
-                    _print(watched, number)
-                if number == rounds:
-                    break
-                while time.monotonic() < begin + every:
-                    if session.wait((begin + every) * 1000):
-                        screen.show()
+    node, messages = values.find_named(icd, words)
+    watched = Monitor(icd, node.name, messages)
+    rounds = _Rounds(watched, 1 if once else count, every, form)
+    live = form == "text" and sys.stdout is not None and sys.stdout.isatty() and rounds.last != 1
+    reached = lost = False
+    with Screen(watched, live) as screen:
+        while not rounds.over:
+            try:
+                with open_session(icd, watched.known, **options, on_event=watched.event) as session:
+                    reached = True
+                    if strange := stranger(session):
+                        say(f"icdgen: {strange}", err=True)
+                    elif lost:
+                        say("icdgen: the line is back", err=True)
+                    lost = False
+                    while not rounds.over:
+                        rounds.run(session, screen)
+            except PortError as error:
+                if not reached or rounds.last == 1:
+                    raise
+                if not lost:
+                    say(f"icdgen: {error}; trying again", err=True)
+                lost = True
+                rounds.miss(screen)
     sys.exit(1 if watched.silent else 0)
 
 
-def _print(watched: Monitor, number: int) -> None:
-    if number > 1:
-        say("")
-    say(watched.text())
-    sys.stdout.flush()
+class _Rounds:
+    """One after the other, each printed at its end."""
+
+    def __init__(self, watched: Monitor, last: int | None, every: float, form: str) -> None:
+        self.watched, self.last, self.every, self.form = watched, last, every, form
+        self.number = 0
+
+    @property
+    def over(self) -> bool:
+        return self.number == self.last
+
+    def run(self, session: BusSession, screen: Screen) -> None:
+        """Asks for every message, then waits for the next round. Raises `icdgen.link.ports.PortError`."""
+        from icdgen_runtime.wire.client import Request
+
+        end = time.monotonic() + self.every
+        for message in self.watched.messages:
+            assert message.telemetry_id is not None
+            self.watched.took(message, session.start(Request("telemetry", message.telemetry_id)))
+            screen.show()
+        self._print(screen)
+        while not self.over and time.monotonic() < end:
+            if session.wait(end * 1000):
+                screen.show()
+
+    def miss(self, screen: Screen) -> None:
+        """A round without a line, and the pause after it."""
+        self.watched.miss()
+        screen.show()
+        self._print(screen)
+        if not self.over:
+            time.sleep(max(self.every, _SHORTEST_PAUSE))
+
+    def _print(self, screen: Screen) -> None:
+        self.number += 1
+        if self.form == "json":
+            _print_json(self.watched)
+        elif not screen.live:
+            say("\n" * (self.number > 1) + self.watched.text())
+            sys.stdout.flush()
 
 
 def _print_json(watched: Monitor) -> None:

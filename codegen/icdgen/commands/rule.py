@@ -10,8 +10,7 @@ from icdgen.errors import UserError
 @click.command()
 @click.argument("code", required=False)
 def rule(code: str | None) -> None:
-    """Explain a rule with examples; without CODE, list all rules: of ICDs (ICD...), of their changes (DIF...) and of
-    importing manuals (IMP...)."""
+    """Explain the rule CODE with examples; without CODE, list all: of ICDs, of their changes and of importing manuals."""
     from icdgen.diff import rule as of_changes
     from icdgen.diff.compare import RULES
     from icdgen.icd import rules

@@ -10,28 +10,31 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from icdgen.commands.common import icd_option, load_or_exit, say
+from icdgen.errors import UserError
 from icdgen.link.options import session_options
 
 if TYPE_CHECKING:
     from icdgen_runtime.wire.events import Refused, Timeout
 
-    from icdgen.icd.model import Icd, Message, Node
+    from icdgen.icd.model import Icd, Node
+    from icdgen.values.frame import Frame
 
 
 @click.command()
-@click.argument("node")
-@click.argument("message")
-@click.argument("assignments", nargs=-1, metavar="[FIELD=VALUE]...")
+@click.argument("words", nargs=-1, required=True, metavar="[NODE] MESSAGE [FIELD=VALUE]...")
 @session_options
 @icd_option
 @click.option("--raw", is_flag=True, help="Values are raw values, and are not held against limits.")
+@click.option("--yes", "-y", is_flag=True, help="Send also what is dangerous, without asking.")
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
-def send(
-    node: str, message: str, assignments: tuple[str, ...], icds: tuple[Path, ...], raw: bool, form: str, **options: Any
-) -> None:
-    """Send one telecommand to NODE and wait for its acknowledge: icdgen send wheels "Set Speed" x=100 --port tcp://host:4000
+def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, form: str, **options: Any) -> None:
+    """Send one telecommand and wait for its acknowledge.
 
-    Exit status: 0 acknowledged (or sent, if it is never acknowledged), 1 refused or no answer, 2 misuse.
+    For instance: icdgen send wheels "Set Speed" x=100 --port tcp://host:4000
+
+    NODE may be left out where there is one only. What the ICD calls dangerous (its `hazard`) is shown and asked about first;
+    without a terminal to ask on it is only sent with --yes. Exit status: 0 acknowledged (or sent, if it is never acknowledged),
+    1 refused, no answer or not sent, 2 misuse.
     """
     from icdgen_runtime.wire.client import Request
     from icdgen_runtime.wire.events import Done
@@ -41,9 +44,12 @@ def send(
     from icdgen.protocol import facts
 
     icd = load_or_exit(icds).icd
-    found = values.find_node(icd, node)
-    frame = values.encode(icd, node, message, list(assignments), raw=raw, kind="telecommand")
+    found, message, assignments = values.find_frame(icd, words)
+    frame = values.encode(icd, found.name, message, assignments, raw=raw, kind="telecommand")
     assert frame.message.telecommand_id is not None
+    if frame.message.hazard and not yes and not _is_meant(frame):
+        say(f"{frame.message.name}: not sent", err=True)
+        sys.exit(1)
     with open_session(icd, facts.of(icd, found), **options) as session:
         outcome = session.start(Request("telecommand", frame.message.telecommand_id, frame.data))
     ok = isinstance(outcome, Done)
@@ -52,16 +58,41 @@ def send(
         answer = {key: value for key, value in known.items() if value is not None}
         click.echo(json.dumps({"message": frame.message.name, "event": type(outcome).__name__.lower(), **answer}))
     elif isinstance(outcome, Done):
-        say(f"{frame.message.name}: {_done(frame.message)}")
+        say(f"{_sent(frame)}: {_done(frame)}")
     else:
-        say(f"{frame.message.name}: {_failed(icd, found, outcome)}", err=True)
+        say(f"{_sent(frame)}: {_failed(icd, found, outcome)}", err=True)
     sys.exit(0 if ok else 1)
 
 
-def _done(message: Message) -> str:
-    if message.expects_reset:
-        return "sent; the device restarts instead of acknowledging"
-    return "acknowledged" if message.acknowledge else "sent; it is never acknowledged"
+def _is_meant(frame: Frame) -> bool:
+    """Shows what is dangerous and asks. Raises `UserError` where nobody can answer."""
+    from icdgen import tables, values
+
+    hazard = f"{frame.message.name} is dangerous: {frame.message.hazard}"
+    if sys.stdin is None or not sys.stdin.isatty():
+        raise UserError(hazard, "--yes sends it without asking")
+    say(f"{values.to_text(frame, tables.width_of(sys.stderr))}\n{hazard}", err=True)
+    return click.confirm("Send it?", err=True)
+
+
+def _sent(frame: Frame) -> str:
+    """The message, with the constants that nobody typed: magic numbers."""
+    from icdgen.describe.numbers import value_text
+
+    constants = [(row.field, row.raw) for row in frame.rows if row.field.const is not None]
+    said = ", ".join(f"{field.name} {value_text(raw)}" for field, raw in constants if isinstance(raw, int))
+    return f"{frame.message.name} with {said}" if said else frame.message.name
+
+
+def _done(frame: Frame) -> str:
+    message = frame.message
+    if message.acknowledge:
+        return "acknowledged"
+    if not message.expects_reset:
+        return "sent; it is never acknowledged"
+    if wrong := frame.wrong_constants:
+        return f"sent; the device need not restart, for {wrong[0].field.name} {wrong[0].remarks[0]}"
+    return "sent; the device restarts instead of acknowledging"
 
 
 def _failed(icd: Icd, node: Node, outcome: Refused | Timeout) -> str:

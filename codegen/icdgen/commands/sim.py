@@ -14,14 +14,36 @@ from icdgen.errors import UserError
 _PORT = click.IntRange(0, 65535)
 
 
-@click.command()
+class _Sim(click.Command):
+    """``--set MESSAGE A=1 B=2`` is ``--set MESSAGE A=1 --set MESSAGE B=2``, for click's options have as many words each time."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        spread: list[str] = []
+        message = ""
+        for index, word in enumerate(args):
+            if index > 1 and args[index - 2] == "--set":
+                message = args[index - 1]
+            elif word.startswith("-"):
+                message = ""
+            elif message:
+                spread += ["--set", message]
+            spread.append(word)
+        return super().parse_args(ctx, spread)
+
+
+@click.command(cls=_Sim)
 @click.option("--node", "name", help="The program that runs; one that starts another does so after the boot time.")
 @click.option("--pty", is_flag=True, help="Serve on a pseudo-terminal, whose path is printed.")
 @click.option("--tcp", type=_PORT, metavar="PORT", help="Serve on a TCP port; 0 takes a free one, which is printed.")
 @click.option("--udp", type=_PORT, metavar="PORT", help="Serve on a UDP port: each datagram is a piece of the stream.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
 @click.option(
-    "--set", "values", nargs=2, multiple=True, metavar="MESSAGE FIELD=VALUE", help="A value of a frame. Repeatable."
+    "--set",
+    "values",
+    nargs=2,
+    multiple=True,
+    metavar="MESSAGE FIELD=VALUE...",
+    help="Values of a frame, as encode takes them. Repeatable.",
 )
 @click.option("--script", type=PATH, metavar="FILE", help="Values, waves, faults and logs over time, as YAML.")
 @click.option("--file", "files", multiple=True, metavar="TYPE:COUNTER=PATH", help="A file that it has. Repeatable.")

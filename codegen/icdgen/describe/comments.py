@@ -51,7 +51,7 @@ def message_comment(message: Message, log_bit: int | None = None) -> Comment:
     if message.kind == CONFIGURATION:
         ids = f"set by telecommand {message.set_id}, got by telemetry {message.get_id}"
     kind = f"{message.kind}{',' if message.kind == CONFIGURATION else ''}"
-    facts = []
+    facts = [f"Dangerous: {sentence(message.hazard)}"] if message.hazard else []
     if message.expects_reset:
         facts.append("The node restarts instead of acknowledging it.")
     elif not message.acknowledge:

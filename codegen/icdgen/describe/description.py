@@ -68,8 +68,10 @@ class FieldDescription:
     @cached_property
     def constants(self) -> tuple[Constant, ...]:
         """The only valid value, values with a meaning, limits: all by name."""
-        vocabulary = self.message.node.vocabulary
-        return tuple(constants(self.model, self.name, self.physical_name, vocabulary))
+        field, vocabulary = self.model, self.message.node.vocabulary
+        if field.const is None and not field.special and field.limits is None:
+            return ()
+        return tuple(constants(field, self.name, self.physical_name, vocabulary))
 
     @cached_property
     def comment(self) -> Comment:
@@ -171,6 +173,11 @@ class NodeDescription:
         """Whether it is known how its messages travel."""
         return bool(self._description.icd.protocol_of(self.model))
 
+    @property
+    def id_bits(self) -> int:
+        """Those of the set: see `Description.id_bits`."""
+        return self._description.id_bits
+
     @cached_property
     def log_bits(self) -> dict[int, int]:
         """Telemetry id -> the bit of the log mask that selects it."""
@@ -188,10 +195,11 @@ class Description:
         self._nodes = {node.name: NodeDescription(self, node) for node in icd.nodes}
         self.nodes = tuple(self._nodes.values())
 
-    @property
+    @cached_property
     def id_bits(self) -> int:
-        """8 or 16: bits of the integer that holds every id."""
-        return 8 if all(id < 256 for n in self.icd.nodes for m in n.messages for id in m.ids) else 16
+        """8, 16 or 32: bits of the integer that holds every id of the set."""
+        used = (id.bit_length() for node in self.icd.nodes for message in node.messages for id in message.ids)
+        return holding(max((*(node.id_bits for node in self.icd.nodes), *used), default=8))
 
     def node(self, node: str | Node) -> NodeDescription:
         """The description of a node, by its name or of the node itself. Raises `KeyError`."""

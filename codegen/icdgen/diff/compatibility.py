@@ -71,6 +71,8 @@ def _facts(comparison: Comparison) -> tuple[tuple[str, ...], tuple[str, ...]]:
         if change.code in ("DIF120", "DIF121") and change.breaks:
             steps = change.where.section.split(".")
             (logs if any("log" in step for step in steps[1:2]) else wires).append(change.message)
+        elif change.code == "DIF116" and change.breaks:
+            wires.append(change.message)
         elif change.code in ("DIF122", "DIF123"):
             logs.append(change.message)
     return tuple(wires), tuple(logs)

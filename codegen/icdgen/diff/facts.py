@@ -75,9 +75,9 @@ def _inside(value: Any, tree: object, place: Place | None, step: Any) -> tuple[A
 
 def _down(tree: object, step: Any) -> tuple[object, Place | None]:
     if isinstance(tree, Map) and step in tree:
-        return tree[step], tree.values_at.get(step, tree.place)
+        return tree[step], tree.at(step)
     if isinstance(tree, Seq) and isinstance(step, int) and step < len(tree):
-        return tree[step], tree.items_at[step]
+        return tree[step], tree.item_at(step)
     return None, None
 
 

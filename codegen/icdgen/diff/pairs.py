@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from icdgen.diagnostics import Place
 from icdgen.diff.where import Places, Where
@@ -18,6 +18,7 @@ _SHOWN = {"at": ("offset",), "formula": ("scale",), "table": ("source",), "sourc
 
 
 Thing = TypeVar("Thing", bound=Node | Message | Field | Enum | Member)
+Row = TypeVar("Row")
 
 
 @dataclass(eq=False)
@@ -225,6 +226,16 @@ def kind(one: Field) -> str:
     return "unsigned" if one.type in ("uint", "enum", "bool") else one.type
 
 
+def differing(
+    old: Iterable[Row], new: Iterable[Row], key: Callable[[Row], Any]
+) -> Iterator[tuple[Any, Row | None, Row | None]]:
+    """The rows of a list that differ, by their key and in its order; None where a side has no such row."""
+    before, after = ({key(row): row for row in side} for side in (old, new))
+    for one in sorted(before.keys() | after.keys()):
+        if before.get(one) != after.get(one):
+            yield one, before.get(one), after.get(one)
+
+
 def place_of(thing: object, keys: tuple[str, ...]) -> Place | None:
     source = getattr(thing, "source", None)
     return at(source, keys) if isinstance(source, Map) else None
@@ -234,8 +245,8 @@ def at(source: Map, keys: tuple[str, ...]) -> Place:
     """Where the first key stands that is there; the mapping itself if none is."""
     for key in keys:
         for name in (key, *_SHOWN.get(key, ())):
-            if name in source.values_at:
-                return source.values_at[name]
+            if name in source.spots:
+                return source.at(name)
     return source.place
 
 

@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from fractions import Fraction
+from itertools import chain
 from typing import Any, TypeVar
 
-from icdgen.icd import division, formula, model
+from icdgen.icd import division, formula, model, wire_ids
 from icdgen.icd.errata import Applied
 from icdgen.icd.located import Map
 from icdgen.icd.units import STANDARD, Unit
 
 T = TypeVar("T")
+
+_LIMITS = frozenset({"min", "max", "above", "below"})
 
 
 class Scope:
@@ -53,6 +56,7 @@ class Builder:
             summary=head.get("summary", ""),
             byte_order=head["byte_order"],
             bit_order=head["bit_order"],
+            id_bits=head.get("id_bits", wire_ids.DEFAULT_BITS),
             messages=tuple(self.each("messages", self.message)),
             enums=enums,
             node_type=head.get("node_type"),
@@ -107,10 +111,10 @@ class Builder:
             name=item["name"],
             kind=item["kind"],
             length=item["length"],
-            fields=tuple(field for fields in self.each("fields", self.fields, item) for field in fields),
-            id=item.get("id"),
-            set_id=item.get("set_id"),
-            get_id=item.get("get_id"),
+            fields=tuple(chain.from_iterable(self.each("fields", self.fields, item))),
+            id=_id(item, "id"),
+            set_id=_id(item, "set_id"),
+            get_id=_id(item, "get_id"),
             identifier=item.get("identifier"),
             group=item.get("group", ""),
             table=where.get("table"),
@@ -118,6 +122,7 @@ class Builder:
             summary=item.get("summary", ""),
             acknowledge=item.get("acknowledge", True) is True,
             expects_reset=item.get("acknowledge") == "reset",
+            hazard=item.get("hazard", ""),
             assumptions=tuple((key, str(why)) for key, why in (item.get("assumptions") or {}).items()),
             contains=tuple(self.each("contains", lambda p: model.Part(p["message"], p["at"]), item)),
             node=self.name,
@@ -127,7 +132,9 @@ class Builder:
 
     def fields(self, item: Map) -> tuple[model.Field, ...]:
         """The field, or the parts that it is divided into."""
-        parts = division.parts_of(item) if "bitfields" in item else []
+        if "bitfields" not in item:
+            return (self.field(item),)
+        parts = division.parts_of(item)
         orders = self.tree["node"]["byte_order"], self.tree["node"]["bit_order"]
         if not parts or any(id(p) in self.broken for p in parts) or any(division.obstacles(item, *orders)):
             return (self.field(item),)
@@ -156,7 +163,7 @@ class Builder:
             formula=get("formula", ""),
             scale=scale(get("formula")) if kind in ("uint", "int") else None,
             const=get("const"),
-            special=tuple(self.each("special", lambda s: model.Special(s["value"], s["meaning"]), item)),
+            special=tuple(self.each("special", special, item)) if "special" in item else (),
             limits=limits(item),
             summary=get("summary", ""),
             errata=self.applied.about(item),
@@ -165,10 +172,14 @@ class Builder:
 
     def loggable(self, item: Map) -> model.Loggable:
         errata = self.applied.about(item)
-        return model.Loggable(item["bit"], item["id"], item.get("name", ""), errata, item)
+        return model.Loggable(item["bit"], wire_ids.number(item["id"]), item.get("name", ""), errata, item)
 
     def missing(self, item: Map) -> model.Missing:
-        return model.Missing(item["kind"], item["id"], item["name"], item["why"])
+        return model.Missing(item["kind"], wire_ids.number(item["id"]), item["name"], item["why"])
+
+
+def _id(item: Map, key: str) -> int | None:
+    return wire_ids.number(item[key]) if key in item else None
 
 
 def scale(text: str | None) -> formula.Scale | None:
@@ -181,10 +192,16 @@ def scale(text: str | None) -> formula.Scale | None:
         return None
 
 
+def special(item: Map) -> model.Special:
+    """A value with a meaning."""
+    return model.Special(item["value"], item["meaning"])
+
+
 def limits(item: Map) -> model.Limits | None:
     """The limits of a field, exact: 0.1 is one tenth."""
-    found = {key: exact(item[key]) for key in ("min", "max", "above", "below") if key in item}
-    return model.Limits(**found) if found else None
+    if _LIMITS.isdisjoint(item):
+        return None
+    return model.Limits(**{key: exact(item[key]) for key in _LIMITS & item.keys()})
 
 
 def exact(number: int | float) -> Fraction:

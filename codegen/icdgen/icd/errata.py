@@ -24,7 +24,8 @@ class Applied:
 
     def about(self, item: object) -> tuple[Erratum, ...]:
         """The entries, then the notes, that concern the object read from this mapping."""
-        return tuple(sorted(self.of.get(id(item), ()), key=lambda erratum: erratum.is_note))
+        found = self.of.get(id(item))
+        return tuple(sorted(found, key=lambda erratum: erratum.is_note)) if found else ()
 
 
 def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> Applied:
@@ -85,7 +86,7 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
                 named.forget()
             applied.of.setdefault(id(target), []).append(erratum)
             codes = entry.get("accept") or Seq(entry.place)
-            for code, place in zip(codes, codes.items_at, strict=True):
+            for code, place in codes.placed():
                 applied.accepts.append((code, place, target, erratum.id, target.place))
     if wildcard and matched != entry.get("places"):
         expected = entry.get("places")
@@ -196,8 +197,8 @@ def _change(target: Map, held: Map, entry: Map) -> None:
             target.pop(key, None)
         else:
             target[key] = value
-            target.keys_at.setdefault(key, target.place)
-            target.values_at[key] = held.at(key)
+            key_spot = target.spots[key][0] if key in target.spots else target.spot
+            target.spots[key] = key_spot, held.spots[key][1]
 
 
 def _stale(entry: Map, target: Map, printed: Map) -> Finding:

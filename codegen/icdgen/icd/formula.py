@@ -25,6 +25,10 @@ class Scale(NamedTuple):
     factor: Fraction
     offset: Fraction = Fraction(0)
 
+    def __hash__(self) -> int:
+        factor, offset = self  # a fraction's own hash is a modular inverse
+        return hash((factor.numerator, factor.denominator, offset.numerator, offset.denominator))
+
     def physical(self, raw: int | Fraction) -> Fraction:
         a, b = self.factor, self.offset  # put together in one step: it is done for each value of each vector
         top = raw.numerator * a.numerator * b.denominator + b.numerator * a.denominator * raw.denominator

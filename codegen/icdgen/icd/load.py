@@ -152,7 +152,7 @@ class _Loader:
         for index, item in enumerate(items):
             if not isinstance(item, str):
                 continue
-            place = items.items_at[index]
+            place = items.item_at(index)
             problem = self.include_problem(item, path, stack)
             if problem:
                 self.findings.append(Finding(INCLUDE, problem[0], place, problem[1]))

@@ -2,34 +2,77 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, Protocol
 
 from icdgen.diagnostics import Place
 
 
+class Mark(Protocol):
+    """A point in the text, as the reader of YAML gives it; all count from 0."""
+
+    index: int
+    line: int
+    column: int
+
+
+Spot = Place | tuple[str, Mark, Mark]
+"""Where something stood: the place, or what it is worked out from (file, beginning, end) once it is asked for: few are."""
+
+
+def place_of(spot: Spot) -> Place:
+    """The place that a spot is."""
+    if isinstance(spot, Place):
+        return spot
+    file, start, end = spot
+    length = end.column - start.column if end.line == start.line else 1
+    return Place(file, start.line + 1, start.column + 1, max(length, 1))
+
+
 class Map(dict[str, Any]):
-    """A mapping; ``place`` is where it starts, ``keys_at`` and ``values_at`` give the place of each key and value."""
+    """A mapping; ``spots`` has where each key and its value stood, those that an erratum took away included."""
 
-    __slots__ = ("place", "keys_at", "values_at")
+    __slots__ = ("spot", "spots")
 
-    def __init__(self, place: Place) -> None:
-        self.place = place
-        self.keys_at: dict[str, Place] = {}
-        self.values_at: dict[str, Place] = {}
+    def __init__(self, spot: Spot) -> None:
+        self.spot = spot
+        self.spots: dict[str, tuple[Spot, Spot]] = {}
+
+    @property
+    def place(self) -> Place:
+        """Where the mapping starts."""
+        return place_of(self.spot)
+
+    def key_at(self, key: str) -> Place:
+        """Where ``key`` stands."""
+        return place_of(self.spots[key][0])
 
     def at(self, key: str) -> Place:
         """Where the value of ``key`` stands; the mapping itself if it has no such key."""
-        return self.values_at.get(key, self.place)
+        return place_of(self.spots[key][1] if key in self.spots else self.spot)
 
 
 class Seq(list[Any]):
-    """A sequence; ``items_at`` gives the place of each item."""
+    """A sequence; ``spots`` has where each item stood."""
 
-    __slots__ = ("place", "items_at")
+    __slots__ = ("spot", "spots")
 
-    def __init__(self, place: Place) -> None:
-        self.place = place
-        self.items_at: list[Place] = []
+    def __init__(self, spot: Spot) -> None:
+        self.spot = spot
+        self.spots: list[Spot] = []
+
+    @property
+    def place(self) -> Place:
+        """Where the sequence starts."""
+        return place_of(self.spot)
+
+    def item_at(self, index: int) -> Place:
+        """Where the item of this index stands."""
+        return place_of(self.spots[index])
+
+    def placed(self) -> Iterator[tuple[Any, Place]]:
+        """Each item and where it stands."""
+        return zip(self, map(place_of, self.spots), strict=True)
 
 
 _UNREAD = Map(Place(""))

@@ -152,6 +152,7 @@ class Message:
     summary: str = ""
     acknowledge: bool = True
     expects_reset: bool = False  # not acknowledged because the node restarts instead
+    hazard: str = ""  # what is lost, or cannot be undone, once it is sent
     assumptions: tuple[tuple[str, str], ...] = ()  # key and reason of what is assumed
     contains: tuple[Part, ...] = ()
     node: str = ""  # name of the node that declares it
@@ -218,6 +219,7 @@ class Node:
     errata: tuple[Erratum, ...] = ()  # all entries of its overlay, in order, then all notes
     digest: str = ""  # SHA-256 over the file, its overlay and what it includes
     file: str = ""
+    id_bits: int = 8  # of every id that it speaks; sent as whole bytes, the most significant first
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
 

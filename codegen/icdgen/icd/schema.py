@@ -61,7 +61,7 @@ def _locate(tree: Map, path: list[Any]) -> tuple[Map, Map, Place]:
     holder, owner, place = tree, tree, tree.place
     for step in path:
         holder = owner
-        place = node.items_at[step] if isinstance(node, Seq) else node.at(step)
+        place = node.item_at(step) if isinstance(node, Seq) else node.at(step)
         node = node[step]
         if isinstance(node, Map):
             owner = node
@@ -84,10 +84,11 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
         return [Finding(CODE, message, place, f"add `{missing}:`" + (f", {hint}" if hint else ""))]
     if name == "additionalProperties":
         known = list(rule.get("properties", {}))
-        return [_unknown_key(key, known, owner.keys_at[key]) for key in kind.unexpected if key in owner.keys_at]
+        return [_unknown_key(key, known, owner.key_at(key)) for key in kind.unexpected if key in owner.spots]
     if name == "type":
         wanted = rule.get("type", "")
-        message = f"{what} must be {_TYPES.get(wanted, wanted)}, not {_describe(error.instance)}"
+        words = " or ".join(_TYPES.get(one, one) for one in ([wanted] if isinstance(wanted, str) else wanted))
+        message = f"{what} must be {words}, not {_describe(error.instance)}"
     elif name in ("enum", "const"):
         message = f"{what} cannot be {_describe(error.instance)}"
         help = remedies.of_value(str(path[-1]) if path else "", error.instance) or help
@@ -102,6 +103,8 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
         message = f"{what} cannot be {_describe(error.instance)}"
     elif name in ("minItems", "minProperties"):
         message = f"{what} is empty"
+    elif name == "maxItems":
+        message = f"{what} has more than {rule[name]} entries"
     elif name == "dependentRequired":
         message = f"{what} lacks a key that another of its keys needs"
         help = "`held` needs `printed`, and `printed` needs `where`"

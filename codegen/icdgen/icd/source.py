@@ -11,9 +11,7 @@ from pathlib import Path
 from typing import Any, Protocol, cast
 
 from icdgen.diagnostics import Finding, Findings, Place
-from icdgen.icd.located import Map, Seq
-
-_new = tuple.__new__  # places are made by the ten thousand, and `Place(...)` takes three times as long
+from icdgen.icd.located import Map, Mark, Seq, Spot, place_of
 
 MAX_BYTES = 4_000_000
 MAX_DEPTH = 40
@@ -77,14 +75,6 @@ def parse(data: bytes, name: str) -> Map:
     return tree
 
 
-class Mark(Protocol):
-    """A place in the text; all count from 0."""
-
-    index: int
-    line: int
-    column: int
-
-
 class Event(Protocol):
     """A YAML event: what all have, and what scalars and openings of containers have beside it."""
 
@@ -123,8 +113,8 @@ class _Builder:
         roots = Seq(Place(self.name))
         container: Any = roots  # what is being filled
         key: str | None = None  # of a mapping, whose value comes next
-        key_at: Any = None
-        stack: list[tuple[Any, str | None, Any]] = []  # those around it
+        key_spot: Spot = roots.spot
+        stack: list[tuple[Any, str | None, Spot]] = []  # those around it
         name, known = self.name, self.scalars  # the latter stands for 'not seen yet' too
         next_event = event_parser(self.text).get_event
         try:
@@ -132,12 +122,9 @@ class _Builder:
                 event = next_event()
                 kind = type(event)
                 if kind is events.MappingEndEvent or kind is events.SequenceEndEvent:
-                    container, key, key_at = stack.pop()
+                    container, key, key_spot = stack.pop()
                     continue
-                start, end = event.start_mark, event.end_mark
-                line, column = start.line, start.column
-                length = end.column - column if end.line == line else 1
-                place = _new(Place, (name, line + 1, column + 1, length if length > 0 else 1))
+                spot = name, event.start_mark, event.end_mark
                 value: Any
                 if kind is events.ScalarEvent:
                     plain = not event.style and event.anchor is None and event.tag is None
@@ -148,7 +135,7 @@ class _Builder:
                     if event.anchor is not None:
                         self.refuse_alias(event)
                     self.check_tag(event)
-                    value = (Map if kind is events.MappingStartEvent else Seq)(place)
+                    value = (Map if kind is events.MappingStartEvent else Seq)(spot)
                 elif kind is events.AliasEvent:
                     self.refuse_alias(event)
                     return None, self.findings
@@ -161,21 +148,20 @@ class _Builder:
                     continue
                 if type(container) is Seq:
                     container.append(value)
-                    container.items_at.append(place)
+                    container.spots.append(spot)
                 elif key is None:
-                    key, key_at = value if type(value) is str else self.key(value, event), place
+                    key, key_spot = value if type(value) is str else self.key(value, event), spot
                 else:
                     if key in container:
-                        self.refuse_twin(key, key_at, container.keys_at[key])
+                        self.refuse_twin(key, place_of(key_spot), container.key_at(key))
                     container[key] = value
-                    container.keys_at[key] = key_at
-                    container.values_at[key] = place
+                    container.spots[key] = key_spot, spot
                     key = None
                 if kind is not events.ScalarEvent:
                     if len(stack) >= MAX_DEPTH:
                         self.add("ICD001", f"nested more than {MAX_DEPTH} deep", event, "an ICD needs five levels")
                         return None, self.findings
-                    stack.append((container, key, key_at))
+                    stack.append((container, key, key_spot))
                     container, key = value, None
         except yaml.YAMLError as error:
             mark = getattr(error, "problem_mark", None)
@@ -246,18 +232,13 @@ class _Builder:
     def refuse_alias(self, event: Event) -> None:
         self.add("ICD001", "anchors and aliases are not part of the format", event, "write the value out")
 
-    def place(self, event: Event) -> Place:
-        start, end = event.start_mark, event.end_mark
-        length = end.column - start.column if end.line == start.line else 1
-        return _new(Place, (self.name, start.line + 1, start.column + 1, length if length > 0 else 1))
-
     def unprintable(self) -> Place:
         """Where the first character stands that YAML does not allow; the beginning if there is none."""
         found = _UNPRINTABLE.search(self.text)
         return _after(self.name, self.text[: found.start()]) if found else Place(self.name)
 
     def add(self, code: str, message: str, event: Event, help: str) -> None:
-        self.findings.append(Finding(code, message, self.place(event), help))
+        self.findings.append(Finding(code, message, place_of((self.name, event.start_mark, event.end_mark)), help))
 
 
 def _after(name: str, before: str) -> Place:

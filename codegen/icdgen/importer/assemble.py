@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from typing import Any
 
+from icdgen.icd.wire_ids import DEFAULT_BITS
 from icdgen.importer import icd_trees, references
 from icdgen.importer.document import Document, Trouble
 from icdgen.importer.parts import NodeParts
@@ -27,7 +28,7 @@ def assemble(document: Document, survey: Survey, profile: Profile, prose: bool =
     for node in nodes:
         references.enums(node, nodes, everything, _runs(survey), survey.troubles)
     for node in nodes:
-        references.complete(node, survey.troubles)
+        references.complete(node, survey.troubles, icd_trees.head(node, document, profile).get("id_bits", DEFAULT_BITS))
     held = [node for node in nodes if node.messages or node.enums or node.logs]
     return {node.name: icd_trees.tree(node, document, profile, prose, survey.troubles) for node in held}
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.units import SPELLINGS, STANDARD
 from icdgen.importer.document import Document, Table, Trouble
 from icdgen.importer.parts import NodeParts
@@ -15,20 +16,9 @@ from icdgen.importer.words import squeezed
 NOT_STATED = "not stated"
 
 
-class Spelled(int):
-    """A number with the way it is written: ``0x5A``."""
-
-    spelling: str
-
-    def __new__(cls, spelling: str) -> Spelled:
-        made = super().__new__(cls, int(spelling, 16) if "x" in spelling.lower() else int(spelling))
-        made.spelling = spelling
-        return made
-
-
 def tree(node: NodeParts, document: Document, profile: Profile, prose: bool, troubles: list[Trouble]) -> dict[str, Any]:
     """The ICD of a node as plain mappings and lists, in the order of the manual."""
-    made: dict[str, Any] = {"icdgen": 1, "node": _head(node, document, profile)}
+    made: dict[str, Any] = {"icdgen": 1, "node": head(node, document, profile)}
     if node.include:
         made["include"] = node.include
     if units := _units(node, troubles):
@@ -61,13 +51,14 @@ def _announced(messages: list[dict[str, Any]]) -> dict[str, str]:
     return made
 
 
-def _head(node: NodeParts, document: Document, profile: Profile) -> dict[str, Any]:
-    head = {"name": node.name, "title": node.title or node.name, **profile.data["node"]}
+def head(node: NodeParts, document: Document, profile: Profile) -> dict[str, Any]:
+    """The section `node` of the ICD."""
+    found = {"name": node.name, "title": node.title or node.name, **profile.data["node"]}
     title = document.title or re.split(r"[/\\]", document.file)[-1]
-    head["source"] = {"document": title}
+    found["source"] = {"document": title}
     if node.words is not None:
-        head |= node.words.head
-    return head
+        found |= node.words.head
+    return found
 
 
 def _source(table: Table) -> dict[str, Any]:

@@ -224,7 +224,17 @@ class Add(Protocol):
     def __call__(self, message: str, place: Place, help: str = ...) -> None: ...
 
 
-_NODE_KEYS = {"name", "title", "summary", "node_type", "interface_version", "byte_order", "bit_order", "source"}
+_NODE_KEYS = {
+    "name",
+    "title",
+    "summary",
+    "node_type",
+    "interface_version",
+    "byte_order",
+    "bit_order",
+    "id_bits",
+    "source",
+}
 _SELECTORS = {"match": list, "tables": list, "group": int, "include": list}
 
 
@@ -241,7 +251,7 @@ def _check(tree: Map, base: dict[str, Any], name: str) -> None:
     known = {*base, "nodes", "name"}
     for key, value in tree.items():
         if key not in known:
-            add(f"unknown key `{key}`", tree.keys_at[key], "known keys: " + ", ".join(sorted(known)))
+            add(f"unknown key `{key}`", tree.key_at(key), "known keys: " + ", ".join(sorted(known)))
         elif key == "nodes":
             _check_nodes(value, tree.at(key), add)
         elif key == "damage":
@@ -272,7 +282,7 @@ def _check_like(value: object, like: object, place: Place, key: str, add: Add) -
             if inner in like:
                 _check_like(item, like[inner], value.at(inner), inner, add)
             else:
-                add(f"unknown key `{inner}`", value.keys_at[inner], "known keys: " + ", ".join(like))
+                add(f"unknown key `{inner}`", value.key_at(inner), "known keys: " + ", ".join(like))
     elif type(value) is not type(like):
         add(f"`{key}` must be {type(like).__name__}", place)
 
@@ -301,7 +311,7 @@ def _check_nodes(value: object, place: Place, add: Add) -> None:
         for key, entry in item.items():
             if key not in _NODE_KEYS and key not in _SELECTORS:
                 names = ", ".join(sorted(_NODE_KEYS | set(_SELECTORS)))
-                add(f"unknown key `{key}`", item.keys_at[key], f"known keys: {names}")
+                add(f"unknown key `{key}`", item.key_at(key), f"known keys: {names}")
             elif key in _SELECTORS and not isinstance(entry, _SELECTORS[key]):
                 add(f"`{key}` must be {'a list' if _SELECTORS[key] is list else 'a number'}", item.at(key))
             elif key == "tables" and (len(entry) != 2 or not all(type(n) is int for n in entry)):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from icdgen.icd.rules.ids import BYTE
+from icdgen.icd.wire_ids import DEFAULT_BITS
 from icdgen.importer.document import DOUBTFUL, Trouble
 from icdgen.importer.parts import NodeParts
 from icdgen.importer.understand import messages
@@ -159,13 +159,15 @@ def _within_reach(node: NodeParts, nodes: list[NodeParts], enum: ReadEnum) -> st
     return enum.name
 
 
-def complete(node: NodeParts, troubles: list[Trouble]) -> None:
+def complete(node: NodeParts, troubles: list[Trouble], id_bits: int = DEFAULT_BITS) -> None:
     """What a message still lacks, and bits that no field covers."""
+    most = (1 << id_bits) - 1
     kept = []
     for message in node.messages:
         title, spot = message.table.title, message.table.spot
-        if not message.lacks and (large := [i for i in message.ids if i is not None and i > BYTE[1]]):
-            message.lacks = f"its id {large[0]} (0x{large[0]:X}) is above {BYTE[1]}, which the ICD format cannot hold"
+        if not message.lacks and (large := [i for i in message.ids if i is not None and i > most]):
+            wider = "in the profile, `node: {id_bits: 16}` makes room"
+            message.lacks = f"its id {large[0]} (0x{large[0]:X}) is above {most}: {wider}"
         if message.lacks:
             if message.lacks != "-":
                 troubles.append(Trouble("IMP037", f"{title}: {message.lacks}", spot, "it was left out", "error"))

@@ -48,6 +48,10 @@ class Monitor:
         else:
             self.silent.add(message.name)
 
+    def miss(self) -> None:
+        """There is no line: nothing was answered."""
+        self.silent = {message.name for message in self.messages}
+
     def event(self, event: Event) -> None:
         """Takes what came unasked: frames of a log."""
         if not isinstance(event, Log):

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 from icdgen import layout, naming
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.layout import Piece
-from icdgen.protocol.facts import Facts, LogBit, need
+from icdgen.protocol.facts import Facts, need
+from icdgen.protocol.sections import LogBit
 
 TIME = "time"
 
@@ -60,7 +62,7 @@ class Plan:
     entry_bytes: int
     seconds: tuple[int, int]
     milliseconds: tuple[int, int]
-    little: bool
+    order: Literal["little", "big"]
     columns: tuple[Column, ...]
 
 
@@ -77,7 +79,7 @@ def plan(icd: Icd, known: Facts, mask: bytes) -> Plan:
         form.frames_at + len(slots) * slot_bytes,
         form.seconds,
         form.milliseconds,
-        known.little,
+        "little" if known.little else "big",
         tuple(_unique(columns)),
     )
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-import queue
-import threading
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from icdgen.errors import UserError
 from icdgen.logfile.columns import TIME, Column, Plan
@@ -52,37 +51,11 @@ def _groups(source: Source, decoder: Decoder, head: int | None, done: Callable[[
 
 def _ahead(items: Iterator[pa.Table]) -> Iterator[pa.Table]:
     """The items, made in a thread, one ahead."""
-    made: queue.Queue[Any] = queue.Queue(maxsize=1)
-    stop = threading.Event()
-
-    def put(item: object) -> None:
-        while not stop.is_set():
-            try:
-                made.put(item, timeout=0.2)
-                return
-            except queue.Full:
-                continue
-
-    def make() -> None:
-        try:
-            for item in items:
-                put(item)
-                if stop.is_set():
-                    return
-            put(None)
-        except BaseException as error:
-            put(error)
-
-    thread = threading.Thread(target=make, daemon=True)
-    thread.start()
-    try:
-        while (item := made.get()) is not None:
-            if isinstance(item, BaseException):
-                raise item
+    with ThreadPoolExecutor(1) as thread:
+        coming = thread.submit(next, items, None)
+        while (item := coming.result()) is not None:
+            coming = thread.submit(next, items, None)
             yield item
-    finally:
-        stop.set()
-        thread.join()
 
 
 class Decoder:
@@ -103,8 +76,8 @@ class Decoder:
         import pyarrow as pa
 
         plan, count = self.plan, len(data) // self.plan.entry_bytes
-        seconds = _whole(data, plan.entry_bytes, plan.seconds[0], plan.seconds[1], plan.little)
-        rest = _whole(data, plan.entry_bytes, plan.milliseconds[0], plan.milliseconds[1], plan.little)
+        seconds = _whole(data, plan.entry_bytes, plan.seconds[0], plan.seconds[1], plan.order == "little")
+        rest = _whole(data, plan.entry_bytes, plan.milliseconds[0], plan.milliseconds[1], plan.order == "little")
         time = pa.array(seconds.astype(np.int64) * 1000 + rest, pa.int64()).cast(self.schema.field(0).type)
         arrays = [time, *(reader.read(data, count) for reader in self.columns)]
         return pa.RecordBatch.from_arrays(arrays, schema=self.schema)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Node
@@ -13,6 +12,7 @@ from icdgen.logfile.columns import Plan, plan
 from icdgen.protocol import facts
 from icdgen.values import find_node
 
+_SAMPLE = 64  # entries by which it is judged whether this is a log
 PIECE = 4 << 20  # bytes that are read at once, about
 
 
@@ -53,7 +53,7 @@ class Source:
 
     def time(self, entry: bytes) -> int:
         """Milliseconds since 1970."""
-        order: Literal["little", "big"] = "little" if self.plan.little else "big"
+        order = self.plan.order
         (at, size), (after, rest) = self.plan.seconds, self.plan.milliseconds
         return int.from_bytes(entry[at : at + size], order) * 1000 + int.from_bytes(entry[after : after + rest], order)
 
@@ -72,6 +72,8 @@ class Source:
         unknown = sum(slot.id is None for slot in self.plan.slots)
         if unknown:
             found.append(f"the mask selects {unknown} bit{'s' * (unknown > 1)} that no frame has")
+        if self.entries and not self.plan.slots:
+            found.append("the mask selects no frame")
         if self.entries > 1 and self.time(self.entry(self.entries - 1)) < self.time(self.entry(0)):
             found.append("the last entry is older than the first")
         return [f"{doubt}; is this a log of {self.plan.node.name}?" for doubt in found]
@@ -107,7 +109,20 @@ def open_log(icd: Icd, node: Node, path: Path) -> Source:
     if len(head) < header:
         raise UserError(f"{path} is no log: it has {size} bytes, the header alone has {header}", "is it whole?")
     mask = head[known.log_file.mask_at : known.log_file.mask_at + known.mask.size]
-    return Source(path, mask, header, size, plan(icd, known, mask))
+    found = Source(path, mask, header, size, plan(icd, known, mask))
+    if why := _impossible(found):
+        raise UserError(f"{path} is no log of {node.name}: {why}", "name a log file as it was downloaded, or --node")
+    return found
+
+
+def _impossible(source: Source) -> str:
+    """Why the file can be no log, however damaged. Raises `icdgen.errors.UserError`."""
+    at, size = source.plan.milliseconds
+    order = source.plan.order
+    some = b"".join(source.pieces(_SAMPLE))
+    entries = range(0, len(some), source.plan.entry_bytes)
+    wrong = sum(int.from_bytes(some[one + at : one + at + size], order) >= 1000 for one in entries)
+    return "its entries have no times, their milliseconds are above 999" if wrong * 2 > len(entries) else ""
 
 
 def _unreadable(path: Path, error: OSError) -> UserError:

@@ -123,7 +123,7 @@ def _broken(events: list[uart.Event]) -> str:
 def _of_body(speakers: Sequence[Speaker], body: bytes) -> Reading:
     found = match.by_id(speakers, body)
     if not found:
-        raise match.why_none(speakers, body[0], body[1:])
+        raise match.why_none(speakers, body)
     one = match.decided(found, f"a frame with id {body[0]}")
     return replace(one, remarks=(f"framing with id {body[0]} removed", *one.remarks))
 
@@ -135,14 +135,14 @@ def _bare(icd: Icd, speakers: Sequence[Speaker], data: bytes, message: Message |
         raise BadLength("there are no bytes", 1, 0, "give a frame")
     with_id, plain = match.by_id(speakers, data), match.by_length(speakers, data)
     if with_id:
-        one = match.decided(with_id, f"{len(data)} bytes that begin with the id {data[0]}")
+        one = match.decided(with_id, f"{len(data)} bytes that begin with the id {with_id[0].id}")
         others = [other for other in plain if other.key != one.key]
         note = [f"without an id in front it could be {match.named(others)}"] if others else []
-        return one.noted(f"id {data[0]} removed", *note)
+        return one.noted(f"id {one.id} removed", *note)
     if plain:
         one = match.decided(plain, f"{len(data)} bytes without an id")
         return replace(one, id=None).noted("found by its length alone")
-    raise match.why_none(speakers, data[0], data[1:])
+    raise match.why_none(speakers, data)
 
 
 def _decoded(icd: Icd, one: Reading) -> Reading:

@@ -81,7 +81,7 @@ def _why_none(speaker: Speaker, packets: list[can.Packet]) -> BadLength | NotFou
         text = f"{missing} of {waiting.count} packets of the message with id {waiting.key[1]} are missing"
         return BadLength(text, waiting.count, len(waiting.packets), "give all packets of the message")
     if event and event.message:
-        return match.why_none([speaker], event.message.id, event.message.data)
+        return match.why_none([speaker], bytes([event.message.id]) + event.message.data)
     text = event.event.replace("_", " ") if event else "no message"
     id = packets[0].id
     return NotFound(

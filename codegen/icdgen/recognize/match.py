@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from icdgen.icd import wire_ids
 from icdgen.icd.model import Message
 from icdgen.protocol import i2c, uart
 from icdgen.protocol.facts import Facts
@@ -33,7 +34,10 @@ def by_length(speakers: Sequence[Speaker], data: bytes) -> list[Reading]:
 
 
 def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
-    id, data, facts = body[0], body[1:], speaker.facts
+    apart, facts = speaker.taken_apart(body), speaker.facts
+    if apart is None:
+        return
+    id, data = apart
     for what, messages in _directions(facts):
         message = messages.get(id)
         read = _with_checksum(speaker, what, id, message, data) if message else None
@@ -82,25 +86,30 @@ def decided(found: Sequence[Reading], of: str) -> Reading:
     return likely[0].noted(f"it can also be {named(others)}") if others else likely[0]
 
 
-def why_none(speakers: Sequence[Speaker], id: int, data: bytes) -> BadLength | NotFound:
-    """What is wrong with an id and bytes that no message has."""
+def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
+    """What is wrong with bytes that begin with an id and that no message has."""
+    apart = [(speaker, both) for speaker in speakers if (both := speaker.taken_apart(body)) is not None]
     known = {
-        (what, message.node, message.name): (speaker, message)
-        for speaker in speakers
+        (what, message.node, message.name): (speaker, message, id, data)
+        for speaker, (id, data) in apart
         for what, messages in _directions(speaker.facts)
         if (message := messages.get(id))
     }
+    names = ", ".join(dict.fromkeys(speaker.node.name for speaker in speakers))
+    if not apart:
+        size = min(wire_ids.size(speaker.node.id_bits) for speaker in speakers)
+        return BadLength(f"an id of {names} has {size} bytes, {len(body)} given", size, len(body), "bytes are missing")
     if not known:
-        names = ", ".join(dict.fromkeys(speaker.node.name for speaker in speakers))
-        return NotFound(f"no message of {names} has the id {id} (0x{id:02X})", "`icdgen show NODE` lists what there is")
-    for speaker, message in known.values():
+        ids = " or ".join(dict.fromkeys(f"{id} (0x{id:02X})" for _, (id, _) in apart))
+        return NotFound(f"no message of {names} has the id {ids}", "`icdgen show NODE` lists what there is")
+    for speaker, message, id, data in known.values():
         right = checksum(speaker.facts, id, message, data)
         if right is not None:
             return wrong_checksum(message, right, data)
-    told = " or ".join(f"`{m.name}` ({describe(m)}) has {m.length} bytes" for _, m in known.values())
-    expected = next(iter(known.values()))[1].length
+    told = " or ".join(f"`{m.name}` ({describe(m)}) has {m.length} bytes" for _, m, _, _ in known.values())
+    _, first, id, data = next(iter(known.values()))
     return BadLength(
-        f"{told}, {len(data)} given after the id {id}", expected, len(data), "bytes are missing, or too many"
+        f"{told}, {len(data)} given after the id {id}", first.length, len(data), "bytes are missing, or too many"
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
 from icdgen.protocol.facts import Facts
 from icdgen.values.find import KINDS, describe
@@ -18,6 +19,11 @@ class Speaker:
 
     node: Node
     facts: Facts
+
+    def taken_apart(self, body: bytes) -> tuple[int, bytes] | None:
+        """The id that bytes begin with, and the rest; None if there are too few."""
+        size = wire_ids.size(self.node.id_bits)
+        return (wire_ids.number(body[:size]), body[size:]) if len(body) >= size else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +64,7 @@ class Reading:
     @property
     def has_wrong_constant(self) -> bool:
         """Whether a field that has a constant holds something else."""
-        rows = self.frame.rows if self.frame else ()
-        return any(row.field.const is not None and row.raw != row.field.const for row in rows)
+        return self.frame is not None and bool(self.frame.wrong_constants)
 
     def noted(self, *remarks: str) -> Reading:
         """The same, with further remarks."""

@@ -15,23 +15,10 @@ class Report(Protocol):
     def __call__(self, findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str: ...
 
 
-FORMATS = {
-    "text": "icdgen.reports.text",
-    "json": "icdgen.reports.json",
-    "github": "icdgen.reports.github",
-    "sarif": "icdgen.reports.sarif",
-}
+FORMATS = ("text", "json", "github", "sarif")
 
 
 def get(name: str) -> Report:
-    """The function ``report`` of a format. Raises `KeyError` for a name that is not in `FORMATS`."""
-    report: Report = import_module(FORMATS[name]).report
+    """The function ``report`` of a format, which is one of `FORMATS`."""
+    report: Report = import_module(f"{__name__}.{name}").report
     return report
-
-
-def render(name: str, findings: Iterable[Finding], texts: Mapping[str, str], colour: bool = False) -> str:
-    """The findings in a format. ``texts`` maps file names to what the files hold; only "text" knows ``colour``.
-
-    Raises `KeyError` for a name that is not in `FORMATS`.
-    """
-    return get(name)(findings, texts, colour)

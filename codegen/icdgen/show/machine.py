@@ -7,6 +7,7 @@ from pathlib import Path
 
 from icdgen.describe.bounds import bounds
 from icdgen.icd.model import Enum, Erratum, Field, Icd, Limits, Loggable, Message, Node
+from icdgen.icd.wire_ids import DEFAULT_BITS
 
 FORMAT = 1
 SCHEMA = Path(__file__).parent.with_name("show.schema.json")
@@ -29,6 +30,7 @@ def _node(node: Node) -> _Object:
         interface_version=node.interface_version,
         byte_order=node.byte_order,
         bit_order=node.bit_order,
+        id_bits=node.id_bits if node.id_bits != DEFAULT_BITS else None,
         document=dict(node.document),
         vocabulary=list(node.vocabulary),
         units=[_present(**unit._asdict()) for unit in node.units],
@@ -59,6 +61,7 @@ def _message(message: Message) -> _Object:
         page=message.page,
         summary=message.summary,
         acknowledge=None if message.acknowledge else "reset" if message.expects_reset else False,
+        hazard=message.hazard,
         contains=[{"message": part.message, "offset": part.at} for part in message.contains],
         **_ids(message.errata),
     ) | {"fields": [_field(f) for f in message.fields]}

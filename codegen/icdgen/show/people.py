@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from icdgen.describe.errata import errata_of_enum, errata_of_message
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Erratum, Icd, Message, Node
+from icdgen.icd.wire_ids import DEFAULT_BITS, size
 from icdgen.show.fields import field_table
 from icdgen.tables import Column, clean, render
 from icdgen.values.errors import NotFound
@@ -72,6 +73,7 @@ def _node(icd: Icd, node: Node, width: int | None, kind: str | None) -> str:
         f"node type {node.node_type}" if node.node_type is not None else "",
         f"interface version {node.interface_version}" if node.interface_version is not None else "",
         f"{node.byte_order}-endian, {node.bit_order}",
+        f"ids of {node.id_bits} bits" if node.id_bits != DEFAULT_BITS else "",
         f"includes {', '.join(node.includes)}" if node.includes else "",
         _count(node),
     ]
@@ -115,7 +117,7 @@ def _one(icd: Icd, node: Node, name: str, width: int | None, kind: str | None) -
 def _message(icd: Icd, message: Message, width: int | None) -> str:
     node = icd.node(message.node)
     facts = [
-        f"{describe(message)} (hex {'/'.join(f'{i:02X}' for i in message.ids)})",
+        f"{describe(message)} (hex {'/'.join(f'{i:0{2 * size(node.id_bits)}X}' for i in message.ids)})",
         f"{message.length} byte{'' if message.length == 1 else 's'}",
         f"table {message.table}" if message.table else "",
         f"page {message.page}" if message.page else "",
@@ -127,6 +129,7 @@ def _message(icd: Icd, message: Message, width: int | None) -> str:
         ),
     ]
     lines = [f"{node.name}: {message.name}", "; ".join(filter(None, facts)), message.summary]
+    lines += [f"Dangerous: {message.hazard}"] if message.hazard else []
     lines += [f"From bit {part.at} it repeats {part.message}." for part in message.contains]
     text = _lines(lines, width)
     table = field_table(message, width)

@@ -18,7 +18,7 @@ from icdgen.sim.line import Line
 from icdgen.sim.values import raw_of
 from icdgen.values import find_field, find_message, find_node
 from icdgen.values.entry import from_physical
-from icdgen.values.errors import NotFound
+from icdgen.values.errors import BadValue, NotFound
 
 Wave = Mapping[str, Any]  # as a script has it
 WAVES = ("sine", "ramp", "steps", "noise")
@@ -82,6 +82,15 @@ class Control:
         if message.name in values.frames:
             values.update(message, {one.name: raw})
 
+    def assign(self, name: str, text: str) -> None:
+        """``FIELD=VALUE`` of a frame. Raises `icdgen.errors.UserError`."""
+        key, equals, value = text.partition("=")
+        if not equals:
+            raise BadValue(
+                f"`{text}` is not of the form field=value", "for instance --set 'Message' speed=100 mode=Run"
+            )
+        self.set(name, key, value)
+
     def say(self, now: int, text: str) -> str:
         """An order as a line of text; the answer. Raises `icdgen.errors.UserError`."""
         try:
@@ -93,10 +102,7 @@ class Control:
         order, rest = words[0], words[1:]
         if order == "set" and len(rest) >= 2:
             for one in rest[1:]:
-                key, equals, value = one.partition("=")
-                if not equals:
-                    raise UserError(f"`{one}` is not of the form field=value")
-                self.set(rest[0], key, value)
+                self.assign(rest[0], one)
         elif order == "fault":
             self.line.faults.faults = [faults.parse(one) for one in rest]
         elif order == "log" and not rest:

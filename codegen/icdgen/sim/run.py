@@ -24,7 +24,7 @@ from icdgen.sim.line import Line
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import File, Storage
 from icdgen.values import find_node, numbers
-from icdgen.values.errors import BadValue
+from icdgen.values.find import is_part
 
 Way = tuple[Any, ...]  # name of a function of `serve`, and what it is given
 
@@ -49,7 +49,7 @@ class Options:
 
 def node_of(icd: Icd, name: str | None) -> Node:
     """The node that is meant; without a name the only one that can be talked to. Raises `icdgen.errors.UserError`."""
-    able = [node for node in icd.nodes if has_protocol(icd, node) and not included(icd, node)]
+    able = [node for node in icd.nodes if has_protocol(icd, node) and not is_part(icd, node)]
     if name is None:
         if len(able) == 1:
             return able[0]
@@ -60,11 +60,6 @@ def node_of(icd: Icd, name: str | None) -> Node:
         text = f"the ICD does not say how messages of {node.name} are framed on a stream of bytes"
         raise UserError(text, "`protocol.uart.framing` says so, see docs/icd-format.md")
     return node
-
-
-def included(icd: Icd, node: Node) -> bool:
-    """Whether the node is only a part of others."""
-    return any(node.name in other.includes for other in icd.nodes)
 
 
 def build(icd: Icd, name: str | None, options: Options) -> tuple[Line, control.Control]:
@@ -78,10 +73,7 @@ def build(icd: Icd, name: str | None, options: Options) -> tuple[Line, control.C
     steps = control.read(options.script, icd, node) if options.script else []
     controlled = control.Control(icd, node, line, steps)
     for message, text in options.values:
-        key, equals, value = text.partition("=")
-        if not equals:
-            raise BadValue(f"`{text}` is not of the form field=value", "for instance --set 'Message' speed=100")
-        controlled.set(message, key, value)
+        controlled.assign(message, text)
     return line, controlled
 
 

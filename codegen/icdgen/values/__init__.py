@@ -8,14 +8,14 @@ from icdgen import codec
 from icdgen.icd.model import Icd
 from icdgen.values.encode import encode
 from icdgen.values.errors import Ambiguous, BadHex, BadLength, BadValue, NotFound
-from icdgen.values.find import KINDS, find_field, find_message, find_node
+from icdgen.values.find import KINDS, find_field, find_frame, find_message, find_named, find_node
 from icdgen.values.frame import Frame, Row, frame
 from icdgen.values.hexadecimal import parse_hex
 from icdgen.values.text import to_text
 
 __all__ = [
     "KINDS", "Ambiguous", "BadHex", "BadLength", "BadValue", "Frame", "NotFound", "Row",
-    "decode", "encode", "find_field", "find_message", "find_node", "parse_hex", "to_text",
+    "decode", "encode", "find_field", "find_frame", "find_message", "find_named", "find_node", "parse_hex", "to_text",
 ]  # fmt: skip
 
 

@@ -37,6 +37,34 @@ def find_node(icd: Icd, name: str) -> Node:
     raise NotFound(f"there is no node `{name}`", _suggest(name, names) or f"nodes: {', '.join(names)}")
 
 
+def is_part(icd: Icd, node: Node) -> bool:
+    """Whether the node is only there to be included in others."""
+    return any(node.name in other.includes for other in icd.nodes)
+
+
+def find_named(icd: Icd, words: Sequence[str]) -> tuple[Node, list[str]]:
+    """The node that the first word names, and the other words; where there is one node only, it need not be named.
+
+    Raises `NotFound`.
+    """
+    if words and words[0].strip().lower() in {node.name for node in icd.nodes}:
+        return find_node(icd, words[0]), list(words[1:])
+    alone = [node for node in icd.nodes if not is_part(icd, node)]
+    if len(alone) == 1:
+        return alone[0], list(words)
+    if words:
+        return find_node(icd, words[0]), []  # says that there is none, and which was probably meant
+    raise NotFound("it is not said which node is meant", f"nodes: {', '.join(node.name for node in alone)}")
+
+
+def find_frame(icd: Icd, words: Sequence[str]) -> tuple[Node, str, list[str]]:
+    """``[NODE] MESSAGE [FIELD=VALUE]...`` taken apart. Raises `NotFound`."""
+    node, rest = find_named(icd, words)
+    if not rest:
+        raise NotFound(f"no message of {node.name} is named", f"`icdgen show {node.name}` lists what there is")
+    return node, rest[0], rest[1:]
+
+
 def find_message(icd: Icd, node_name: str, key: str, kind: str | None = None) -> Message:
     """The message of a node, included ones among them, by id (``146``, ``0x92``), name (in any case) or identifier.
 

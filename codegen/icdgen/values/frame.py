@@ -104,6 +104,11 @@ class Frame:
     rows: tuple[Row, ...]
     remarks: tuple[str, ...] = ()
 
+    @property
+    def wrong_constants(self) -> list[Row]:
+        """Fields that have a constant and hold something else."""
+        return [row for row in self.rows if row.field.const is not None and row.raw != row.field.const]
+
     def to_json(self) -> dict[str, object]:
         """``{"node", "message", "kind", "id" or "set_id" and "get_id", "length", "bytes", "fields": [...]}``"""
         message = self.message

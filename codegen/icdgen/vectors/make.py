@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import struct
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 from icdgen import codec
-from icdgen.icd.exact import terms
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Field, Icd, Message, Node
 from icdgen.vectors import patterns
-from icdgen.vectors.settings import settings
+from icdgen.vectors.settings import bits_of, settings
 
 FORMAT = 1
 
@@ -66,13 +64,12 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
     """The vectors of one message that ``node`` declares."""
     frames = dict.fromkeys(frame for _, frame in patterns.frames(message))
     whys = {frame: why for why, frame in reversed(list(patterns.frames(message)))}
-    make_row = _Rows(node, message).row
-    rows = [make_row(whys[frame], frame) for frame in frames]
+    rows = [frame_row(node, message, whys[frame], frame) for frame in frames]
     for number, raw in enumerate(patterns.raw_columns(message)):
         frame = codec.encode(node, message, raw)
         if frame not in frames:
             frames[frame] = None
-            rows.append(make_row(f"chosen values {number}", frame))
+            rows.append(frame_row(node, message, f"chosen values {number}", frame))
     scaled = [field for field in message.fields if field.scale]
     return MessageVectors(
         message=message,
@@ -86,28 +83,14 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
 
 def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
     """What the reference codec makes of a frame."""
-    return _Rows(node, message).row(why, frame)
-
-
-class _Rows:
-    """Makes the rows of one message."""
-
-    def __init__(self, node: Node, message: Message) -> None:
-        self.node, self.message = node, message
-        self.scaled = [(field.name, *terms(field.scale)) for field in message.fields if field.scale]
-        self.doubles = struct.Struct(f">{len(self.scaled)}d")
-
-    def row(self, why: str, frame: bytes) -> Row:
-        """The row of a frame."""
-        raw: dict[str, Any] = codec.decode(self.node, self.message, frame)
-        tops = [raw[name] * p + c for name, p, c, _ in self.scaled]
-        physical, doubles = {}, {}
-        # int / int rounds correctly, once
-        bits = self.doubles.pack(*(top / one[3] for top, one in zip(tops, self.scaled, strict=True))).hex()
-        for at, (top, (name, _, _, q)) in enumerate(zip(tops, self.scaled, strict=True)):
-            physical[name] = Fraction(top, q)
-            doubles[name] = bits[16 * at : 16 * at + 16]
-        return Row(why, frame, raw, codec.encode(self.node, self.message, raw), physical, doubles)
+    raw: dict[str, Any] = codec.decode(node, message, frame)
+    physical = {}
+    for field in message.fields:
+        exact = codec.physical(field, raw[field.name])
+        if exact is not None:
+            physical[field.name] = exact
+    doubles = {name: bits_of(codec.to_double(exact)) for name, exact in physical.items()}
+    return Row(why, frame, raw, codec.encode(node, message, raw), physical, doubles)
 
 
 def _default(field: Field) -> int | bytes:

@@ -7,6 +7,7 @@
  * @file
  * Copy Program to Internal Flash: telecommand 103, 2 bytes. Table 67.
  * Only the program in internal flash can be executed.
+ * Dangerous: The program in internal flash is replaced, and with the overwrite flag the bootloader itself.
  */
 
 #include "../icdgen.h"

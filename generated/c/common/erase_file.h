@@ -7,6 +7,7 @@
  * @file
  * Erase File: telecommand 108, 3 bytes. Table 15.
  * Deletes one file of the SD card or all of them. Erasing all takes some time: see SD card format/erase progress.
+ * Dangerous: The file is lost; all files are with Erase All.
  * @note Note COM-034 (open): Erase File: what the other fields mean with Erase All.
  */
 

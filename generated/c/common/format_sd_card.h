@@ -7,6 +7,7 @@
  * @file
  * Format SD card: telecommand 33, 1 byte. Table 14.
  * Takes some time: SD card format/erase progress tells when it is done.
+ * Dangerous: All files on the SD card are lost.
  */
 
 #include "../icdgen.h"

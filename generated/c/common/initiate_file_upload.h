@@ -7,6 +7,7 @@
  * @file
  * Initiate File Upload: telecommand 114, 2 bytes. Table 19.
  * Erases the destination. Initialize Upload Complete tells when that is done.
+ * Dangerous: The program in the destination is lost.
  * @note Note COM-041 (open): File upload is listed as common but described for the bootloader only.
  */
 

@@ -7,7 +7,8 @@
  * @file
  * Reset: telecommand 1, 1 byte. Table 10.
  * Restarts the CubeComputer.
- * The node restarts instead of acknowledging it.
+ * Dangerous: The program that runs is stopped, and what it has not saved is lost. The node restarts instead of
+ * acknowledging it.
  * @note Note COM-028 (open): The Reset telecommand: acknowledged or not.
  */
 

@@ -6,6 +6,7 @@
 /**
  * @file
  * Deploy Magnetometer Boom: telecommand 7, 1 byte. Table 73.
+ * Dangerous: The boom stays deployed.
  * @note Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
  */
 

@@ -36,6 +36,7 @@ def change_message_words(icd, rng, node, message):
             ("table", (message.table or 0) + 1, "DIF402"),
             ("page", (message.page or 0) + 1, "DIF402"),
             ("group", f"{message.group} and more", "DIF407"),
+            ("hazard", f"{message.hazard} More.".strip(), "DIF401"),
         ]
     )
     return done(with_message(icd, node, message, replace(message, **{key: value})), message.name, code)

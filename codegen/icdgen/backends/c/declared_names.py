@@ -74,19 +74,18 @@ def _message(message: MessageDescription, linked: bool) -> Iterator[Identifier]:
         yield Identifier(FILE, names.constant(message, end), owner, source)
     for end in ("t", "init", "decode", "encode", *(("misfit",) if message.is_narrow else ())):
         yield Identifier(FILE, f"{names.stem(message)}_{end}", owner, source)
+    stem, members = names.stem(message), f"members of {names.stem(message)}_t"
     for field in message.fields:
-        yield from _field(field)
+        owner, source = f"field `{field.model.name}` of `{message.model.name}`", field.model.source
+        yield Identifier(members, field.name, owner, source)
+        for one in field.constants:
+            yield Identifier(FILE, names.constant(message, one.name), owner, source)
+        for end in _physical_names(field) if field.steps is not None else ():
+            yield Identifier(FILE, f"{stem}_{end}", owner, source)
+            yield Identifier(FILE, f"{stem}_set_{end}", owner, source)
 
 
-def _field(field: FieldDescription) -> Iterator[Identifier]:
-    message, stem = field.message, names.stem(field.message)
-    owner, source = f"field `{field.model.name}` of `{message.model.name}`", field.model.source
-    yield Identifier(f"members of {stem}_t", field.name, owner, source)
-    for one in field.constants:
-        yield Identifier(FILE, names.constant(message, one.name), owner, source)
-    if field.steps is None:
-        return
+def _physical_names(field: FieldDescription) -> tuple[str, ...]:
+    """What its accessors are called by: the physical value as a double, and in whole parts of its unit."""
     whole = physical.scaled(field).whole
-    for end in (field.physical_name, *((whole_name(field, whole),) if whole is not None else ())):
-        yield Identifier(FILE, f"{stem}_{end}", owner, source)
-        yield Identifier(FILE, f"{stem}_set_{end}", owner, source)
+    return (field.physical_name,) if whole is None else (field.physical_name, whole_name(field, whole))

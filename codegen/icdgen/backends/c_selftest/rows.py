@@ -14,6 +14,7 @@ from icdgen.describe import FieldDescription, MessageDescription, NodeDescriptio
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from icdgen.vectors import MessageVectors, Row, make
+from icdgen.vectors.ids import worth_asking
 from icdgen.vectors.patterns import values
 from icdgen.vectors.settings import NEVER
 
@@ -88,10 +89,12 @@ class Name(NamedTuple):
 
 
 class Dispatcher(NamedTuple):
-    """A dispatcher and the length of the message under each id."""
+    """A dispatcher and the length of the message under some ids, -1 where there is none."""
 
     name: str
+    id_type: str
     lengths: list[str]
+    id_count: int
 
 
 class EnumRow(NamedTuple):
@@ -140,12 +143,10 @@ class _Rows:
                 yield Name(stem, _unsigned(unknown), "NULL")
 
     def dispatcher(self, direction: str, messages: Iterable[MessageDescription]) -> Dispatcher:
-        lengths = ["-1"] * 256
-        for one in messages:
-            id = getattr(one.model, f"{direction}_id")
-            if id < len(lengths):
-                lengths[id] = str(one.model.length)
-        return Dispatcher(f"{self.node.name}_{direction}", _lines(lengths))
+        lengths = {getattr(one.model, f"{direction}_id"): one.model.length for one in messages}
+        bits = describe(self.icd).id_bits
+        rows = [f"{{{id}u, {lengths.get(id, -1)}}}" for id in worth_asking(lengths, bits)]
+        return Dispatcher(f"{self.node.name}_{direction}", f"uint{bits}_t", _lines(rows), len(rows))
 
     def message(self, message: MessageDescription, vectors: MessageVectors) -> MessageRow:
         length = message.model.length

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from icdgen.backends.html import drawing, fields, plan, sections, texts, wire
 from icdgen.backends.html.examples import examples, frames
@@ -12,10 +12,14 @@ from icdgen.backends.html.usage import names, snippets
 from icdgen.describe import describe
 from icdgen.describe.errata import errata_of_message
 from icdgen.describe.fresh import fresh_values
+from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
 
+if TYPE_CHECKING:
+    from icdgen.render import Renderer
 
-def values(relations: Relations, node: Node, message: Message) -> dict[str, Any]:
+
+def values(relations: Relations, node: Node, message: Message, render: Renderer) -> dict[str, Any]:
     """Values of the page of a message that ``node`` declares."""
     anchors = relations.anchors(message)
     parts = sections.bands(relations, message)
@@ -42,7 +46,7 @@ def values(relations: Relations, node: Node, message: Message) -> dict[str, Any]
         "example_data": message.telemetry_id is not None and bool(data),
         "examples": shown,
         "frames": frames(message, node),
-        "snippets": snippets(describe(relations.icd).message(message)),
+        "snippets": snippets(describe(relations.icd).message(message), render),
         "contains": relations.contains.get((message.node, message.name), []),
         "contained_in": relations.contained_in.get((message.node, message.name), []),
         "errata": errata_of_message(message),
@@ -97,7 +101,7 @@ def _plan(
         "enums": enums,
         "drawings": [picture.plan for picture in pictures],
         "sections": [{"title": f"{s.title}, {s.about}", "keys": s.keys, "open": s.open} for s in shown],
-        "wire": wire.page_facts(message, travels),
+        "wire": {**wire.page_facts(message, travels), "id_bytes": wire_ids.size(node.id_bits)},
     }
 
 

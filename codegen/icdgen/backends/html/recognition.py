@@ -7,6 +7,7 @@ from typing import Any
 
 from icdgen.backends.html import wire
 from icdgen.backends.html.relations import Relations
+from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
 from icdgen.protocol import facts
 
@@ -37,6 +38,7 @@ def _speaker(relations: Relations, node: Node, numbers: dict[tuple[str, str], in
         "title": node.title,
         "telecommands": ids(known.telecommands),
         "telemetry": ids(known.telemetry),
+        "id_bytes": wire_ids.size(node.id_bits),
         "errors": {str(code): key.replace("_", " ") for key, code in known.errors.items()},
     }
     found |= wire.framing_facts(known)

@@ -57,7 +57,7 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
         beside = sidebar.of_node(relations, node, render)
         url = relations.links.node(node.name)
         yield page(url, "node.html.j2", sidebar=beside(url), **nodes.values(relations, node))
-        shown = [messages.values(relations, node, message) for message in node.messages]
+        shown = [messages.values(relations, node, message, render) for message in node.messages]
         for before, one, after in zip([None, *shown], shown, [*shown[1:], None], strict=False):
             yield page(one["url"], "message.html.j2", before=before, after=after, sidebar=beside(one["url"]), **one)
         yield page(relations.links.printed(node.name), "print.html.j2", shown=shown, **nodes.values(relations, node))

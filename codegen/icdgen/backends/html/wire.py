@@ -15,7 +15,8 @@ from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.backends.html.texts import count
 from icdgen.icd.model import Message
-from icdgen.protocol.facts import Can, Facts
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import Can
 
 _SHOWN = 24  # data bytes that are written out
 

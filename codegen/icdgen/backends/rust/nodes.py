@@ -40,7 +40,7 @@ class SumType:
         self.name, self.id_type, self.variants = name, f"u{id_bits}", variants
         self.derives = "Clone, Copy, Debug, PartialEq" + ("" if floats else ", Eq, Hash")
         self.direction = name.lower()
-        self.id_for_error = "id" if id_bits == 16 else "id: u16::from(id)"
+        self.id_for_error = "id" if id_bits == 32 else "id: u32::from(id)"
 
 
 class NodeRow:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.diff.context import Context
 from icdgen.diff.facts import Fact, facts, shown
-from icdgen.diff.pairs import NodePair, place_of
+from icdgen.diff.pairs import NodePair, differing, place_of
 from icdgen.diff.rule import Found, rule
 from icdgen.icd.model import Loggable
 from icdgen.icd.rules.wording import quote
@@ -14,9 +14,10 @@ from icdgen.icd.rules.wording import quote
 LONGEST = 80
 
 
-def _found(pair: NodePair, fact: Fact, text: str) -> Found:
+def _found(pair: NodePair, fact: Fact, said: str) -> Found:
     where = pair.where()._replace(section=fact.path)
     was, now = _short(shown(fact.old)), _short(shown(fact.new))
+    text = f"`{fact.path}` {said.format(was=was, now=now)}"
     return Found(text, (fact.path.rsplit(".", 1)[-1],), was, now, where=where, places=fact.places)
 
 
@@ -28,33 +29,30 @@ def _short(text: str) -> str:
 def fact_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
     for fact in facts(pair.old, pair.new):
         if not fact.is_word and fact.old is not None and fact.new is not None:
-            was, now = _short(shown(fact.old)), _short(shown(fact.new))
-            yield _found(pair, fact, f"`{fact.path}` is {now}, was {was}")
+            yield _found(pair, fact, "is {now}, was {was}")
 
 
 @rule("DIF121", "node", severity="warning")
 def fact_stated(pair: NodePair, ctx: Context) -> Iterator[Found]:
     for fact in facts(pair.old, pair.new):
         if not fact.is_word and (fact.old is None) != (fact.new is None):
-            if fact.new is None:
-                yield _found(pair, fact, f"`{fact.path}` is no longer stated; it was {_short(shown(fact.old))}")
-            else:
-                yield _found(pair, fact, f"`{fact.path}` is stated now: {_short(shown(fact.new))}")
+            yield _found(
+                pair, fact, "is no longer stated; it was {was}" if fact.new is None else "is stated now: {now}"
+            )
 
 
-def _rows(rows: tuple[Loggable, ...]) -> dict[int, Loggable]:
-    return {row.bit: row for row in rows}
+def _mask_bits(pair: NodePair) -> Iterator[tuple[int, Loggable | None, Loggable | None]]:
+    """Bits of the log mask that select another frame, one where there was none, or none any more."""
+    for bit, old, new in differing(pair.old.loggable, pair.new.loggable, lambda row: row.bit):
+        if old is None or new is None or old.id != new.id:
+            yield bit, old, new
 
 
-def _masks(pair: NodePair) -> tuple[dict[int, Loggable], dict[int, Loggable]]:
-    return _rows(pair.old.loggable), _rows(pair.new.loggable)
-
-
-def _mask_bit(pair: NodePair, bit: int, old: Loggable | None, new: Loggable | None, text: str) -> Found:
+def _mask_bit(pair: NodePair, bit: int, old: Loggable | None, new: Loggable | None, said: str) -> Found:
     where = pair.where()._replace(section=f"loggable {bit}")
     places = (place_of(old, ("id",)), place_of(new, ("id",)))
     was, now = (f"telemetry {row.id}" if row else "" for row in (old, new))
-    return Found(text, ("id",), was, now, where=where, places=places)
+    return Found(f"log mask bit {bit} {said}", ("id",), was, now, where=where, places=places)
 
 
 def _frame(row: Loggable) -> str:
@@ -63,23 +61,20 @@ def _frame(row: Loggable) -> str:
 
 @rule("DIF122", "node")
 def mask_bit_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    old, new = _masks(pair)
-    for bit in sorted(old.keys() & new.keys()):
-        if old[bit].id != new[bit].id:
-            text = f"log mask bit {bit} selects {_frame(new[bit])}, selected {_frame(old[bit])}"
-            yield _mask_bit(pair, bit, old[bit], new[bit], text)
+    for bit, old, new in _mask_bits(pair):
+        if old and new:
+            yield _mask_bit(pair, bit, old, new, f"selects {_frame(new)}, selected {_frame(old)}")
 
 
 @rule("DIF123", "node")
 def mask_bit_removed(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    old, new = _masks(pair)
-    for bit in sorted(old.keys() - new.keys()):
-        text = f"log mask bit {bit} no longer selects {_frame(old[bit])}"
-        yield _mask_bit(pair, bit, old[bit], None, text)
+    for bit, old, new in _mask_bits(pair):
+        if old and not new:
+            yield _mask_bit(pair, bit, old, new, f"no longer selects {_frame(old)}")
 
 
 @rule("DIF124", "node", severity="note", addition=True)
 def mask_bit_added(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    old, new = _masks(pair)
-    for bit in sorted(new.keys() - old.keys()):
-        yield _mask_bit(pair, bit, None, new[bit], f"log mask bit {bit} selects {_frame(new[bit])}")
+    for bit, old, new in _mask_bits(pair):
+        if new and not old:
+            yield _mask_bit(pair, bit, old, new, f"selects {_frame(new)}")

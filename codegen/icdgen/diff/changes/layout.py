@@ -10,6 +10,7 @@ from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind, orders
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.wording import bits, some, span, type_of
 from icdgen.icd.rules.wording import count, listing, quote
+from icdgen.icd.wire_ids import size
 
 
 @rule("DIF107", "message")
@@ -113,6 +114,16 @@ def order_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
             text = f"the {key.replace('_', ' ')} of `{pair.new.name}` is {after}, was {before}"
             what = f"{count(len(fields), 'field')} of {count(len(messages), 'message')}"
             yield Found(text, (key,), before, after, (f"Read otherwise, {what}: {some(fields)}.",))
+
+
+@rule("DIF116", "node")
+def id_width_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
+    was, now = pair.old.id_bits, pair.new.id_bits
+    if was != now:
+        text = f"ids of `{pair.new.name}` have {now} bits, had {was}"
+        same = size(was) == size(now)
+        details = () if same else (f"An id is sent as {count(size(now), 'byte')}, was as {count(size(was), 'byte')}.",)
+        yield Found(text, ("id_bits",), str(was), str(now), details, "note" if same else None)
 
 
 @rule("DIF113", "field", when="gone")

@@ -17,7 +17,6 @@ from icdgen.diff.pairs import (
     is_of_another_node,
 )
 from icdgen.diff.rule import Found, rule
-from icdgen.diff.where import Places
 from icdgen.icd.rules.wording import count, listing, quote
 
 MOST = 2  # names that are shown of one language
@@ -136,12 +135,8 @@ def words_split_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
     if renamed:
         text = f"words are split in another way: {count(len(renamed), 'generated name')} of `{pair.new.name}` change"
         was, now = (", ".join(sorted(set(a) - set(b))) for a, b in ((old, new), (new, old)))
-        yield Found(text, ("vocabulary",), was, now, lines(renamed), places=_vocabulary(pair))
-
-
-def _vocabulary(pair: NodePair) -> Places:
-    old, new = pair.old.source, pair.new.source
-    return None if old is None else old.at("vocabulary"), None if new is None else new.at("vocabulary")
+        places = pair.old.source.at("vocabulary"), pair.new.source.at("vocabulary")
+        yield Found(text, ("vocabulary",), was, now, lines(renamed), places=places)
 
 
 @rule("DIF310", "message", "enum")

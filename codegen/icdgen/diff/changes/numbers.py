@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.describe.bounds import KEYS, bounds
 from icdgen.diff.context import Context
-from icdgen.diff.pairs import FieldPair
+from icdgen.diff.pairs import FieldPair, differing
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.similar import same_sense
 from icdgen.diff.wording import formula, number
@@ -28,12 +28,10 @@ def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     old, new = _scales(pair)
     if old == new or _is_turned(old, new):
         return
-    details = []
-    if old.offset == new.offset:
-        ratio = new.factor / old.factor
-        details.append(f"The same bits give {number(ratio)} times the value.")
+    details = (f"The same bits give {number(new.factor / old.factor)} times the value.",)
     text = f"the value of {quote(pair.new.name)} is {formula(new)}, was {formula(old)}"
-    yield Found(text, ("formula", "unit"), formula(old), formula(new), tuple(details))
+    same_offset = old.offset == new.offset
+    yield Found(text, ("formula", "unit"), formula(old), formula(new), details if same_offset else ())
 
 
 @rule("DIF203", "field")
@@ -68,10 +66,9 @@ def const_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 
 @rule("DIF210", "field", severity="warning")
 def special_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    old, new = ({s.value: s.meaning for s in field.special} for field in (pair.old, pair.new))
-    for value in sorted(old.keys() | new.keys()):
-        was, now = old.get(value, ""), new.get(value, "")
-        if was == now or (was and now and same_sense(was, now)):
+    for value, old, new in differing(pair.old.special, pair.new.special, lambda one: one.value):
+        was, now = old.meaning if old else "", new.meaning if new else ""
+        if was and now and same_sense(was, now):
             continue
         said = f"the raw value {value} of {quote(pair.new.name)}"
         if not was:

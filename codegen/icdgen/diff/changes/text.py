@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.diagnostics import Place
 from icdgen.diff.context import Context
 from icdgen.diff.facts import facts, shown
 from icdgen.diff.pairs import (
@@ -14,19 +13,20 @@ from icdgen.diff.pairs import (
     MessagePair,
     NodePair,
     Pair,
+    differing,
     is_of_another_node,
     orders,
     place_of,
 )
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.similar import same_sense
-from icdgen.icd.model import Node
+from icdgen.diff.where import Places
 from icdgen.icd.rules.wording import quote
 
 
 @rule("DIF401", "node", "message", "field", "enum", "member", severity="note")
 def summary_changed(pair: Pair, ctx: Context) -> Iterator[Found]:
-    for key in ("summary", "title"):
+    for key in ("summary", "title", "hazard"):
         old, new = getattr(pair.old, key, ""), getattr(pair.new, key, "")
         if old != new:
             verb = "is new" if not old else "is gone" if not new else "says otherwise"
@@ -78,29 +78,27 @@ def parts_said_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
 
 @rule("DIF409", "node", severity="note")
 def missing_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    old, new = ({(m.kind, m.id): m for m in side.missing} for side in (pair.old, pair.new))
-    for key in sorted(old.keys() | new.keys()):
-        was, now = old.get(key), new.get(key)
-        either = now or was
-        if was != now and either is not None:
-            what = f"{key[0]} {key[1]} {quote(either.name)}"
-            verb = "is missing from the manual" if was is None else "is no longer missing" if now is None else ""
-            text = f"{what} {verb or 'is missing for another reason'}"
-            places = _section(pair.old, "missing"), _section(pair.new, "missing")
-            yield Found(text, (), was.why if was else "", now.why if now else "", places=places)
+    for key, was, now in differing(pair.old.missing, pair.new.missing, lambda one: (one.kind, one.id)):
+        verb = _verb(was, now, "is missing from the manual", "is no longer missing", "is missing for another reason")
+        name = now.name if now else was.name if was else ""
+        text = f"{key[0]} {key[1]} {quote(name)} {verb}"
+        yield Found(text, (), was.why if was else "", now.why if now else "", places=_sections(pair, "missing"))
 
 
-def _section(side: Node, key: str) -> Place | None:
-    return side.source.at(key) if side.source is not None else None
+def _verb(was: object, now: object, come: str, gone: str, changed: str) -> str:
+    return come if was is None else gone if now is None else changed
+
+
+def _sections(pair: NodePair, key: str) -> Places:
+    return pair.old.source.at(key), pair.new.source.at(key)
 
 
 @rule("DIF411", "node", severity="note")
 def order_restated(pair: NodePair, ctx: Context) -> Iterator[Found]:
     if orders(pair.old) == orders(pair.new):
         return
-    for message in pair.messages:
-        if any(not one.same_bits for one in message.kept):
-            return
+    if any(not one.same_bits for message in pair.messages for one in message.kept):
+        return
     was, now = (" ".join(orders(side)) for side in (pair.old, pair.new))
     text = f"the order of bytes and bits of `{pair.new.name}` is stated otherwise, no field is read otherwise"
     yield Found(text, ("byte_order", "bit_order"), was, now)
@@ -108,13 +106,10 @@ def order_restated(pair: NodePair, ctx: Context) -> Iterator[Found]:
 
 @rule("DIF412", "field", severity="note")
 def special_respelled(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    old, new = ({s.value: s.meaning for s in field.special} for field in (pair.old, pair.new))
-    for value in sorted(old.keys() & new.keys()):
-        was, now = old[value], new[value]
-        if was != now and same_sense(was, now):
-            yield Found(
-                f"what {value} of {quote(pair.new.name)} stands for is spelled otherwise", ("special",), was, now
-            )
+    for value, old, new in differing(pair.old.special, pair.new.special, lambda one: one.value):
+        if old and new and same_sense(old.meaning, new.meaning):
+            text = f"what {value} of {quote(pair.new.name)} stands for is spelled otherwise"
+            yield Found(text, ("special",), old.meaning, new.meaning)
 
 
 @rule("DIF413", "node", severity="note")
@@ -122,33 +117,22 @@ def protocol_words(pair: NodePair, ctx: Context) -> Iterator[Found]:
     for fact in facts(pair.old, pair.new):
         if fact.is_word:
             where = pair.where()._replace(section=fact.path)
-            yield Found(
-                f"`{fact.path}` says otherwise", (), shown(fact.old), shown(fact.new), where=where, places=fact.places
-            )
+            text = f"`{fact.path}` says otherwise"
+            yield Found(text, (), shown(fact.old), shown(fact.new), where=where, places=fact.places)
 
 
 @rule("DIF414", "node", severity="note")
 def unit_described_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    old, new = ({u.symbol: u for u in side.units} for side in (pair.old, pair.new))
-    for symbol in sorted(old.keys() | new.keys()):
-        was, now = old.get(symbol), new.get(symbol)
-        if was != now:
-            verb = (
-                "is declared now"
-                if was is None
-                else "is no longer declared" if now is None else "is described otherwise"
-            )
-            said = [" ".join(filter(None, u[1:])) if u else "" for u in (was, now)]
-            places = _section(pair.old, "units"), _section(pair.new, "units")
-            yield Found(f"the unit {quote(symbol)} {verb}", (), said[0], said[1], places=places)
+    for symbol, was, now in differing(pair.old.units, pair.new.units, lambda unit: unit.symbol):
+        verb = _verb(was, now, "is declared now", "is no longer declared", "is described otherwise")
+        said = [" ".join(filter(None, u[1:])) if u else "" for u in (was, now)]
+        yield Found(f"the unit {quote(symbol)} {verb}", (), said[0], said[1], places=_sections(pair, "units"))
 
 
 @rule("DIF415", "node", severity="note")
 def mask_bit_named_otherwise(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    old, new = ({row.bit: row for row in side.loggable} for side in (pair.old, pair.new))
-    for bit in sorted(old.keys() & new.keys()):
-        was, now = old[bit], new[bit]
-        if was.name != now.name:
+    for bit, was, now in differing(pair.old.loggable, pair.new.loggable, lambda row: row.bit):
+        if was and now and was.name != now.name:
             places = (place_of(was, ("name",)), place_of(now, ("name",)))
             where = pair.where()._replace(section=f"loggable {bit}")
             text = f"the frame of log mask bit {bit} is called {quote(now.name)}, was {quote(was.name)}"

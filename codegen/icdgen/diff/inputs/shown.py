@@ -15,6 +15,7 @@ from icdgen.icd import model, source
 from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.units import STANDARD, Unit
+from icdgen.icd.wire_ids import DEFAULT_BITS
 
 if TYPE_CHECKING:
     from jsonschema_rs import ValidationError
@@ -58,7 +59,7 @@ def from_bytes(data: bytes, name: str) -> Side:
     for item in tree["nodes"]:
         for index, include in enumerate(item["includes"]):
             if all(node.name != include for node in nodes):
-                place = item["includes"].items_at[index]
+                place = item["includes"].item_at(index)
                 text = f"`{item['name']}` includes `{include}`, which is not shown before it"
                 raise Findings([Finding("ICD004", text, place, _HELP)])
         nodes.append(_Reader(nodes).node(item))
@@ -89,12 +90,12 @@ def _placed(value: Any, place: Place) -> Any:
         made = Map(place)
         for key, item in value.items():
             made[key] = _placed(item, place)
-            made.keys_at[key] = made.values_at[key] = place
+            made.spots[key] = place, place
         return made
     if isinstance(value, list):
         row = Seq(place)
         row.extend(_placed(item, place) for item in value)
-        row.items_at = [place] * len(row)
+        row.spots = [place] * len(row)
         return row
     return value
 
@@ -121,7 +122,7 @@ def _path(error: ValidationError) -> str:
 def _where(tree: Any, error: ValidationError, name: str) -> Place:
     place: Place = getattr(tree, "place", Place(name))
     for step in error.instance_path:
-        place = tree.items_at[int(step)] if isinstance(tree, Seq) else tree.at(step)
+        place = tree.item_at(int(step)) if isinstance(tree, Seq) else tree.at(step)
         tree = tree[step]
     return place
 
@@ -155,7 +156,8 @@ class _Reader:
                 model.Loggable(r["bit"], r["id"], r.get("name", ""), self.about(r), r) for r in item["loggable"]
             ),
             missing=tuple(model.Missing(m["kind"], m["id"], m["name"], m["why"]) for m in get("missing", ())),
-            errata=tuple(self.errata.values()), digest=get("digest", ""), file=item.place.file, source=item,
+            errata=tuple(self.errata.values()), digest=get("digest", ""), file=item.place.file,
+            id_bits=get("id_bits", DEFAULT_BITS), source=item,
         )  # fmt: skip
 
     def included(self, names: list[str]) -> list[model.Node]:
@@ -187,7 +189,7 @@ class _Reader:
             fields=tuple(self.field(field) for field in item["fields"]), id=get("id"), set_id=get("set_id"),
             get_id=get("get_id"), identifier=get("identifier"), group=get("group", ""), table=get("table"),
             page=get("page"), summary=get("summary", ""), acknowledge=get("acknowledge", True) is True,
-            expects_reset=get("acknowledge") == "reset",
+            expects_reset=get("acknowledge") == "reset", hazard=get("hazard", ""),
             contains=tuple(model.Part(part["message"], part["offset"]) for part in get("contains", ())), node=node,
             errata=self.about(item), source=item,
         )  # fmt: skip

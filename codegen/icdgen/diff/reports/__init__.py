@@ -5,17 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib import import_module
 
-FORMATS = {
-    "text": "icdgen.diff.reports.text",
-    "markdown": "icdgen.diff.reports.markdown",
-    "json": "icdgen.diff.reports.json",
-    "sarif": "icdgen.diff.reports.sarif",
-    "github": "icdgen.diff.reports.github",
-    "html": "icdgen.diff.reports.html",
-}
+FORMATS = ("text", "markdown", "json", "sarif", "github", "html")
 
 
 def get(name: str) -> Callable[..., str]:
-    """The function ``report`` of a format. Raises `KeyError` for a name that is not in `FORMATS`."""
-    report: Callable[..., str] = import_module(FORMATS[name]).report
+    """The function ``report`` of a format, which is one of `FORMATS`."""
+    report: Callable[..., str] = import_module(f"{__name__}.{name}").report
     return report

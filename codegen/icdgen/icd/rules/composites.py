@@ -11,8 +11,10 @@ from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import close_to, line_of, listing, quote
+from icdgen.icd.wire_ids import number
 
 _KEYS = ("bits", "type", "enum", "unit", "formula")
+_IDS = ("id", "set_id", "get_id")
 
 
 def _parts(ctx: Context) -> Iterator[tuple[Message, Node, Part, Map]]:
@@ -99,7 +101,7 @@ def list_agrees(ctx: Context) -> Iterator[Fault]:
             continue
         for key, value in listed.items():
             held = message.source.get(key)
-            if held != value:
+            if held != value and not (key in _IDS and held is not None and number(held) == number(value)):
                 what = f"the {key.replace('_', ' ')} {quote(value)}"
                 text = f"the list table gives {quote(message.name)} {what}, the detail table {quote(held)}"
                 help = f"decide in the errata: hold the other `{key}`, or hold `listed: null`"

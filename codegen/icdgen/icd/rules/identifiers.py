@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from icdgen.diagnostics import Place
@@ -13,8 +12,6 @@ from icdgen.icd.rules.declarations import TWINS, declared
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import line_of, listing, quote
-
-_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
 
 def _place(ctx: Context, identifier: Identifier) -> Place:
@@ -100,7 +97,8 @@ def is_identifier(ctx: Context) -> Iterator[Fault]:
     found = _Clashes()
     for language, _, identifiers in declared(ctx):
         for one in identifiers:
-            if not _IDENTIFIER.match(one.text) and not _is_file(one.text):
+            text = one.text
+            if not ((text.isidentifier() and text.isascii()) or _is_file(text)):
                 found.add(language, one)
     for one, _, texts in found:
         each = ((quote(text) if text else "nothing", listing(langs)) for text, langs in texts.items())

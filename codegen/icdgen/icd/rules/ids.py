@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from icdgen.icd import wire_ids
 from icdgen.icd.located import Map
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.duplicates import is_news, together
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import line_of, listing, quote
+from icdgen.icd.rules.wording import count, line_of, listing, quote
 
 # kind -> the keys of its ids and the direction each belongs to
 KEYS = {
@@ -19,7 +20,7 @@ KEYS = {
     TELEMETRY: (("id", TELEMETRY),),
     CONFIGURATION: (("set_id", TELECOMMAND), ("get_id", TELEMETRY)),
 }
-BYTE = (0, 255)
+LINKED_BITS = 8  # of an id in every frame that a protocol section can describe
 
 
 class Use(NamedTuple):
@@ -35,10 +36,17 @@ class Use(NamedTuple):
 def _uses(node: Node) -> Iterator[Use]:
     for message in node.messages:
         for key, direction in KEYS[message.kind]:
-            yield Use(node, direction, message.source[key], message.source, key)
+            yield Use(node, direction, wire_ids.number(message.source[key]), message.source, key)
     for item in mappings(node.source.get("missing")):
-        if item.get("kind") in (TELECOMMAND, TELEMETRY) and isinstance(item.get("id"), int):
-            yield Use(node, item["kind"], item["id"], item, "id")
+        if item.get("kind") in (TELECOMMAND, TELEMETRY) and _is_id(item.get("id")):
+            yield Use(node, item["kind"], wire_ids.number(item["id"]), item, "id")
+
+
+def _is_id(value: object) -> bool:
+    """Whether it is a number or bytes: the entry may be broken."""
+    if isinstance(value, list):
+        return bool(value) and all(isinstance(one, int) and 0 <= one <= 255 for one in value)
+    return isinstance(value, int) and value >= 0
 
 
 @rule("ICD055")
@@ -59,8 +67,8 @@ def ids_in_range(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
         ranges = _ranges(ctx, node)
         for use in (u for n in ctx.scope(node) for u in _uses(n)):
-            first, last = ranges.get(use.direction, BYTE)
-            if not first <= use.id <= last:
+            first, last = ranges.get(use.direction, (0, (1 << node.id_bits) - 1))
+            if not first <= use.id <= last and _has_its_bytes(use):
                 help = _remedy(use, ranges)
                 message = f"{use.direction} ids go from {first} to {last}: {use.id} is not one of them"
                 yield Fault(use.source, use.source.at(use.key), message, help)
@@ -68,10 +76,40 @@ def ids_in_range(ctx: Context) -> Iterator[Fault]:
 
 def _remedy(use: Use, ranges: dict[str, tuple[int, int]]) -> str:
     if not ranges:
-        return f"correct `{use.key}`: an id is one byte, longer ones cannot be described"
+        needed = next(bits for bits in (8, 16, 24, 32) if use.id < 1 << bits)
+        return f"correct `{use.key}`, or give the width of all ids in `node`: `id_bits: {needed}`"
     other = next((d for d, (first, last) in ranges.items() if first <= use.id <= last), None)
     wrong = f"{use.id} is a {other} id: correct `{use.key}` or `kind`" if other else f"correct `{use.key}`"
     return f"{wrong}, or the range in `protocol: message_id`"
+
+
+def _has_its_bytes(use: Use) -> bool:
+    """Whether the id is a number, or as many bytes as ids have."""
+    written = use.source[use.key]
+    return not isinstance(written, list) or len(written) == wire_ids.size(use.node.id_bits)
+
+
+@rule("ICD111")
+def bytes_of_ids(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        size = wire_ids.size(node.id_bits)
+        for use in _uses(node):
+            if not _has_its_bytes(use):
+                has = f"ids have {count(node.id_bits, 'bit')}, which is {count(size, 'byte')}"
+                given = count(len(use.source[use.key]), "byte")
+                message = f"{has}: {quote(use.source.get('name'))} has an id of {given}"
+                help = f"write {count(size, 'byte')}, or correct `id_bits` in `node`"
+                yield Fault(use.source, use.source.at(use.key), message, help)
+
+
+@rule("ICD112")
+def ids_that_links_carry(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        if node.id_bits > LINKED_BITS and ctx.protocol_of(node):
+            head = node.source["node"]
+            message = f"ids have {node.id_bits} bits, but the links that `protocol` describes carry ids of one byte"
+            help = "leave `protocol` out: messages can be read and written without it; or correct `id_bits`"
+            yield Fault(head, head.at("id_bits"), message, help)
 
 
 @rule("ICD059")
@@ -83,6 +121,16 @@ def ids_of_kind(ctx: Context) -> Iterator[Fault]:
                 text = f"a {message.kind} message has no `{key}`"
                 names = listing(f"`{k}`" for k in own)
                 yield Fault(message.source, message.source.at(key), text, f"remove it: {message.kind} has {names}")
+
+
+@rule("ICD065")
+def only_what_is_sent(ctx: Context) -> Iterator[Fault]:
+    for message, _ in ctx.messages:
+        if message.kind == TELEMETRY:
+            for key in ("acknowledge", "hazard"):
+                if key in message.source:
+                    text = f"`{key}` says something of what is sent, and {quote(message.name)} is telemetry"
+                    yield Fault(message.source, message.source.at(key), text, "remove it, or correct `kind`")
 
 
 def _ranges(ctx: Context, node: Node) -> dict[str, tuple[int, int]]:

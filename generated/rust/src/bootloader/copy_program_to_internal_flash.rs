@@ -8,6 +8,9 @@ use crate::support::{Coded, Error};
 /// Copy Program to Internal Flash: telecommand 103, 2 bytes. Table 67.
 ///
 /// Only the program in internal flash can be executed.
+///
+/// Dangerous: The program in internal flash is replaced, and with the overwrite flag the bootloader
+/// itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

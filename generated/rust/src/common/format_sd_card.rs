@@ -7,6 +7,8 @@ use crate::support::Error;
 /// Format SD card: telecommand 33, 1 byte. Table 14.
 ///
 /// Takes some time: SD card format/erase progress tells when it is done.
+///
+/// Dangerous: All files on the SD card are lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]

@@ -9,6 +9,8 @@ use crate::support::{Coded, Error};
 ///
 /// Erases the destination. Initialize Upload Complete tells when that is done.
 ///
+/// Dangerous: The program in the destination is lost.
+///
 /// Note COM-041 (open): File upload is listed as common but described for the bootloader only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

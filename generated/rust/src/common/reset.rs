@@ -8,7 +8,8 @@ use crate::support::Error;
 ///
 /// Restarts the CubeComputer.
 ///
-/// The node restarts instead of acknowledging it.
+/// Dangerous: The program that runs is stopped, and what it has not saved is lost. The node
+/// restarts instead of acknowledging it.
 ///
 /// Note COM-028 (open): The Reset telecommand: acknowledged or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -6,6 +6,8 @@ use crate::support::Error;
 
 /// Deploy Magnetometer Boom: telecommand 7, 1 byte. Table 73.
 ///
+/// Dangerous: The boom stays deployed.
+///
 /// Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the bootloader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -51,7 +51,7 @@ impl Telemetry {
             PrimaryMagnetometerMeasurement::ID => {
                 Self::PrimaryMagnetometerMeasurement(PrimaryMagnetometerMeasurement::from_bytes(bytes)?)
             }
-            _ => return Err(Error::UnknownId { id: u16::from(id) }),
+            _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
 

@@ -43,7 +43,7 @@ impl Telemetry {
                 Self::WheelReferenceSpeed(WheelReferenceSpeed::from_bytes(bytes)?)
             }
             MotorPower::ID => Self::MotorPower(MotorPower::from_bytes(bytes)?),
-            _ => return Err(Error::UnknownId { id: u16::from(id) }),
+            _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
 

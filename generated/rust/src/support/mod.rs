@@ -35,7 +35,7 @@ pub enum Error {
     /// The node has no message of that id in that direction.
     UnknownId {
         /// The id.
-        id: u16,
+        id: u32,
     },
 }
 

@@ -16,9 +16,7 @@ class Crc:
     def __init__(self, form: CrcForm, table: bool = True) -> None:
         self._form = form
         self._is_fed = False
-        self._register = form.init
-        if form.reflect_in:
-            self._register = _reversed(form.init, form.width)
+        self._register = _reversed(form.init, form.width) if form.reflect_in else form.init << _padding(form)
         self._rows = _table(form) if table else None
         self._is_known = table and form[:4] == (16, 0x1021, form.init, False)
 
@@ -38,7 +36,8 @@ class Crc:
             self._register = register
         else:
             rows, register = self._rows, self._register
-            shift, mask = self._form.width - 8, (1 << self._form.width) - 1
+            width = self._form.width + _padding(self._form)
+            shift, mask = width - 8, (1 << width) - 1
             for byte in data:
                 register = register << 8 & mask ^ rows[register >> shift ^ byte]
             self._register = register
@@ -46,7 +45,7 @@ class Crc:
 
     def result(self) -> int:
         """The CRC of everything fed so far."""
-        form, value = self._form, self._register
+        form, value = self._form, self._register >> _padding(self._form)
         if not self._is_fed and form.empty is not None:
             return form.empty
         if form.reflect_in != form.reflect_out:
@@ -77,12 +76,18 @@ def _step(form: CrcForm, register: int, byte: int) -> int:
         for _ in range(8):
             register = register >> 1 ^ (polynomial if register & 1 else 0)
         return register
-    top, mask = 1 << (form.width - 1), (1 << form.width) - 1
-    register ^= byte << (form.width - 8)
+    width, polynomial = form.width + _padding(form), form.polynomial << _padding(form)
+    top, mask = 1 << (width - 1), (1 << width) - 1
+    register ^= byte << (width - 8)
     for _ in range(8):
-        carry = form.polynomial if register & top else 0
+        carry = polynomial if register & top else 0
         register = (register << 1 & mask) ^ carry
     return register
+
+
+def _padding(form: CrcForm) -> int:
+    """Zeros behind the register's lowest bit, which make it as wide as the bytes that enter at its top."""
+    return 0 if form.reflect_in else max(8 - form.width, 0)
 
 
 def _reversed(value: int, width: int) -> int:

@@ -26,6 +26,8 @@ class EraseFile(_base.Message):
     Deletes one file of the SD card or all of them. Erasing all takes some time: see SD
     card format/erase progress.
 
+    Dangerous: The file is lost; all files are with Erase All.
+
     Note COM-034 (open): Erase File: what the other fields mean with Erase All.
     """
 

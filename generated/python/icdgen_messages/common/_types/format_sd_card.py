@@ -19,6 +19,8 @@ class FormatSdCard(_base.Message):
     """Format SD card: telecommand 33, 1 byte. Table 14.
 
     Takes some time: SD card format/erase progress tells when it is done.
+
+    Dangerous: All files on the SD card are lost.
     """
 
     __slots__ = (

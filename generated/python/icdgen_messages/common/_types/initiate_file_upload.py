@@ -23,6 +23,8 @@ class InitiateFileUpload(_base.Message):
 
     Erases the destination. Initialize Upload Complete tells when that is done.
 
+    Dangerous: The program in the destination is lost.
+
     Note COM-041 (open): File upload is listed as common but described for the
     bootloader only.
     """

@@ -18,6 +18,8 @@ _pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
 class DeployMagnetometerBoom(_base.Message):
     """Deploy Magnetometer Boom: telecommand 7, 1 byte. Table 73.
 
+    Dangerous: The boom stays deployed.
+
     Note ACP-015 (certain): Ids 7, 132, 232 and 233 mean something else in the
     bootloader.
     """

@@ -171,7 +171,7 @@ pub trait Subject: Copy + Default + 'static {
     const TITLE: &'static str;
     const BYTES: usize;
     const FIELDS: &'static [Field<Self>];
-    fn ids() -> Vec<u16>;
+    fn ids() -> Vec<u32>;
     fn decode(bytes: &[u8]) -> Result<Self, Error>;
     fn encode(&self) -> Result<Vec<u8>, Error>;
 }

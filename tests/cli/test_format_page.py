@@ -1,0 +1,29 @@
+"""The whole ICDs that the page about the format shows can be used as they stand."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from icdgen.icd.fmt import format_text
+from tests.conftest import ROOT
+
+PAGE = (ROOT / "docs" / "icd-format.md").read_text(encoding="utf-8")
+WHOLE = [text for text in re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL) if text.startswith("icdgen: 1\n")]
+LANGUAGES = ("c", "python", "rust", "vectors", "c-selftest", "html")
+
+
+@pytest.mark.parametrize("text", WHOLE, ids=lambda text: re.search(r"name: (\w+)", text)[1])
+def test_an_example_is_right_laid_out_and_good_for_every_language(text, icdgen, tmp_path):
+    (tmp_path / "example.yaml").write_text(text, encoding="utf-8")
+    checked = icdgen("check", "example.yaml")
+    assert checked.status == 0, checked.out
+    assert format_text(text, "example.yaml") == text
+    made = icdgen(*(word for name in LANGUAGES for word in ("--lang", name)), "--out", "out", "example.yaml")
+    assert made.status == 0, made.err
+    assert all((tmp_path / "out" / name).is_dir() for name in LANGUAGES)
+
+
+def test_the_page_has_examples():
+    assert WHOLE

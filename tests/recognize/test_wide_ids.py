@@ -1,0 +1,59 @@
+"""Frames of a node whose ids have more than a byte: the id stands in front as its bytes, the most significant first."""
+
+from __future__ import annotations
+
+import pytest
+
+from icdgen.loading import load
+from icdgen.recognize import recognize
+from icdgen.values import BadLength, NotFound
+
+ICD = """\
+icdgen: 1
+node: {name: receiver, title: Receiver, byte_order: little, bit_order: lsb0, id_bits: BITS}
+messages:
+  - name: Clock
+    id: [ID]
+    kind: telemetry
+    length: 4
+    fields:
+      - {at: 0, bits: 32, name: Time, type: uint}
+"""
+WIDTHS = {
+    11: ("0x01, 0x22", "01 22"),
+    16: ("0xF1, 0x22", "F1 22"),
+    24: ("1, 2, 3", "01 02 03"),
+    32: ("9, 8, 7, 6", "09 08 07 06"),
+}
+
+
+@pytest.fixture(params=WIDTHS)
+def receiver(request, tmp_path):
+    written, sent = WIDTHS[request.param]
+    path = tmp_path / "receiver.yaml"
+    path.write_text(ICD.replace("BITS", str(request.param)).replace("ID", written), encoding="utf-8")
+    loaded = load([path])
+    assert loaded.findings == []
+    return loaded.icd, sent
+
+
+def test_the_id_in_front_tells_the_message(receiver):
+    icd, sent = receiver
+    (one,) = recognize(icd, f"{sent} 01 00 00 00")
+    assert one.message.name == "Clock" and one.data == bytes([1, 0, 0, 0])
+    assert one.id == one.message.id == int(sent.replace(" ", ""), 16)
+
+
+def test_data_alone_are_known_by_their_length(receiver):
+    (one,) = recognize(receiver[0], "01 00 00 00")
+    assert (one.message.name, one.id) == ("Clock", None)
+
+
+def test_an_unknown_id_and_a_wrong_length_are_told_apart(receiver):
+    icd, sent = receiver
+    with pytest.raises(NotFound, match="no message of receiver has the id"):
+        recognize(icd, "00 00 00 00 00 00 00")
+    with pytest.raises(BadLength, match="has 4 bytes, 3 given after the id"):
+        recognize(icd, f"{sent} 01 02 03")
+    with pytest.raises(BadLength, match=r"an id of receiver has \d bytes, 1 given"):
+        recognize(icd, "01")
