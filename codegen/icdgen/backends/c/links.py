@@ -10,8 +10,7 @@ from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP, in_rows
 from icdgen.describe.links import CAN_PARTS, INDEX_PARTS, Assumptions, LinkDescription, SentMessage, StepDescription
 from icdgen.protocol.declared import Kind, facts_of
-from icdgen.protocol.facts import BUSES, Crc, Step
-from icdgen.protocol.sections import CAN_KINDS, PROCEDURES
+from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Crc, Step
 
 _MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
 _MOST_PACKETS = 256

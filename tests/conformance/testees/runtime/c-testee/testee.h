@@ -1,37 +1,31 @@
-/* {{ origin }} */
 /* What the testee knows of each node: how to reach the generated code of every message and field. */
 
 #ifndef TESTEE_H
 #define TESTEE_H
 
 #include <icdgen.h>
-{% if wire %}
-#include <icdgen_wire.h>
-{% endif %}
 
-typedef enum { TESTEE_UNSIGNED, TESTEE_SIGNED, TESTEE_BOOL, TESTEE_FLOAT, TESTEE_BYTES } testee_type_t;
-
-struct testee_limit {
-    const char *key; /* min, max, above or below */
-    double value;
-};
+typedef enum { TESTEE_UNSIGNED, TESTEE_SIGNED, TESTEE_BOOL, TESTEE_BYTES } testee_type_t; /* floats: their bits */
 
 typedef struct {
-    const char *name;
+    const char *key; /* min, max, above or below */
+    double value;
+} testee_limit_t;
+
+typedef struct {
     testee_type_t type;
     size_t offset;                                    /* of the member in the struct */
     size_t size;                                      /* of the member, in bytes */
     const char *(*name_of)(uint64_t value);           /* of an enum field, else NULL */
     double (*get)(const void *message);               /* of a scaled field, else NULL */
     icd_status_t (*set)(void *message, double value); /* of a scaled field, else NULL */
-    const uint64_t *special;                          /* raw values with a meaning of their own */
+    const int64_t *special;                           /* raw values with a meaning of their own, as bits */
     size_t special_count;
-    const struct testee_limit *limits;
+    const testee_limit_t *limits;
     size_t limit_count;
 } testee_field_t;
 
 typedef struct {
-    const char *name;
     const unsigned *ids; /* the id, or the set id and the get id */
     size_t id_count;
     size_t length;
@@ -43,8 +37,7 @@ typedef struct {
 
 /* A message that is reached under an id. */
 typedef struct {
-    unsigned id;
-    bool configuration;
+    uint32_t id;
     const testee_message_t *message;
 } testee_route_t;
 
@@ -61,25 +54,26 @@ typedef struct {
     const char *(*name)(uint32_t id);
 } testee_dispatcher_t;
 
-typedef struct {
-    const char *name;
-    const char *(*name_of)(uint64_t value);
-} testee_enum_t;
+typedef const char *testee_enum_t(uint64_t value); /* the name of a member, or NULL */
 
 typedef struct {
-    const char *name;
     const testee_dispatcher_t *telecommand; /* NULL if the node has none */
     const testee_dispatcher_t *telemetry;
-    const testee_enum_t *enums;
-    size_t enum_count;
+    testee_enum_t *const *enums;
     int64_t node_type; /* -1 if the ICD has none */
     int64_t interface_version;
-{% if wire %}
-    const icd_link_t *(*link)(void); /* NULL if the ICD has no protocol for the node */
-{% endif %}
 } testee_node_t;
 
 extern const testee_node_t *const testee_nodes[];
 extern const size_t testee_node_count;
+
+/* What can be asked: the lists of the parts that the ICDs have, each ended by a name of NULL. */
+typedef struct {
+    const char *name;
+    void (*answer)(void);
+} testee_op_t;
+
+extern const testee_op_t testee_message_ops[];
+extern const testee_op_t *const testee_ops[]; /* ended by NULL */
 
 #endif
