@@ -16,7 +16,8 @@ from icdgen.describe.fresh import fresh_values
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol import facts as protocol_facts
 from icdgen.protocol.declared import Fact, facts_of
-from icdgen.protocol.facts import Can, Facts, Index, Step, TimePart
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import Can, Index, Step, TimePart
 
 ROLES = frozenset(
     "all block_size busy bytes checksum counter destination error id ignore_hole_map interface_version length node_type number "

@@ -5,28 +5,31 @@ from __future__ import annotations
 from typing import Any
 
 from icdgen.protocol.declared import Fact, Kind
-from icdgen.protocol.facts import (
+from icdgen.protocol.sections import (
     BUSES,
     Acknowledge,
     Can,
     Checksum,
-    Client,
     Crc,
+    Download,
+    Erasure,
     Extended,
     Files,
     Framing,
     HoleMap,
     Index,
+    Listing,
     LogFile,
     LogMask,
     LogMessage,
     Operation,
+    Settings,
+    Upload,
 )
-from icdgen.protocol.sections import Download, Erasure, Listing, Upload
 
 MOST_SIGNED = 0x7FFF_FFFF
 TYPES: dict[type, str] = {
-    Client: "icd_client_settings_t", Framing: "icd_framing_t", Acknowledge: "icd_acknowledge_t", Crc: "icd_crc_form_t",
+    Settings: "icd_client_settings_t", Framing: "icd_framing_t", Acknowledge: "icd_acknowledge_t", Crc: "icd_crc_form_t",
     Checksum: "icd_checksum_form_t", Can: "icd_can_form_t", Extended: "icd_can_extended_t", LogMask: "icd_log_mask_form_t",
     LogFile: "icd_log_file_form_t", LogMessage: "icd_log_message_form_t", Index: "icd_index_form_t",
     HoleMap: "icd_hole_map_form_t", Files: "icd_files_form_t", Listing: "icd_list_form_t", Download: "icd_download_form_t",

@@ -8,11 +8,11 @@ from typing import Any
 from icdgen.backends.python.literals import Call, Noted, Verbatim, expression
 from icdgen.describe.links import Assumptions, LinkDescription, SentMessage
 from icdgen.protocol.declared import facts_of
-from icdgen.protocol.facts import Client, Crc, HoleMap, LogFile, LogMessage, Step
+from icdgen.protocol.sections import Crc, HoleMap, LogFile, LogMessage, Settings, Step
 
 # Types whose names in generated code are not those of the facts.
 _TYPES = {
-    Client: "Settings", Crc: "CrcForm", LogFile: "LogFileForm", LogMessage: "LogMessageForm", HoleMap: "HoleMapForm",
+    Settings: "Settings", Crc: "CrcForm", LogFile: "LogFileForm", LogMessage: "LogMessageForm", HoleMap: "HoleMapForm",
 }  # fmt: skip
 
 

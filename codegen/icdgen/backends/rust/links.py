@@ -21,8 +21,7 @@ from icdgen.describe.links import (
 )
 from icdgen.naming import camel
 from icdgen.protocol.declared import facts_of
-from icdgen.protocol.facts import BUSES, Direction, Step
-from icdgen.protocol.sections import CAN_KINDS, PROCEDURES
+from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Direction, Step
 
 _REASONS = {
     "none": "NoError",
