@@ -22,7 +22,9 @@ _HEX = re.compile(r"0x[0-9A-Fa-f]+\Z")
 _DECIMAL = re.compile(r"-?(?:0|[1-9][0-9]*)\.[0-9]+\Z")
 _LONGEST_WORD = len("false")  # of those that mean something else to some reader of YAML
 _WORDS = {"true": True, "false": False, "null": None, "~": None, "": None}
-_UNPRINTABLE = "[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"  # takes long to compile, and is seldom needed
+_UNPRINTABLE = (
+    "[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"  # takes long to compile, and is seldom needed
+)
 # What YAML 1.1 or 1.2 reads as something other than the text it looks like.
 _TREACHEROUS = re.compile(
     r"""(?: [-+.0-9][-+0-9_.:eExXobA-Fa-f]*
