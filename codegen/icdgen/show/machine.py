@@ -75,6 +75,8 @@ def _field(field: Field) -> _Object:
         offset=field.at,
         bits=field.bits,
         type=field.type,
+        byte_order=field.byte_order,
+        bit_order=field.bit_order,
         enum=field.enum.name if field.enum else None,
         unit=field.unit.symbol if field.unit else None,
         scale=str(scale.factor) if scale else None,

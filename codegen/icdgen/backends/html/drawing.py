@@ -116,7 +116,7 @@ class _Canvas:
             (LEFT + (column + 0.5) * self.cell, str(column if msb0 else column // 8 * 8 + 7 - column % 8))
             for column in range(8 * min(self.across, self.message.length))
         ]
-        gaps = layout.gaps(self.message)
+        gaps = layout.gaps(self.message, self.node)
         reserved = Shape(0, "reserved", "Reserved: " + ", ".join(bit_range(g.at, g.bits) for g in gaps[:20]))
         reserved.rects = self._rects(0)
         rows = [(self._y(i), str(first), str(8 * first)) for i, first in enumerate(self.rows) if first >= 0]

@@ -203,7 +203,8 @@ class _Reader:
             const=get("const"), special=tuple(model.Special(s["value"], s["meaning"]) for s in get("special", ())),
             limits=model.Limits(**{key: Fraction(value) for key, value in item["limits"].items()})
             if "limits" in item else None,
-            summary=get("summary", ""), errata=self.about(item), source=item,
+            summary=get("summary", ""), byte_order=get("byte_order", ""), bit_order=get("bit_order", ""),
+            errata=self.about(item), source=item,
         )  # fmt: skip
 
 

@@ -145,7 +145,7 @@ def _checksums(node: Node) -> Iterator[Fault]:
     for name in ("crc8", "crc16"):
         crc = section_of(node, name)
         width = crc.get("width") if crc is not None else None
-        if crc is None or not isinstance(width, int):
+        if crc is None or not isinstance(width, int) or width < 0:
             continue
         for key in ("polynomial", "init", "xor_out", "empty", "check"):
             value = crc.get(key)
