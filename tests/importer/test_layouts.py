@@ -36,17 +36,7 @@ def test_shipped_icds_come_back_from_every_layout(layout, tmp_path):
     assert back(content.manual(trees, TITLES), layout, tmp_path / "manual.pdf") == []
 
 
-# The importer's gap: where a page begins with a row, a first line that stands above its offset is given to the row before.
-_TORN = pytest.mark.xfail(
-    reason="the first line of a row that begins a page is lost if it stands above the row's offset"
-)
-_LARGE = [
-    pytest.param(name, 20 * index, marks=[_TORN] if name == "framed" else [], id=f"{name}-{20 * index}")
-    for index, name in enumerate(LAYOUTS)
-]
-
-
-@pytest.mark.parametrize(("layout", "skip"), _LARGE)
+@pytest.mark.parametrize(("layout", "skip"), [(name, 20 * index) for index, name in enumerate(LAYOUTS)])
 def test_large_tables_come_back_from_every_layout(layout, skip, tmp_path):
     trees = content.shipped("cubeacp", most=14, skip=8 + skip % 100)
     assert back(content.manual(trees, TITLES), layout, tmp_path / "manual.pdf") == []

@@ -7,11 +7,11 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from itertools import chain
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from icdgen.icd import division, formula, model, wire_ids
 from icdgen.icd.errata import Applied
-from icdgen.icd.located import Map
+from icdgen.icd.located import Map, plain
 from icdgen.icd.units import STANDARD, Unit
 
 T = TypeVar("T")
@@ -68,7 +68,7 @@ class Builder:
             includes=includes,
             vocabulary=tuple(dict.fromkeys((*self.scope.vocabulary, *words))),
             units=units,
-            protocol=plain_mapping(protocol) if isinstance(protocol, Map) else {},
+            protocol=plain(protocol) if isinstance(protocol, Map) else {},
             loggable=tuple(self.each("loggable", self.loggable)),
             missing=tuple(self.each("missing", self.missing)),
             errata=(*self.applied.entries, *self.applied.notes),
@@ -219,17 +219,3 @@ def limits(item: Map) -> model.Limits | None:
 def exact(number: int | float) -> Fraction:
     """The number as it is written."""
     return Fraction(number) if isinstance(number, int) else Fraction(repr(number))
-
-
-def plain_mapping(value: Map) -> dict[str, Any]:
-    """A mapping without positions, at any depth."""
-    return {key: plain(item) for key, item in value.items()}
-
-
-def plain(value: object) -> object:
-    """A tree without positions."""
-    if isinstance(value, dict):
-        return {key: plain(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [plain(item) for item in value]
-    return value

@@ -10,7 +10,8 @@ from icdgen import layout, naming
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.layout import Piece
-from icdgen.protocol.facts import Facts, LogBit, need
+from icdgen.protocol.facts import Facts, need
+from icdgen.protocol.sections import LogBit
 
 TIME = "time"
 

@@ -12,11 +12,12 @@ from typing import NamedTuple
 from icdgen import __version__
 from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
-from icdgen.backends.rust import CRATE, names, wire
+from icdgen.backends.rust import CRATE, names
+from icdgen.backends.rust.links import longest
 from icdgen.backends.rust.text import string
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
+from icdgen.describe.links import links_of
 from icdgen.icd.model import Icd
-from icdgen.protocol import facts
 from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
 
@@ -131,7 +132,7 @@ class RustTesteeBackend:
         common = {"origin": origin(), "version": __version__, "crate": CRATE}
         description = describe(icd)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
-        known = [facts.of(icd, node) for node in icd.nodes if icd.protocol_of(node)]
+        known = links_of(description)
         for name in ("main", "protocol"):
             yield PurePosixPath(f"src/{name}.rs"), render(f"{name}.rs.j2", wired=bool(known), **common)
         for file in render.runtime_files():
@@ -141,8 +142,8 @@ class RustTesteeBackend:
             "nodes.rs.j2",
             nodes=icd.nodes,
             wired=bool(known),
-            links=[one.node.name for one in known],
-            longest=max(map(wire.longest, known), default=0),
+            links=list(known),
+            longest=max(map(longest, known.values()), default=0),
             **common,
         )
         for node in description.nodes:

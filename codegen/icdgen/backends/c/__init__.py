@@ -16,12 +16,12 @@ from icdgen.backends.c.statement import head
 from icdgen.backends.c.text import comment, described, literal, noted, prose
 from icdgen.backends.lines import STEP
 from icdgen.backends.origin import origin
-from icdgen.describe import EnumDescription, MessageDescription, NodeDescription, describe
+from icdgen.describe import Description, EnumDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.comments import sentence, words
-from icdgen.icd.model import Icd, Node
+from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
-    from icdgen.protocol.facts import Facts
+    from icdgen.describe.links import LinkDescription
     from icdgen.render import Renderer
 
 _MAX_ENUMERATOR = 32767
@@ -38,13 +38,12 @@ class CBackend:
         """Every header, the support header first, then node by node."""
         first = f"/* {origin()} */\n"
         yield PurePosixPath("icdgen.h"), first + header("icdgen.h", {}, render)
-        links = {node.name: _facts(icd, node) for node in icd.nodes if icd.protocol_of(node)}
-        if links:
-            from icdgen.backends.c.link import step_bytes
-
-            made = {"wire/sizes.h": render("sizes.h.j2", step_bytes=step_bytes(links.values()))}
-            yield PurePosixPath("icdgen_wire.h"), first + header("icdgen_wire.h", made, render)
         description = describe(icd)
+        links = _links(description)
+        if links:
+            step_bytes = max(1, *(link.longest_step for link in links.values()))
+            made = {"wire/sizes.h": render("sizes.h.j2", step_bytes=step_bytes)}
+            yield PurePosixPath("icdgen_wire.h"), first + header("icdgen_wire.h", made, render)
         for node in description.nodes:
             folder = PurePosixPath(node.name)
             if node.enums:
@@ -102,14 +101,14 @@ def _message(message: MessageDescription) -> dict[str, object]:
     }
 
 
-def _facts(icd: Icd, node: Node) -> Facts:
-    from icdgen.protocol import facts
+def _links(description: Description) -> dict[str, LinkDescription]:
+    from icdgen.describe.links import links_of  # the rules about names need none of it
 
-    return facts.of(icd, node)
+    return links_of(description)
 
 
-def _link(node: NodeDescription, known: Facts) -> dict[str, object]:
-    from icdgen.backends.c.link import LinkTables, aliases, sizes
+def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
+    from icdgen.backends.c import links
 
     title = words(node.model.title)
     return {
@@ -118,9 +117,9 @@ def _link(node: NodeDescription, known: Facts) -> dict[str, object]:
         "guard": _guard(node.name, "link"),
         "about": comment(["@file", f"{title}: how its messages travel."]),
         "title": prose(title),
-        "constants": sizes(known),
-        "aliases": aliases(node.messages),
-        "tables": LinkTables(known).all(),
+        "constants": links.sizes(link),
+        "aliases": links.aliases(node.messages),
+        "tables": links.tables(link),
     }
 
 

@@ -11,7 +11,7 @@ from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
 from icdgen.backends.rust import names
 from icdgen.backends.rust.declared_names import declared_names
-from icdgen.describe import describe
+from icdgen.describe import Description, describe
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
@@ -63,23 +63,23 @@ class RustBackend:
                 text = render("message.rs.j2", m=values, node=node.name, wired=wired, **shared)
                 yield folder / f"{message.name}.rs", text
         if wired:
-            yield from _wire(icd, render, common)
+            yield from _wire(description, render, common)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that the crate declares, by scope."""
         return declared_names(describe(icd))
 
 
-def _wire(icd: Icd, render: Renderer, common: dict[str, object]) -> Iterator[tuple[PurePosixPath, str]]:
+def _wire(description: Description, render: Renderer, common: dict[str, object]) -> Iterator[tuple[PurePosixPath, str]]:
     """How the messages travel."""
-    from icdgen.backends.rust import wire
+    from icdgen.backends.rust import links
+    from icdgen.describe.links import links_of
 
     yield from _runtime("src/wire", render)
-    folder = PurePosixPath(LINKS)
-    layer = wire.Wire(icd)
-    yield folder / "mod.rs", render("links.rs.j2", links=layer.links, sizes=layer.sizes, **common)
-    for link in layer.links:
-        yield folder / f"{link.node}.rs", render("node_link.rs.j2", link=link, origin=origin(icd.node(link.node)))
+    folder, found = PurePosixPath(LINKS), links_of(description)
+    yield folder / "mod.rs", render("links.rs.j2", nodes=list(found), sizes=links.sizes(found.values()), **common)
+    for name, link in found.items():
+        yield folder / f"{name}.rs", render("node_link.rs.j2", link=links.values(link), origin=origin(link.facts.node))
 
 
 def _runtime(folder: str, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:

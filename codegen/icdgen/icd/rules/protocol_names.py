@@ -9,7 +9,7 @@ from typing import NamedTuple, TypeVar
 from icdgen.diagnostics import Place
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Message, Node
-from icdgen.icd.rules.context import Context
+from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
@@ -105,14 +105,12 @@ def named_fields_in_the_order_of_the_node(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD095")
 def message_types_exist(ctx: Context) -> Iterator[Fault]:
-    for node in ctx.icd.nodes:
-        protocol = node.source.get("protocol")
-        can = protocol.get("can") if isinstance(protocol, Map) else None
-        types = can.get("message_types") if isinstance(can, Map) else None
+    for can in ctx.sections("can"):
+        types = can.get("message_types")
         values = types.get("values") if isinstance(types, Map) else None
-        if not isinstance(can, Map) or not isinstance(values, Seq):
+        if not isinstance(values, Seq):
             continue
-        known = {row["name"] for row in values if isinstance(row, Map) and isinstance(row.get("name"), str)}
+        known = {row["name"] for row in mappings(values) if isinstance(row.get("name"), str)}
         for direction in ("telecommand", "telemetry"):
             section = can.get(direction)
             if not isinstance(section, Map):
@@ -120,9 +118,8 @@ def message_types_exist(ctx: Context) -> Iterator[Fault]:
             for key in TYPES:
                 name = section.get(key)
                 if isinstance(name, str) and name not in known:
-                    yield Fault(
-                        section, section.at(key), f"there is no message type {quote(name)}", _verbatim(name, known)
-                    )
+                    message = f"there is no message type {quote(name)}"
+                    yield Fault(section, section.at(key), message, _verbatim(name, known))
 
 
 @rule("ICD109", whole=True)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import itertools
+import math
 import re
 from dataclasses import dataclass, field
-from statistics import median
 
 from icdgen.importer.document import Header, Row
 from icdgen.importer.pages.columns import index_of
@@ -83,10 +83,10 @@ def rows(band: Band, header: Header, known: frozenset[str], torn: bool = False) 
     if header.kind == "list" and (groups := [i for i, line in enumerate(found) if _is_group(line, band.edges, key)]):
         return _around(band, found, groups, header, known)
     keyed = [i for i, line in enumerate(found) if is_key(_text_in(line, band.edges, key))]
-    if len(keyed) <= 1:
+    if len(keyed) <= (0 if torn else 1):
         return [Row(band.texts(known), band.page)] if band.words else []
     made = []
-    for first, last in _stretches(found, keyed, torn):
+    for first, last in _stretches(found, keyed, _leading(band), torn):
         words = [word for line in found[first:last] for word in line.words]
         made.append(Row(Band(band.page, band.top, band.bottom, band.edges, words).texts(known), band.page))
     return made
@@ -103,10 +103,9 @@ def has_keys(band: Band, header: Header) -> bool:
 
 
 def _is_group(line: Line, edges: list[float], key: int) -> bool:
-    """Whether the line is a group heading: words, not figures, in the column of ids."""
-    inside = _text_in(line, edges, key)
-    first = index_of((line.words[0].x0 + line.words[0].x1) / 2, edges)
-    return bool(inside) and first <= key and not any(is_key(word) for word in inside.split())
+    """Whether the line is a group heading: words, not figures, begin in the column of ids."""
+    first = [word.text for word in line.words if index_of(word.x0, edges) <= key]
+    return bool(first) and index_of(line.x0, edges) <= key and not any(is_key(word) for word in first)
 
 
 def _around(band: Band, found: list[Line], groups: list[int], header: Header, known: frozenset[str]) -> list[Row]:
@@ -127,11 +126,16 @@ def _text_in(line: Line, edges: list[float], column: int) -> str:
     return " ".join(w.text for w in line.words if index_of((w.x0 + w.x1) / 2, edges) == column)
 
 
-def _stretches(found: list[Line], keyed: list[int], torn: bool) -> list[tuple[int, int]]:
+def _leading(band: Band) -> float:
+    """How far apart the lines of a cell stand; infinite where no column has two lines."""
+    columns = [lines(part) for part in band.parts() if part]
+    return min((b.middle - a.middle for found in columns for a, b in itertools.pairwise(found)), default=math.inf)
+
+
+def _stretches(found: list[Line], keyed: list[int], leading: float, torn: bool) -> list[tuple[int, int]]:
     """The lines of each row, given those that hold its key; what stands before belongs to a row torn above."""
     gaps = [b.middle - a.middle for a, b in itertools.pairwise(found)]
-    usual = median(gaps) if gaps else 0.0
-    starts = [_first_start(found, keyed, gaps, usual, torn)]
+    starts = [_first_start(keyed, gaps, leading, torn, len(found))]
     for before, here in itertools.pairwise(keyed):
         starts.append(_start(found, before, here, gaps, starts[-1]))
     ends = [*starts[1:], len(found)]
@@ -139,15 +143,15 @@ def _stretches(found: list[Line], keyed: list[int], torn: bool) -> list[tuple[in
     return lead + list(zip(starts, ends, strict=True))
 
 
-def _first_start(found: list[Line], keyed: list[int], gaps: list[float], usual: float, torn: bool) -> int:
+def _first_start(keyed: list[int], gaps: list[float], leading: float, torn: bool, count: int) -> int:
     """Lines above the first key belong to its row where the key stands in the middle of its row's height."""
     first = keyed[0]
     if first == 0:
         return 0
     widest = max(range(first), key=lambda i: gaps[i])
-    if gaps[widest] > 1.25 * usual and (widest > 0 or torn):
+    if gaps[widest] > 1.25 * leading and (widest > 0 or torn):
         return widest + 1
-    after = (keyed[1] if len(keyed) > 1 else len(found)) - first - 1
+    after = (keyed[1] if len(keyed) > 1 else count) - first - 1
     return 0 if after >= first else first
 
 

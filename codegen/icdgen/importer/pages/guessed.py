@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 from icdgen.importer.document import Box, Row, Table
 from icdgen.importer.pages.flow import Mark
 
@@ -10,7 +12,21 @@ FEWEST_LINES = 3
 ALIGNED = 4.0  # points
 
 
-def tables(marks: list[Mark]) -> list[tuple[int, int, Table]]:
+def made(items: list[Table | Mark]) -> list[Table | Mark]:
+    """The items, with such lines made tables: they must not pass unseen."""
+    out: list[Table | Mark] = []
+    for is_mark, group in itertools.groupby(items, lambda item: isinstance(item, Mark)):
+        run = list(group)
+        marks = [item for item in run if isinstance(item, Mark)]
+        at = 0
+        for start, end, table in _tables(marks) if is_mark else ():
+            out += [*run[at:start], table]
+            at = end
+        out += run[at:]
+    return out
+
+
+def _tables(marks: list[Mark]) -> list[tuple[int, int, Table]]:
     """First and last index, and the table, of each run of text lines that looks like one."""
     found = []
     start = 0

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
 from itertools import pairwise
 
 from icdgen.importer import headings, labels
-from icdgen.importer.document import Block, Header, Heading, Row, Table, Text
-from icdgen.importer.pages import bands, columns, guessed
+from icdgen.importer.document import Block, Header, Row, Table
+from icdgen.importer.pages import bands, captions, columns
 from icdgen.importer.pages.bands import Band
 from icdgen.importer.pages.flow import Item, Mark, Piece
 from icdgen.importer.pages.lines import Line, lines
 from icdgen.importer.pages.rules import row_marks
 from icdgen.importer.profile import Profile
-from icdgen.importer.words import squeezed
-
-_CONTINUED = re.compile(r"\s*[-–,]?\s*[(\[]?\s*(?:continued|cont\.|cont'd|contd\.?)\s*[)\]]?\s*\Z", re.I)
-FAR = 4  # lines of text between a caption and its table; more, and it is none
+from icdgen.importer.words import CONTINUED, squeezed
 
 
 @dataclass
@@ -48,7 +44,10 @@ class Builder:
                 self.piece(item)
             else:
                 self.out.append(item)
-        return self.captioned()
+        for one in self.out:
+            if isinstance(one, Draft) and one.loose:
+                self.cut(one)
+        return captions.attached([one.table if isinstance(one, Draft) else one for one in self.out], self.profile)
 
     def piece(self, piece: Piece) -> None:
         draft = self.continued(piece)
@@ -76,7 +75,7 @@ class Builder:
             if isinstance(item, Draft):
                 break
             match = self.profile.caption.match(item.text) if item.kind == "caption" else None
-            if match and (_CONTINUED.search(item.text) or self.repeated(item)):
+            if match and (CONTINUED.search(item.text) or self.repeated(item)):
                 number = match["number"]
                 continue
             if item.kind == "text" and labels.leads(item.text, self.profile):
@@ -97,9 +96,9 @@ class Builder:
             return None
         if number is None and not self.fits(draft, piece, follows):
             return None
-        header = draft.table.header
-        if number is None and between == 1 and last is not None and last.strong and header and header.kind == "list":
-            draft.table.rows.append(Row([last.text, *[""] * (len(header.roles) - 1)], last.box.page))  # a group heading
+        if number is None and between == 1 and last is not None and self.is_group(draft, last):
+            assert draft.table.header is not None
+            draft.table.rows.append(Row([last.text, *[""] * (len(draft.table.header.roles) - 1)], last.box.page))
             self.out.remove(last)
         if torn and (draft.table.header is not None or not draft.table.head):
             return None
@@ -110,6 +109,14 @@ class Builder:
             while self.out[-1] is not draft:
                 self.out.pop()
         return draft
+
+    def is_group(self, draft: Draft, mark: Mark) -> bool:
+        """Whether a line below a list is its last row, the heading of the group with which the next page begins."""
+        if draft.table.header is None or draft.table.header.kind != "list":
+            return False
+        box = draft.table.boxes[-1]
+        touches = mark.box.page == box.page and mark.box.top - box.bottom < mark.size and mark.box.x0 - box.x0 < 8
+        return mark.strong or (touches and len(mark.cells) == 1)
 
     def repeated(self, mark: Mark) -> bool:
         """Whether an earlier caption has this number and title too."""
@@ -153,7 +160,8 @@ class Builder:
             found = headings.match(band.texts(self.known), self.profile, loose=True)
             if found:
                 return found
-        return None
+        split = self.split(piece.bands[0]) if piece.bands else None  # no rule parts the headings from the rows
+        return split[1] if split else None
 
     # --- ruled -----------------------------------------------------------------------------------------------------
 
@@ -189,12 +197,8 @@ class Builder:
         titles = [squeezed(title) for title in header.titles]
         found = lines(band.words)
         for count in range(1, min(5, len(found) + 1)):
-            upper = Band(
-                band.page, band.top, band.bottom, band.edges, [w for line in found[:count] for w in line.words]
-            )
-            if [squeezed(text) for text in upper.texts(self.known)] == titles:
-                words = [w for line in found[count:] for w in line.words]
-                return Band(band.page, found[count].top if words else band.bottom, band.bottom, band.edges, words)
+            if [squeezed(text) for text in _part(band, found[:count]).texts(self.known)] == titles:
+                return _part(band, found[count:])
         return None
 
     def lower_half(self, draft: Draft, texts: list[str]) -> Header | None:
@@ -249,15 +253,13 @@ class Builder:
         """A band without rules between its rows: lines above the headings, headings, the rest."""
         found = lines(band.words)
         for start in range(min(8, len(found))):
-            for count in range(min(4, len(found) - start), 0, -1):
-                words = [w for line in found[start : start + count] for w in line.words]
-                upper = Band(band.page, band.top, band.bottom, band.edges, words)
-                header = headings.match(upper.texts(self.known), self.profile)
-                if header is not None:
-                    rest = found[start + count :]
-                    words = [w for line in rest for w in line.words]
-                    top = rest[0].top if rest else band.bottom
-                    return found[:start], header, Band(band.page, top, band.bottom, band.edges, words)
+            best: tuple[int, int, Header] | None = None
+            for count in range(1, min(4, len(found) - start) + 1):
+                header = headings.match(_part(band, found[start : start + count]).texts(self.known), self.profile)
+                if header is not None and (best is None or sum(map(bool, header.roles)) >= best[0]):
+                    best = sum(map(bool, header.roles)), count, header
+            if best is not None:
+                return found[:start], best[2], _part(band, found[start + best[1] :])
         return None
 
     def body(self, draft: Draft, band: Band, torn: bool) -> None:
@@ -292,104 +294,11 @@ class Builder:
                 if not headings.repeats(band.texts(self.known), header, self.profile):
                     draft.table.rows += bands.rows(band, header, self.known)
 
-    # --- captions --------------------------------------------------------------------------------------------------
 
-    def captioned(self) -> list[Block]:
-        for item in self.out:
-            if isinstance(item, Draft) and item.loose:
-                self.cut(item)
-        self.out = _with_guessed(self.out)
-        captions = [i for i, item in enumerate(self.out) if isinstance(item, Mark) and item.kind == "caption"]
-        after = {i: self.table_from(i, 1) for i in captions}
-        before = {i: self.table_from(i, -1) for i in captions}
-        above = self.stands_above(captions, after, before)
-        owner: dict[int, int] = {}
-        for i in captions if above else reversed(captions):
-            target = (after if above else before)[i]
-            if target is not None:
-                owner[target] = i  # the nearest wins: it comes last
-        used = set(owner.values())
-        blocks: list[Block] = []
-        for index, item in enumerate(self.out):
-            if isinstance(item, Draft):
-                if index in owner:
-                    caption = self.out[owner[index]]
-                    assert isinstance(caption, Mark)
-                    self.name(item.table, caption)
-                blocks.append(item.table)
-            elif index not in used:
-                page, is_heading = item.box.page, item.kind == "heading" or item.strong
-                blocks.append(
-                    Heading(item.number, item.text, page, size=item.size) if is_heading else Text(item.text, page)
-                )
-        return blocks
-
-    def table_from(self, index: int, step: int) -> int | None:
-        """The table nearest to the caption in this direction, with hardly any text and no caption between."""
-        between = 0
-        position = index + step
-        while 0 <= position < len(self.out):
-            item = self.out[position]
-            if isinstance(item, Draft):
-                return position
-            if item.kind != "text" or between >= FAR:
-                return None
-            between += 1
-            position += step
-        return None
-
-    def stands_above(self, captions: list[int], after: dict[int, int | None], before: dict[int, int | None]) -> bool:
-        """Whether captions stand above their tables in this document: by distance on the page, then by number."""
-        nearer = 0
-        for i in captions:
-            down, up = self.distance(i, after[i], 1), self.distance(i, before[i], -1)
-            nearer += (down < up) - (up < down)
-        if nearer == 0:
-            found = sum(after[i] is not None for i in captions) - sum(before[i] is not None for i in captions)
-            return found >= 0
-        return nearer > 0
-
-    def distance(self, caption: int, table: int | None, step: int) -> float:
-        if table is None:
-            return 1000.0
-        mark, draft = self.out[caption], self.out[table]
-        assert isinstance(mark, Mark) and isinstance(draft, Draft)
-        box = draft.table.boxes[0 if step > 0 else -1]
-        if box.page != mark.box.page:
-            return 500.0
-        return max(0.0, box.top - mark.box.bottom if step > 0 else mark.box.top - box.bottom)
-
-    def name(self, table: Table, mark: Mark) -> None:
-        match = self.profile.caption.match(mark.text)
-        assert match is not None
-        number = match["number"]
-        table.number = int(re.split("[-.]", number)[-1]) if not number.isdigit() else int(number)
-        table.caption = _CONTINUED.sub("", match["title"]).strip()
-        table.page = min(mark.box.page, table.page or mark.box.page)
-
-
-def _with_guessed(out: list[Draft | Mark]) -> list[Draft | Mark]:
-    """Runs of lines that look like tables, though nobody knows their headings, made tables: they must not pass unseen."""
-    made: list[Draft | Mark] = []
-    marks: list[Mark] = []
-
-    def flush() -> None:
-        at = 0
-        for start, end, table in guessed.tables(marks):
-            made.extend(marks[at:start])
-            made.append(Draft(table))
-            at = end
-        made.extend(marks[at:])
-        marks.clear()
-
-    for item in out:
-        if isinstance(item, Mark):
-            marks.append(item)
-        else:
-            flush()
-            made.append(item)
-    flush()
-    return made
+def _part(band: Band, found: list[Line]) -> Band:
+    """Some lines of a band, down to its end."""
+    top = found[0].top if found else band.bottom
+    return Band(band.page, top, band.bottom, band.edges, [word for line in found for word in line.words])
 
 
 def _bands(piece: Piece, edges: list[float]) -> list[Band]:

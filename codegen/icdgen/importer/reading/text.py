@@ -11,11 +11,10 @@ from icdgen.importer import headings, labels
 from icdgen.importer.document import Block, Document, Header, Heading, Row, Table, Text
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import grids
-from icdgen.importer.words import plain
+from icdgen.importer.words import CONTINUED, plain
 
 _RULE = re.compile(r"\s*:?-{2,}:?\s*\Z")
 _HEADING = re.compile(r"(?P<number>[0-9]+(?:\.[0-9]+)*)\.?\s+(?P<text>[A-Z].*)\Z")
-_CONTINUED = re.compile(r"\s*[-–,]?\s*[(\[]?\s*(?:continued|cont\.|cont'd)\s*[)\]]?\s*\Z", re.I)
 
 
 def read(path: Path, profile: Profile) -> Document:
@@ -65,7 +64,7 @@ class _Reader:
         caption = self.profile.caption.match(plain(text))
         heading = _HEADING.match(plain(text))
         if caption and (caption["mark"] or not caption["title"]):
-            title = _CONTINUED.sub("", caption["title"]).strip()
+            title = CONTINUED.sub("", caption["title"]).strip()
             self.blocks.append(
                 _Caption(int(re.split("[-.]", caption["number"])[-1]), title, self.page, number, plain(text))
             )

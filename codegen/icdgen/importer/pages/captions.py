@@ -1,0 +1,87 @@
+"""Tables and what stands between them -> blocks of a document: each caption goes to its table."""
+
+from __future__ import annotations
+
+import re
+
+from icdgen.importer.document import Block, Heading, Table, Text
+from icdgen.importer.pages import guessed
+from icdgen.importer.pages.flow import Mark
+from icdgen.importer.profile import Profile
+from icdgen.importer.words import CONTINUED
+
+FAR = 4  # lines of text between a caption and its table; more, and it is none
+Items = list[Table | Mark]
+
+
+def attached(items: Items, profile: Profile) -> list[Block]:
+    """Headings, text and tables, the tables with number and caption."""
+    items = guessed.made(items)
+    captions = [i for i, item in enumerate(items) if isinstance(item, Mark) and item.kind == "caption"]
+    after = {i: _table_from(items, i, 1) for i in captions}
+    before = {i: _table_from(items, i, -1) for i in captions}
+    above = _stand_above(items, after, before)
+    owner: dict[int, int] = {}
+    for i in captions if above else reversed(captions):
+        target = (after if above else before)[i]
+        if target is not None:
+            owner[target] = i  # the nearest wins: it comes last
+    used = set(owner.values())
+    blocks: list[Block] = []
+    for index, item in enumerate(items):
+        if isinstance(item, Table):
+            caption = items[owner[index]] if index in owner else None
+            if isinstance(caption, Mark):
+                _name(item, caption, profile)
+            blocks.append(item)
+        elif index not in used:
+            page, is_heading = item.box.page, item.kind == "heading" or item.strong
+            blocks.append(
+                Heading(item.number, item.text, page, size=item.size) if is_heading else Text(item.text, page)
+            )
+    return blocks
+
+
+def _table_from(items: Items, index: int, step: int) -> int | None:
+    """The table nearest to the caption in this direction, with hardly any text and no caption between."""
+    between = 0
+    position = index + step
+    while 0 <= position < len(items):
+        item = items[position]
+        if isinstance(item, Table):
+            return position
+        if item.kind != "text" or between >= FAR:
+            return None
+        between += 1
+        position += step
+    return None
+
+
+def _stand_above(items: Items, after: dict[int, int | None], before: dict[int, int | None]) -> bool:
+    """Whether captions stand above their tables in this document: by distance on the page, then by number."""
+    nearer = 0
+    for i in after:
+        down, up = _distance(items, i, after[i], 1), _distance(items, i, before[i], -1)
+        nearer += (down < up) - (up < down)
+    if nearer == 0:
+        return sum(table is not None for table in after.values()) >= sum(table is not None for table in before.values())
+    return nearer > 0
+
+
+def _distance(items: Items, caption: int, index: int | None, step: int) -> float:
+    if index is None:
+        return 1000.0
+    mark, table = items[caption], items[index]
+    assert isinstance(mark, Mark) and isinstance(table, Table)
+    box = table.boxes[0 if step > 0 else -1]
+    if box.page != mark.box.page:
+        return 500.0
+    return max(0.0, box.top - mark.box.bottom if step > 0 else mark.box.top - box.bottom)
+
+
+def _name(table: Table, mark: Mark, profile: Profile) -> None:
+    match = profile.caption.match(mark.text)
+    assert match is not None
+    table.number = int(re.split("[-.]", match["number"])[-1])
+    table.caption = CONTINUED.sub("", match["title"]).strip()
+    table.page = min(mark.box.page, table.page or mark.box.page)
