@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from icdgen.backends.c.statement import grouped, joined
 from icdgen.backends.c.types import cast, mask
-from icdgen.describe import FieldDescription
+from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.layout import Piece
 
 BITS = "{bits}"  # stands for the bits of the field in the expressions made here
@@ -122,3 +122,8 @@ def excess(field: FieldDescription) -> str:
         return f"message->{field.name} & {mask(beyond, storage.bits)}"
     beyond = ((1 << wide) - 1) ^ ((1 << one.bits) - 1)
     return f"({cast(f'message->{field.name}', wide)} + {mask(1 << (one.bits - 1), wide)}) & {mask(beyond, wide)}"
+
+
+def excess_type(message: MessageDescription) -> str:
+    """The type that holds what does not fit of any field."""
+    return "uint64_t" if any(f.is_narrow and f.storage.bits == 64 for f in message.fields) else "uint32_t"

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from icdgen.backends.c import bits
 from icdgen.backends.c.member_groups import Flags, Row, member_groups, row_macro
-from icdgen.backends.c.members import EMPTY
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import call
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
+
+EMPTY = "empty"
+"""Member of the struct of a message without fields: C has no empty structs."""
 
 
 def statements(message: MessageDescription) -> list[str]:
