@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen import layout
 from icdgen.icd.division import obstacles
 from icdgen.icd.model import Field, Message, Node
 from icdgen.icd.rules.context import Context
@@ -61,7 +60,7 @@ def _overlaps_among(message: Message, node: Node) -> Iterator[Fault]:
     for field in message.fields:
         if field.at + field.bits > message.length * 8:
             continue  # a finding already
-        mask = layout.mask(field, node)
+        mask = _mask(field, node)
         clash = next(((one, shared) for one, other in seen if (shared := mask & other)), None)
         if clash is not None:
             first, shared = clash
@@ -70,6 +69,13 @@ def _overlaps_among(message: Message, node: Node) -> Iterator[Fault]:
             bits = f"{count(size, 'bit')} of byte {low // 8}" if shared >> low // 8 * 8 < 256 else count(size, "bit")
             yield _overlap(first, field, bits)
         seen.append((field, mask))
+
+
+def _mask(field: Field, node: Node) -> int:
+    """The bits of the frame that the field has; bit w of byte b is bit 8 * b + w."""
+    if field.orders(node)[1] == "lsb0" or field.at % 8 == 0 == field.bits % 8:
+        return ((1 << field.bits) - 1) << field.at
+    return sum(1 << (at // 8 * 8 + 7 - at % 8) for at in range(field.at, field.at + field.bits))
 
 
 def _overlap(first: Field, second: Field, bits: str = "") -> Fault:
