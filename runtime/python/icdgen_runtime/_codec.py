@@ -105,7 +105,9 @@ def sized(value: Buffer, size: int) -> bytes:
     return data
 
 
-def raw_value(value: float, field: str, scale: tuple[int, int, int], low: int, high: int) -> int:
+def raw_value(
+    value: float, field: str, scale: tuple[int, int, int], low: int, high: int
+) -> int:
     """The raw value whose physical value is nearest; of two, the even one.
 
     The physical value is ``(raw * p + c) / q``. ``value`` is taken exactly: a float,

@@ -14,7 +14,9 @@ from ._errors import LengthError
 _EXACT = 1 << 53  # integers below this are exact as 64-bit floats
 
 
-def decode_many(message: type[Message], frames: Buffer, physical: bool) -> dict[str, Any]:
+def decode_many(
+    message: type[Message], frames: Buffer, physical: bool
+) -> dict[str, Any]:
     """See `Message.decode_many`."""
     numpy: Any = import_module("numpy")
     decoder = _Decoder(numpy, message, frames)
@@ -159,7 +161,8 @@ class _Decoder:
         if info.type == "bytes":
             return self.rows[:, start : start + size]
         code = {"int": "i", "float": "f"}.get(info.type, "u")
-        order = ">" if self.message.BYTE_ORDER == "big" else "<"
+        is_big = (info.byte_order or self.message.BYTE_ORDER) == "big"
+        order = ">" if is_big else "<"
         kind = self.numpy.dtype(f"{order}{code}{size}")
         column = self._column(kind, start)
         return column if kind.isnative else column.astype(kind.newbyteorder("="))
@@ -168,7 +171,9 @@ class _Decoder:
         """What stands at a byte of every frame, as a view."""
         if not self.count:
             return self.numpy.empty(0, kind)
-        return self.numpy.ndarray(self.count, kind, self.rows, start, (self.message.LENGTH,))
+        return self.numpy.ndarray(
+            self.count, kind, self.rows, start, (self.message.LENGTH,)
+        )
 
     def _byte(self, byte: int) -> Any:
         return self.bytes[byte][: self.count]
@@ -194,7 +199,9 @@ class _Decoder:
         if info.type != "int":
             return total.astype(f"u{size // 8}")
         spare = numpy.uint64(64 - info.bits)
-        return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(f"i{size // 8}")
+        return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(
+            f"i{size // 8}"
+        )
 
 
 class _Plan(NamedTuple):
@@ -239,15 +246,19 @@ def _is_whole(info: FieldInfo) -> bool:
     return is_wide and info.at % 8 == 0
 
 
-def _pieces(info: FieldInfo, message: type[Message]) -> Iterator[tuple[int, int, int, int]]:
+def _pieces(
+    info: FieldInfo, message: type[Message]
+) -> Iterator[tuple[int, int, int, int]]:
     """Byte, shift, width and place in the value of each run of bits."""
     at, end = info.at, info.at + info.bits
     below = 0
+    is_little = (info.byte_order or message.BYTE_ORDER) == "little"
+    is_lsb0 = (info.bit_order or message.BIT_ORDER) == "lsb0"
     while at < end:
         byte, first = divmod(at, 8)
         bits = min(8 - first, end - at)
-        shift = first if message.BIT_ORDER == "lsb0" else 8 - first - bits
+        shift = first if is_lsb0 else 8 - first - bits
         at += bits
-        weight = below if message.BYTE_ORDER == "little" else info.bits - below - bits
+        weight = below if is_little else info.bits - below - bits
         below += bits
         yield byte, shift, bits, weight

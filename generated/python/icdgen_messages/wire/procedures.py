@@ -13,7 +13,9 @@ from .errors import need
 from .events import Done, Event, Outcome, Packet, Refused, Timeout
 from .link import Link, Step
 
-Result = Literal["done", "refused", "timeout", "parameter", "length", "rounds", "checksum", "error"]
+Result = Literal[
+    "done", "refused", "timeout", "parameter", "length", "rounds", "checksum", "error"
+]
 
 
 class Wait(NamedTuple):
@@ -114,7 +116,9 @@ class Procedure:
         """A number of the ICD."""
         raise NotImplementedError
 
-    def _telecommand(self, name: str, values: Optional[Values] = None, repeat: bool = True) -> Request:
+    def _telecommand(
+        self, name: str, values: Optional[Values] = None, repeat: bool = True
+    ) -> Request:
         """The telecommand of a step: a fresh message with values by role."""
         step = self._step(name)
         id = need(step.telecommand, name)
@@ -143,7 +147,9 @@ class Procedure:
         """Sends the telecommand of a step, which must be executed."""
         yield from self._must(self._telecommand(name, values, repeat))
 
-    def _frame(self, name: str) -> Generator[Wanted, Optional[Outcome], tuple[Values, bytes]]:
+    def _frame(
+        self, name: str
+    ) -> Generator[Wanted, Optional[Outcome], tuple[Values, bytes]]:
         """The frame of a step: its values by role, and its bytes."""
         step = self._step(name)
         id = need(step.telemetry, name)

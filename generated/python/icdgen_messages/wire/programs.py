@@ -36,7 +36,9 @@ class ProgramOperation(Procedure):
         yield from self._order("request", {"program": self.program})
         is_ready = "ready" in form.progress.fields
         role = "ready" if is_ready else "busy"
-        self._told, _ = yield from self._poll("progress", role, is_ready, "poll_interval", form.timeout, self.program)
+        self._told, _ = yield from self._poll(
+            "progress", role, is_ready, "poll_interval", form.timeout, self.program
+        )
         if self._told.get("error"):
             raise Ended("error")
 

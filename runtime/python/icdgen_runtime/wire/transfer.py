@@ -56,11 +56,15 @@ class FileList(FileProcedure):
         yield from self._order("list.reset")
         timeout, interval = self._number("list.timeout_ms"), "list.poll_interval_ms"
         while True:
-            values, frame = yield from self._poll("list.information", "busy", False, interval, timeout)
+            values, frame = yield from self._poll(
+                "list.information", "busy", False, interval, timeout
+            )
             if not any(frame):
                 return
             if frame != last:
-                known = {role: values[role] for role in FileEntry._fields if role in values}
+                known = {
+                    role: values[role] for role in FileEntry._fields if role in values
+                }
                 self.entries.append(FileEntry(**{r: int(v) for r, v in known.items()}))
                 repeated = 0
             elif repeated > self.link.settings.retries:
@@ -95,7 +99,9 @@ class Download(FileProcedure):
         """Offset and data of what was delivered."""
         self._bus = bus
         self._file = {"type": type, "counter": counter}
-        self._block_bytes = min(block or self._files.block_bytes, self._files.block_bytes)
+        self._block_bytes = min(
+            block or self._files.block_bytes, self._files.block_bytes
+        )
         self._offset = 0
         self._got: dict[int, bytes] = {}
         self._count = 0  # packets of the block
@@ -162,7 +168,9 @@ class Download(FileProcedure):
         yield from self._order("download.load", place)
         interval = "download.poll_interval_ms"
         timeout = self._number("download.ready_timeout_ms")
-        ready, _ = yield from self._poll("download.ready", "ready", True, interval, timeout)
+        ready, _ = yield from self._poll(
+            "download.ready", "ready", True, interval, timeout
+        )
         if ready["error"]:
             raise Ended("parameter")
         return ready
@@ -192,7 +200,9 @@ class Download(FileProcedure):
 
     def _fetch(self, packets: int) -> Steps:
         """Requests so many packets one by one."""
-        id = need(self._files.packet_ids.get(self._bus), f"file_transfer.download.{self._bus}")
+        id = need(
+            self._files.packet_ids.get(self._bus), f"file_transfer.download.{self._bus}"
+        )
         for _ in range(packets):
             outcome = yield from self._ask(Request("telemetry", id, repeat=True))
             if isinstance(outcome, Done):
@@ -205,7 +215,9 @@ class Download(FileProcedure):
         first = self._files.first_packet
         received = [first + position for position in self._got]
         pieces = HoleMap(self.link, self._count, received).messages()
-        for id, piece in zip(form.telecommands, pieces[: _maps(self.link, self._count)]):
+        for id, piece in zip(
+            form.telecommands, pieces[: _maps(self.link, self._count)]
+        ):
             message = self.link.TELECOMMANDS[id]()
             setattr(message, form.attribute, piece)
             data = message.to_bytes()
@@ -219,7 +231,9 @@ class Upload(FileProcedure):
     holds less, and `UnsupportedError`.
     """
 
-    def __init__(self, link: Link, destination: int, data: bytes, block: Optional[int] = None) -> None:
+    def __init__(
+        self, link: Link, destination: int, data: bytes, block: Optional[int] = None
+    ) -> None:
         super().__init__(link)
         self._step("upload.initiate")
         known = self._files.destinations
@@ -230,7 +244,9 @@ class Upload(FileProcedure):
             raise TooLongError(most, len(data))
         self.sent = 0
         self._destination, self._data = destination, data
-        self._block_bytes = min(block or self._files.block_bytes, self._files.block_bytes)
+        self._block_bytes = min(
+            block or self._files.block_bytes, self._files.block_bytes
+        )
 
     @property
     def progress(self) -> tuple[int, Optional[int]]:
@@ -297,21 +313,27 @@ class Upload(FileProcedure):
         yield from self._order("upload.finalize", values)
         interval = "upload.poll_interval_ms"
         timeout = self._number("upload.finalize_timeout_ms")
-        told, _ = yield from self._poll("upload.finalized", "busy", False, interval, timeout)
+        told, _ = yield from self._poll(
+            "upload.finalized", "busy", False, interval, timeout
+        )
         return not told["error"]
 
 
 class Erase(FileProcedure):
     """Deletes a file, or all files: then it is done when the node is no longer busy."""
 
-    def __init__(self, link: Link, type: int = 0, counter: int = 0, all: bool = False) -> None:
+    def __init__(
+        self, link: Link, type: int = 0, counter: int = 0, all: bool = False
+    ) -> None:
         super().__init__(link)
         self._values = {"type": type, "counter": counter, "all": all}
 
     def _run(self) -> Steps:
         yield from self._order("erase.request", self._values)
         if self._values["all"]:
-            interval, timeout = "erase.poll_interval_ms", self._number("erase.timeout_ms")
+            interval, timeout = "erase.poll_interval_ms", self._number(
+                "erase.timeout_ms"
+            )
             yield from self._poll("erase.progress", "busy", False, interval, timeout)
 
 
