@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from icdgen.backends.c.constants import Macro
 from icdgen.backends.c.facts import TYPES, boolean, or_none, spelled
-from icdgen.backends.c.names import constant
 from icdgen.backends.c.text import comment, plain
 from icdgen.backends.lines import STEP, in_rows
-from icdgen.describe import MessageDescription
 from icdgen.describe.links import CAN_PARTS, INDEX_PARTS, Assumptions, LinkDescription, SentMessage, StepDescription
 from icdgen.protocol.declared import Kind, facts_of
 from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Crc, Step
@@ -38,10 +35,9 @@ class Row(NamedTuple):
         return f"{self.value}, /* {self.text} */" if self.text else f"{self.value},"
 
 
-def sizes(link: LinkDescription) -> list[Macro]:
-    """The name of the node, and sizes of buffers."""
+def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
+    """Sizes of buffers: name, bytes, what it is."""
     known = link.facts
-    upper = known.node.name.upper()
     rows = [("LONGEST", known.longest, "Bytes of the longest message of either direction, with id and checksum.")]
     slot = 1 + link.joined_bytes if known.can else 0
     if known.can:
@@ -54,17 +50,7 @@ def sizes(link: LinkDescription) -> list[Macro]:
         packets = known.packets_of(known.files.block_bytes)
         rows.append(("BLOCK_BYTES", packets * known.files.packet_bytes, "Bytes of the largest block of a file."))
         rows.append(("BLOCK_BITMAP_BYTES", -(-packets // 8), "Bytes of a bit for each packet of such a block."))
-    found = [Macro(comment([text]), f"{upper}_{end}", f"{value}u") for end, value, text in rows]
-    return [Macro(comment(["The node whose messages these are."]), f"{upper}_NODE", f'"{known.node.name}"'), *found]
-
-
-def aliases(messages: Iterable[MessageDescription]) -> list[Macro]:
-    """``DEMO_ANGLES_TELEMETRY``: how a message is requested, whatever its kind: whose it is, and its id."""
-    requested = [one for one in messages if one.model.telemetry_id is not None]
-    return [
-        Macro("", constant(one, "telemetry"), f"{one.model.node.upper()}_NODE, {one.model.telemetry_id}u")
-        for one in requested
-    ]
+    return rows
 
 
 def tables(link: LinkDescription) -> list[Table]:
