@@ -14,25 +14,11 @@ from icdgen import __version__
 from icdgen.errors import UserError
 from icdgen.reports.excerpt import shown
 
-# Name -> module in ``icdgen.commands``; the module has a click command of the same name.
-_COMMANDS = {
-    "generate": "generate",
-    "init": "init",
-    "check": "check",
-    "fmt": "fmt",
-    "rule": "rule",
-    "show": "show",
-    "units": "units",
-    "docs": "docs",
-    "decode": "decode",
-    "encode": "encode",
-    "diff": "diff",
-    "import": "import_",
-    "sim": "sim",
-    "log": "log",
-    "monitor": "monitor",
-    "send": "send",
-}
+# Each is a module in ``icdgen.commands`` with a click command of the same name; `import` cannot be one in Python.
+_COMMANDS = (
+    "generate", "init", "check", "fmt", "rule", "show", "units", "docs", "decode", "encode", "diff", "import", "sim", "log",
+    "monitor", "send",
+)  # fmt: skip
 _DEFAULT = "generate"
 _WHOLE = 10_000  # characters of a sentence
 
@@ -46,8 +32,8 @@ class _Commands(click.Group):
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         if name not in _COMMANDS:
             return None
-        module = import_module(f"icdgen.commands.{_COMMANDS[name]}")
-        command: click.Command = getattr(module, f"{name}_" if iskeyword(name) else name)
+        python = f"{name}_" if iskeyword(name) else name
+        command: click.Command = getattr(import_module(f"icdgen.commands.{python}"), python)
         return command
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:

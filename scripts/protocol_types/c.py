@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from icdgen.backends.c.link.facts import TYPES, is_told_apart
+from icdgen.backends.c.facts import TYPES, is_told_apart
 from icdgen.backends.c.text import comment
 from icdgen.protocol.declared import BYTE, U16, Fact, Kind, facts_of
 

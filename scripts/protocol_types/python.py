@@ -7,7 +7,7 @@ import textwrap
 
 from icdgen.backends.python.links import type_name
 from icdgen.protocol.declared import Fact, Kind, facts_of
-from icdgen.protocol.sections import PLACES, PROCEDURES, Client
+from icdgen.protocol.sections import PLACES, PROCEDURES, Settings
 
 _TYPES = {
     Kind.FLAG: "bool", Kind.BUSES: "tuple[str, ...]", Kind.SPAN: "tuple[int, int]",
@@ -45,7 +45,7 @@ def _with_facts(text: str, part: type) -> str:
 
 def _member(fact: Fact, part: type) -> str:
     kind = _TYPES.get(fact.kind, "int")
-    if part is Client and fact.kind is Kind.TIME:
+    if part is Settings and fact.kind is Kind.TIME:
         kind = "Number"  # users set it, in fractions if they like
     if fact.is_optional:
         return f"    {fact.name}: Optional[{kind}] = None"

@@ -34,21 +34,21 @@ const icdgenFrames = (() => {
     return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0").toUpperCase()).join(" ");
   }
 
-  const mirrored = (value, width) => {
-    let found = 0;
-    for (let bit = 0; bit < width; bit += 1) if ((value >> bit) & 1) found |= 1 << (width - 1 - bit);
-    return found;
-  };
-
-  /** An 8-bit checksum from its parameters. */
+  /** A checksum of up to 32 bits from its parameters. */
   function crc(facts, data) {
     if (data.length === 0 && facts.empty !== undefined) return facts.empty;
+    const { width = 8, polynomial } = facts;
+    const mask = 2 ** width - 1;
     let value = facts.init;
     for (const byte of data) {
-      value ^= facts.reflect_in ? mirrored(byte, 8) : byte;
-      for (let bit = 0; bit < 8; bit += 1) value = (value & 0x80 ? (value << 1) ^ facts.polynomial : value << 1) & 0xff;
+      for (let place = 0; place < 8; place += 1) {
+        const bit = (byte >> (facts.reflect_in ? place : 7 - place)) & 1;
+        const out = (value >>> (width - 1)) ^ bit;
+        value = (((value << 1) & mask) ^ (out ? polynomial : 0)) >>> 0;
+      }
     }
-    return (facts.reflect_out ? mirrored(value, 8) : value) ^ facts.xor_out;
+    if (facts.reflect_out) value = parseInt([...value.toString(2).padStart(width, "0")].reverse().join(""), 2);
+    return (value ^ facts.xor_out) >>> 0;
   }
 
   /** The checksum of a message, over the id too where the device says so. */
@@ -114,6 +114,6 @@ const icdgenFrames = (() => {
     return { data, remarks };
   }
 
-  return { parseHex, hex, crc, framed, unwrap };
+  return { parseHex, hex, crc, checksum, framed, unwrap };
 })();
 if (typeof module !== "undefined") module.exports = icdgenFrames;

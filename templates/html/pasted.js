@@ -1,6 +1,6 @@
 "use strict";
 /* What a person copied -> bytes or CAN packets: the same spellings as `icdgen decode` takes. */
-const icdgenPasted = ((frames) => {
+const icdgenPasted = ((frames, packets) => {
   const BEFORE = /^(?:\([\d.:\s-]+\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?/.source;
   const ID = "(?<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})";
   const PACKETS = [
@@ -28,8 +28,8 @@ const icdgenPasted = ((frames) => {
 
   /** What was pasted: `{ data, form }`, or `{ packets }`. Throws an Error for what is no bytes at all. */
   function read(text) {
-    const packets = packetsOf(text);
-    if (packets) return { packets };
+    const lines = packetsOf(text);
+    if (lines) return { packets: lines };
     const dumped = dump(text);
     if (dumped) return { data: dumped, form: "a dump with addresses" };
     const literal = LITERAL.exec(text.trim());
@@ -128,33 +128,28 @@ const icdgenPasted = ((frames) => {
   }
 
   /** The data of the message that CAN packets carry, and remarks. Throws an Error where they are of another one. */
-  function joined(wire, length, packets) {
+  function joined(wire, length, given) {
     const { can } = wire;
-    if (!can) return { data: Uint8Array.from(packets.flatMap((one) => [...one.data])), remarks: ["data of CAN packets"] };
-    const part = (name, id) => Math.floor(id / 2 ** can[name][0]) % 2 ** can[name][1];
-    const mine = packets.filter((one) => one.extended && wire.ids.includes(part("channel", one.id)));
-    if (!mine.length) throw new Error(`CAN packets of id ${part("channel", packets[0].id)}, which is another message's`);
-    const id = part("channel", mine[0].id);
-    const remarks = [`data of CAN packets with id ${id}`];
-    const single = mine.find((one) => can.types.includes(part("type", one.id)));
-    if (single) return { data: single.data, remarks };
-    const [bytes, left] = can.extended ?? [0, 0];
-    const pieces = mine.filter((one) => can.extended_types.includes(part("type", one.id)) && one.data.length === left + 1);
-    if (!pieces.length) throw new Error(`CAN packets with id ${id} that carry no data`);
-    pieces.sort((a, b) => b.data[left] - a.data[left]);
-    const count = Math.ceil(length / bytes);
-    if (pieces.length < count) throw new Error(`${count - pieces.length} of ${count} packets are missing`);
-    return { data: Uint8Array.from(pieces.flatMap((one) => [...one.data.slice(0, bytes)])).slice(0, length), remarks };
+    if (!can) return { data: Uint8Array.from(given.flatMap((one) => [...one.data])), remarks: ["data of CAN packets"] };
+    const idOf = (one) => packets.partOf(can, "channel", one.id);
+    const mine = given.filter((one) => one.extended && wire.ids.includes(idOf(one)));
+    if (!mine.length) throw new Error(`CAN packets of id ${idOf(given[0])}, which is another message's`);
+    const { messages, open } = packets.join({ can }, mine, () => length);
+    const found = messages.find((one) => ["telecommand", "reply"].includes(one.kind));
+    if (found) return { data: found.data, remarks: [`data of CAN packets with id ${found.id}`] };
+    if (open.length) throw new Error(`${open[0].count - open[0].pieces.size} of ${open[0].count} packets are missing`);
+    throw new Error(`CAN packets with id ${idOf(mine[0])} that carry no data`);
   }
 
   /** Data of the message in whatever was pasted, and remarks. Throws an Error where it cannot be this message. */
   function messageIn(wire, length, text) {
-    const { data, form, packets } = read(text);
-    if (packets) return joined(wire, length, packets);
+    const given = read(text);
+    if (given.packets) return joined(wire, length, given.packets);
+    const { data, form } = given;
     const found = frames.unwrap(wire, length, data);
     return { data: found.data, remarks: form ? [...found.remarks, `read as ${form}`] : found.remarks };
   }
 
   return { read, messageIn };
-})(typeof icdgenFrames === "undefined" ? require("./frames.js") : icdgenFrames);
+})(...(typeof icdgenFrames === "undefined" ? [require("./frames.js"), require("./packets.js")] : [icdgenFrames, icdgenPackets]));
 if (typeof module !== "undefined") module.exports = icdgenPasted;

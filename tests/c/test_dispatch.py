@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
+import re
 import subprocess
 
-from icdgen.backends.c.dispatch import dispatchers
+from icdgen.backends.c import CBackend
 from icdgen.backends.c.text import literal
-from icdgen.describe import describe
-from icdgen.icd.model import TELECOMMAND, TELEMETRY
+from icdgen.icd.model import TELECOMMAND, TELEMETRY, Icd
 from tests.c import harness
 
 PROGRAM = """\
@@ -100,8 +101,12 @@ def test_every_id_of_every_node_leads_to_its_message(tmp_path):
 
 
 def test_ids_that_fill_more_than_a_byte_get_the_wider_type():
-    node = describe(harness.shipped()).node("cubeacp")
-    for bits in (8, 16):
-        assert {(one.id_type, f"uint{bits}_t id" in one.decode_head) for one in dispatchers(node, bits)} == {
-            (f"uint{bits}_t", True)
-        }
+    icd = harness.shipped()
+    node = icd.node("cubeacp")
+    first, *others = (message for message in node.messages if message.id is not None)
+    wide = dataclasses.replace(node, messages=(dataclasses.replace(first, id=300), *others))
+    wider = Icd(tuple(wide if one is node else one for one in icd.nodes))
+    for known, bits in ((icd, 8), (wider, 16)):
+        files = {str(path): text for path, text in CBackend().files(known, harness._renderer())}
+        types = set(re.findall(r"uint\d+_t (?=id[;,)])", files["cubeacp.h"]))
+        assert types == {f"uint{bits}_t "}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -82,3 +83,83 @@ def test_a_folder_named_like_a_slip_is_still_an_icd(icdgen, tmp_path):
 def test_units_are_listed_with_the_spellings_they_replace(icdgen):
     lines = icdgen("units").out.splitlines()
     assert any(line.split()[0] == "C" and "degC" in line for line in lines)
+
+
+BIG = """\
+icdgen: 1
+node: {name: relay, title: Relay, byte_order: big, bit_order: msb0}
+units: [{symbol: clicks, identifier: clicks, quantity: count}]
+protocol:
+  message_id:
+    direction_bit: 5
+    telecommand: {direction: 0, first: 10, last: 20}
+    telemetry: {direction: 1, first: 32, last: 40}
+  identification: {source: {table: 3}, message: Identification, fields: {node_type: Model, interface_version: Clicks}}
+  boot: {bootloader_s: 5, stop_request: Identification}
+enums:
+  - name: Mode
+    members: [{value: 0, name: Safe}, {value: 1, name: Normal}, {value: 2, name: Test}]
+messages:
+  - name: Identification
+    id: 32
+    kind: telemetry
+    length: 2
+    fields:
+      - {at: 0, bits: 8, name: Model,  type: uint, const: 0x1F}
+      - {at: 8, bits: 8, name: Clicks, type: uint, unit: clicks}
+  - name: Set Mode
+    id: 10
+    kind: telecommand
+    length: 1
+    fields:
+      - {at: 0, bits: 8, name: Mode, type: enum, enum: Mode}
+"""
+
+
+@pytest.mark.parametrize("origin", ["cubeacp", "bootloader", "common"])
+def test_a_device_in_the_style_of_another_is_clean_and_formatted(icdgen, tmp_path, origin):
+    result = icdgen("init", "pump", "--from", origin)
+    assert result.status == 0, result.err
+    checked = icdgen("check")
+    assert checked.status == 0 and "no findings" in checked.out, checked.out
+    assert icdgen("fmt", "--check").status == 0
+    text = (tmp_path / "icd" / "pump.yaml").read_text()
+    assert f"# how messages travel, as {origin} has it" in text and "# `at`: offset in bits" in text
+    assert "escape: 0x1F" in text and "CAN" not in text.partition("messages:")[2]
+    assert "table:" not in text.partition("protocol:")[2] and "No time is given" not in text
+    assert icdgen(*"--lang c --lang python --lang rust".split()).status == 0
+
+
+def test_orders_ids_units_and_names_are_those_of_the_style(icdgen, tmp_path):
+    (tmp_path / "relay.yaml").write_text(BIG)
+    assert icdgen("init", "pump", "--from", "relay", "--icd", "relay.yaml").status == 0
+    assert "no findings" in icdgen("check").out
+    shown = json.loads(icdgen("show", "--format", "json").out)["nodes"][0]
+    assert (shown["byte_order"], shown["bit_order"]) == ("big", "msb0")
+    ids = {m["name"]: m.get("id") for m in shown["messages"]}
+    assert ids == {"Identification": 32, "Status": 33, "Set Mode": 10, "Reset": 11, "Limits": None}
+    text = (tmp_path / "icd" / "pump.yaml").read_text()
+    assert "0x1F" in text and "clicks" in text
+    assert "boot" not in text
+
+
+def test_one_of_your_own_is_a_style_and_speaks_the_same_way(icdgen, tmp_path):
+    assert icdgen("init", "battery").status == 0
+    assert icdgen("init", "pump", "--from", "battery").status == 0
+    assert "no findings" in icdgen("check").out
+    assert icdgen("decode", "pump", "10 02 81 01 03 10 10 27 88 13 10 03").status == 0
+    assert icdgen("init", "valve", "--from", "cubeacp").status == 0  # those shipped are there, too
+
+
+@pytest.mark.parametrize(
+    ("origin", "answer"),
+    [
+        ("cubemag", "does not say how its messages travel"),
+        ("cubeapc", "did you mean `cubeacp`"),
+        ("", "there is no node"),
+    ],
+)
+def test_a_style_that_there_is_not_is_said_and_nothing_is_written(icdgen, tmp_path, origin, answer):
+    result = icdgen("init", "pump", "--from", origin)
+    assert result.status == 2 and answer in result.err
+    assert list(tmp_path.iterdir()) == []

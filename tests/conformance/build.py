@@ -9,6 +9,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 from functools import cache
 from pathlib import Path
 
@@ -16,8 +17,10 @@ from icdgen import backends
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from tests.conformance import ROOT, testees  # noqa: F401  (it registers the testees' backends)
-from tests.conformance.languages import Language, version
+from tests.conformance.front.plan import plan
+from tests.conformance.languages import TESTEE, Language, version
 
+FRONT = ROOT / "tests" / "conformance" / "front" / "__main__.py"
 BOARD = ROOT / "tests" / "conformance" / "board"  # what the self-tests are linked with
 
 
@@ -33,7 +36,8 @@ def cache_folder() -> Path:
 def build(language: Language, icd: Icd, folder: Path | None = None) -> list[str]:
     """The command line that starts the language's testee for these ICDs. Raises `BuildError`."""
     files = generated(language, icd)
-    folder = (folder or cache_folder()) / f"{language.name}-{_key(language, files)}"
+    known = json.dumps(plan(icd)).encode()
+    folder = (folder or cache_folder()) / f"{language.name}-{_key(language, {**files, 'plan.json': known})}"
     folder.mkdir(parents=True, exist_ok=True)
     done = folder / "command.json"
     with open(folder / "lock", "w") as lock:
@@ -46,7 +50,14 @@ def build(language: Language, icd: Icd, folder: Path | None = None) -> list[str]
             for name, data in files.items():
                 (source / name).parent.mkdir(parents=True, exist_ok=True)
                 (source / name).write_bytes(data)
-            done.write_text(json.dumps(language.build(source, out)))
+            (folder / "plan.json").write_bytes(known)
+            command = language.build(source, out)
+            front = (
+                [sys.executable, str(FRONT), str(folder / "plan.json")]
+                if language.kind == TESTEE and language.front
+                else []
+            )
+            done.write_text(json.dumps([*front, *command]))
         return json.loads(done.read_text())
 
 
@@ -76,6 +87,7 @@ def execute(*command: str | Path, cwd: Path | None = None, env: dict[str, str] |
 
 def _key(language: Language, files: dict[str, bytes]) -> str:
     digest = hashlib.sha256()
+    digest.update(f"{sys.executable}\0".encode())
     recipe = Path(inspect.getfile(getattr(language.build, "func", language.build)))
     for file in (recipe, *sorted(BOARD.glob("*"))):
         digest.update(file.read_bytes() + b"\0")

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 import subprocess
 import tempfile
 import threading
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Protocol
 
 
@@ -54,12 +57,13 @@ class Testee:
         """The answer to each line (without its newline); None for each that was not answered because the testee died."""
         if self.process is None:
             self.process = subprocess.Popen(
-                self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.errors, bufsize=1 << 18
-            )
+                self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.errors, bufsize=1 << 18,
+                start_new_session=True,
+            )  # fmt: skip
         process = self.process
         assert process.stdin and process.stdout
         writer = threading.Thread(target=self._write, args=(process, lines), daemon=True)
-        watchdog = threading.Timer(self.timeout, process.kill)
+        watchdog = threading.Timer(self.timeout, _kill, [process])
         watchdog.start()
         writer.start()
         answers: list[bytes | None] = []
@@ -98,7 +102,7 @@ class Testee:
         if process is None:
             return 0
         if kill:
-            process.kill()
+            _kill(process)
         try:
             if process.stdin:
                 process.stdin.close()
@@ -107,8 +111,14 @@ class Testee:
         try:
             status = process.wait(10)
         except subprocess.TimeoutExpired:
-            process.kill()
+            _kill(process)
             status = process.wait()
         if process.stdout:
             process.stdout.close()
         return status
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    """The front, and the program that it asks."""
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)

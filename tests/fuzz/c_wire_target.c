@@ -2,7 +2,10 @@
 
 #include "testee.h"
 
+#include <icdgen_wire.h>
 #include <stdlib.h>
+
+const icd_link_t *testee_link(size_t node);
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -337,16 +340,10 @@ static void procedures(const icd_link_t *link, input_t *input)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     input_t input = {data, size};
-    const testee_node_t *node;
-    const icd_link_t *link;
-    if (size < 2u) {
+    const icd_link_t *link = size < 2u ? NULL : testee_link(take(&input) % testee_node_count);
+    if (link == NULL) {
         return 0;
     }
-    node = testee_nodes[take(&input) % testee_node_count];
-    if (node->link == NULL) {
-        return 0;
-    }
-    link = node->link();
     switch (take(&input) % 7u) {
     case 0:
         uart(link, &input);

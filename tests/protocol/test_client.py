@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from icdgen.protocol import can, uart
 from icdgen.protocol.client import Client, Request
 from icdgen.protocol.errors import BusyError, LengthError, UnknownIdError
-from icdgen.protocol.facts import Client as Settings
+from icdgen.protocol.sections import Settings
 from tests.protocol import quick
 
 SETTINGS = Settings(reply_timeout=100, retries=2, poll_interval=10, poll_timeout=50)

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from icdgen.protocol import crc
-from icdgen.protocol.facts import Crc
+from icdgen.protocol.sections import Crc
 from tests.protocol import quick
 
 CATALOGUE = [

@@ -12,11 +12,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from icdgen.protocol import crc, facts
+from icdgen.protocol import crc
+from icdgen.protocol.sections import Crc
 from tests.python.wire import cut, known, link
 
 CRCS = st.builds(
-    facts.Crc,
+    Crc,
     width=st.sampled_from([8, 16, 32]),
     polynomial=st.integers(0, 255),
     init=st.integers(0, 255),

@@ -10,11 +10,11 @@ from dataclasses import replace
 
 from icdgen.link.ports import open_port
 from icdgen.protocol import transfer
-from icdgen.protocol.facts import Client
+from icdgen.protocol.sections import Settings
 from tests.conformance.icds import icd_of
 from tests.sim.reference import Session
 
-FAST = Client(reply_timeout=150, retries=4, poll_interval=5, poll_timeout=2000)
+FAST = Settings(reply_timeout=150, retries=4, poll_interval=5, poll_timeout=2000)
 ICD = icd_of()
 
 
@@ -35,7 +35,7 @@ def simulator(*options: str) -> Iterator[tuple[str, subprocess.Popen]]:
 
 
 @contextmanager
-def session(*options: str, node: str = "cubeacp", settings: Client = FAST, **more) -> Iterator[Session]:
+def session(*options: str, node: str = "cubeacp", settings: Settings = FAST, **more) -> Iterator[Session]:
     """A client that is connected to a simulator of its own."""
     ways = () if {"--tcp", "--udp", "--pty"} & set(options) else ("--tcp", "0")
     with (

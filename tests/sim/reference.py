@@ -10,8 +10,7 @@ from icdgen.icd.model import Icd, Message, Node
 from icdgen.link.ports import Can, Port
 from icdgen.protocol import facts
 from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Client, Request
-from icdgen.protocol.facts import CAN, UART
-from icdgen.protocol.facts import Client as Settings
+from icdgen.protocol.sections import CAN, UART, Settings
 from icdgen.protocol.transfer import OUTCOMES, Procedure
 
 LONGEST_WAIT = 3600.0  # s

@@ -65,7 +65,9 @@ def test_the_site_is_small_and_has_a_page_for_everything(site, shipped):
     assert sum(path.stat().st_size for path in site.rglob("*")) < 15_000_000
     for node in shipped.nodes:
         pages = {path.name for path in (site / node.name).iterdir()}
-        assert len(pages) == len(node.messages) + len(node.enums) + 2
+        talks = bool(shipped.protocol_of(node))
+        assert len(pages) == len(node.messages) + len(node.enums) + 2 + talks
+        assert ("protocol.html" in pages) == talks
 
 
 def test_the_site_is_the_same_each_time():
@@ -94,7 +96,7 @@ def test_the_index_of_the_search_leads_to_pages_and_anchors(site):
     text = (site / "search-index.js").read_text("utf-8")
     entries = json.loads(text[text.index("[") : text.rindex("]") + 1])
     pages = {str(p.relative_to(site)): set(Page(p.read_text("utf-8")).ids) for p in site.rglob("*.html")}
-    for _, title, _, _, url in entries:
+    for _, title, *_, url in entries:
         path, _, anchor = url.partition("#")
         assert not anchor or anchor in pages[path], title
     kinds = Counter(entry[0] for entry in entries)

@@ -48,3 +48,9 @@ def bulleted(paragraphs: Iterable[str], width: int, start: str, between: str) ->
         lines += [between] if lines else []
         lines += [start + line for line in wrapped(paragraph, width - len(start))]
     return lines
+
+
+def in_rows(items: Iterable[str], count: int) -> list[str]:
+    """``count`` items a line, each with a comma behind it."""
+    found = [f"{item}," for item in items]
+    return [" ".join(found[first : first + count]) for first in range(0, len(found), count)]

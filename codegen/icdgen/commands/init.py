@@ -2,23 +2,58 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from icdgen.commands.common import say
+from icdgen.commands.common import chosen, icd_option, print_findings, say
+
+if TYPE_CHECKING:
+    from icdgen.starter.style import Style
 
 
 @click.command()
 @click.argument("name")
-def init(name: str) -> None:
+@click.option(
+    "--from", "origin", metavar="NODE", help="In the style of this node: how its messages travel, byte and bit order."
+)
+@icd_option
+def init(name: str, origin: str | None, icds: tuple[Path, ...]) -> None:
     """Write a commented first ICD of a device NAME: icd/NAME.yaml, its errata file, and icdgen.toml.
 
     It has UART framing, a checksum, acknowledges, telemetry, telecommands and a configuration message, and is ready for
-    icdgen check, icdgen --lang c, icdgen docs and icdgen sim. Nothing that is there already is touched.
+    icdgen check, icdgen --lang c, icdgen docs and icdgen sim. With --from the protocol is that of a node of your ICDs, or of
+    those shipped. Nothing that is there already is touched.
     """
     from icdgen import starter
 
-    for path in starter.write(Path.cwd(), name):
+    style = _style(origin, icds) if origin is not None else None
+    for path in starter.write(Path.cwd(), name, style, origin or ""):
         say(f"{path} written")
     say("next: icdgen check, icdgen --lang c, icdgen sim")
+
+
+def _style(origin: str, icds: tuple[Path, ...]) -> Style:
+    from icdgen import shipped
+    from icdgen.loading import load
+    from icdgen.starter import style
+    from icdgen.values.errors import NotFound
+    from icdgen.values.find import find_node
+
+    paths = chosen(icds)[0]
+    if not icds and not all(path.exists() for path in paths):
+        paths = [shipped.icds()]  # icdgen.toml was written before its ICDs
+    loaded = load(paths)
+    if not loaded.ok:
+        print_findings(loaded.findings, loaded.texts, "text", err=True)
+        sys.exit(1)
+    try:
+        node = find_node(loaded.icd, origin)
+    except NotFound:
+        if icds:
+            raise
+        loaded = load([*paths, shipped.icds()])
+        node = find_node(loaded.icd, origin)
+    return style.of(loaded.icd, node, loaded.texts)

@@ -41,6 +41,11 @@ class FieldDescription:
         return self.model.const or 0
 
     @property
+    def byte_order(self) -> str:
+        """``little`` or ``big``: its own, its message's or its node's."""
+        return self.model.orders(self.message.node)[0]
+
+    @property
     def pieces(self) -> tuple[layout.Piece, ...]:
         """The runs of bits of the frame that make up a number."""
         return layout.pieces(self.model, self.message.node)
@@ -137,6 +142,13 @@ class MessageDescription:
         return message_comment(self.model, None if telemetry_id is None else bits.get(telemetry_id))
 
 
+class Direction(NamedTuple):
+    """What a node speaks in one direction: messages, each with the name of its id there (``id``, ``set_id`` or ``get_id``)."""
+
+    kind: str  # "telecommand" | "telemetry"
+    messages: tuple[tuple[MessageDescription, str], ...]
+
+
 class NodeDescription:
     """A node (``model``) of the set."""
 
@@ -167,6 +179,15 @@ class NodeDescription:
     def telemetry(self) -> tuple[MessageDescription, ...]:
         """Those of `spoken` that can be requested from it."""
         return tuple(one for one in self.spoken if one.model.telemetry_id is not None)
+
+    @property
+    def directions(self) -> tuple[Direction, ...]:
+        """Telecommands, then telemetry; without one of which it has none."""
+        found = (
+            Direction("telecommand", tuple((one, one.telecommand_id_name) for one in self.telecommands)),
+            Direction("telemetry", tuple((one, one.telemetry_id_name) for one in self.telemetry)),
+        )
+        return tuple(direction for direction in found if direction.messages)
 
     @property
     def is_linked(self) -> bool:

@@ -22,7 +22,7 @@ from icdgen.diff.pairs import (
     Thing,
 )
 from icdgen.icd.located import Map
-from icdgen.icd.model import Enum, Field, Icd, Message, Node
+from icdgen.icd.model import TELEMETRY, Enum, Field, Icd, Message, Node
 
 LANGUAGES = ("c", "python", "rust")
 
@@ -57,8 +57,10 @@ class Generated:
     def _kept(self) -> set[int]:
         """Everything whose names may have changed, with what it is part of: id(pair)."""
         kept: set[int] = set()
+        parts_of = {id(p): [part for part in p.parts if may_rename(part)] if p.both else [] for p in self._changed}
+        idle = idle_facts(part for parts in parts_of.values() for part in parts)
         for pair in self._changed:
-            parts = [id(part) for part in pair.parts if may_rename(part)] if pair.both else []
+            parts = [id(part) for part in parts_of[id(pair)] if what_differs(part) not in idle]
             if parts or may_rename(pair):
                 kept.update((id(pair), *parts))
         return kept
@@ -161,6 +163,49 @@ def may_rename(pair: IdentifiedPair) -> bool:
     if isinstance(pair, MemberPair):
         return pair.owner.has_another_vocabulary
     return pair.is_of_another_node or pair.has_another_vocabulary
+
+
+Difference = tuple[object, object, tuple[str, ...]]  # decisive facts of a field, old and new, and how words are split
+
+
+def what_differs(pair: IdentifiedPair) -> Difference | None:
+    """What a field means otherwise, where that is all that its names could change by."""
+    if not isinstance(pair, FieldPair) or not pair.both or is_called_otherwise(pair):
+        return None
+    old, new = pair.old, pair.new
+    if pair.owner.has_another_vocabulary or old.enum or new.enum or (old.type, old.bits) != (new.type, new.bits):
+        return None
+    return _decisive(old), _decisive(new), pair.owner.new_node.vocabulary
+
+
+def idle_facts(pairs: Iterable[IdentifiedPair]) -> set[Difference]:
+    """The differences by which no name changes: each is tried on one field, however many differ by it."""
+    samples: dict[Difference, FieldPair] = {}
+    for pair in pairs:
+        difference = what_differs(pair)
+        if difference is not None and isinstance(pair, FieldPair) and _is_sound(pair.old) and _is_sound(pair.new):
+            samples.setdefault(difference, pair)
+    before, after = (_texts(list(samples.values()), side) for side in (0, 1))
+    return {difference for difference, old, new in zip(samples, before, after, strict=True) if old == new}
+
+
+def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
+    """The generated names of one side of each sample, by language, all in one message of an ICD of its own."""
+    marks = [Map(Place("")) for _ in samples]
+    fields = [
+        replace(pair.new if side else pair.old, name=f"Sample {number}", identifier=None, source=mark)
+        for number, (pair, mark) in enumerate(zip(samples, marks, strict=True))
+    ]
+    found: dict[int, list[tuple[str, str]]] = {id(mark): [] for mark in marks}
+    for vocabulary in dict.fromkeys(pair.owner.new_node.vocabulary for pair in samples):
+        own = (f for f, pair in zip(fields, samples, strict=True) if pair.owner.new_node.vocabulary == vocabulary)
+        message = Message("Samples", TELEMETRY, 0, tuple(own), node="samples")
+        icd = Icd((Node("samples", "", "", "little", "lsb0", (message,), (), vocabulary=vocabulary),))
+        for language in LANGUAGES:
+            for _, text, _, source in backends.get(language).identifiers(icd):
+                if id(source) in found:
+                    found[id(source)].append((language, text))
+    return list(found.values())
 
 
 def _decisive(field: Field) -> object:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -37,7 +38,8 @@ class Report:
 
     def counts(self) -> dict[str, int]:
         """Changes of each layer."""
-        return {layer: len(self.of_layer(layer)) for layer in LAYERS}
+        found = Counter(change.layer for change in self.changes)
+        return {layer: found[layer] for layer in LAYERS}
 
     def fails(self, asked: Sequence[str]) -> list[Change]:
         """Changes of the layers asked for; additions only if they are asked for too."""
@@ -52,7 +54,10 @@ def _placed(change: Change, old: Side, new: Side) -> Change:
     for side, place in ((old, change.old), (new, change.new)):
         erratum = change.where.erratum
         places.append(side.erratum(erratum) if erratum else side.place(place))
-    return replace(change, old=places[0], new=places[1])
+    old_place, new_place = places
+    return (
+        change if (change.old, change.new) == (old_place, new_place) else replace(change, old=old_place, new=new_place)
+    )
 
 
 def make(old: Side, new: Side, acceptances: Sequence[Acceptance] = ()) -> Report:

@@ -35,16 +35,13 @@ class Rule:
     """A kind of change. The first digit of its code is the layer: 1 wire, 2 meaning, 3 source, 4 text."""
 
     code: str
+    layer: str  # one of `LAYERS`
     of: tuple[str, ...]  # what it looks at: "icd", "node", "message", "field", "enum", "member"
     theme: str
     check: Check
     severity: str = "error"  # "error" | "warning" | "note"
     addition: bool = False  # something that nobody relied upon came
     when: str = "both"  # or "gone", "come": only in the old ICD, only in the new one
-
-    @property
-    def layer(self) -> str:
-        return LAYERS[int(self.code[3]) - 1]
 
     @property
     def page(self) -> pages.Page:
@@ -69,7 +66,7 @@ def rule(
         if code in REGISTERED:
             raise ValueError(f"two rules are called {code}")
         theme = check.__module__.rpartition(".")[2]
-        REGISTERED[code] = Rule(code, of, theme, check, severity, addition, when)
+        REGISTERED[code] = Rule(code, LAYERS[int(code[3]) - 1], of, theme, check, severity, addition, when)
         return check
 
     return register

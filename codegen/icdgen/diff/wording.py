@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from functools import lru_cache
 
 from icdgen.describe.numbers import bit_range, factor_text
 from icdgen.icd.formula import Scale
@@ -36,6 +37,7 @@ def number(value: Fraction | int | None) -> str:
     return "" if value is None else factor_text(Fraction(value))
 
 
+@lru_cache(maxsize=4096)
 def formula(scale: Scale | None) -> str:
     """The scale in one spelling: ``raw``, ``raw*0.01``, ``raw*0.5 - 40``."""
     if scale is None:

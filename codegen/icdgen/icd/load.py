@@ -14,7 +14,7 @@ from icdgen.icd import errata, source
 from icdgen.icd.build import Builder, Scope
 from icdgen.icd.loaded import Loaded
 from icdgen.icd.located import Map, Seq
-from icdgen.icd.model import Icd, Node
+from icdgen.icd.model import Icd, Node, closure
 
 if TYPE_CHECKING:
     from icdgen.icd.identifiers import Language
@@ -92,7 +92,7 @@ class _Loader:
         for one in included:
             digest.update(one.digest.encode())
         names = tuple(dict.fromkeys(n.name for n in included))
-        node = Builder(tree, applied, self.broken, Scope(self.closure(included))).node(names, digest.hexdigest())
+        node = Builder(tree, applied, self.broken, Scope(closure(self.nodes, names))).node(names, digest.hexdigest())
         if node is not None:
             self.nodes.append(node)
         self.by_path[key] = node
@@ -174,16 +174,6 @@ class _Loader:
         if not os.path.isfile(target):
             return f"there is no file `{item}` beside this one", "check the name"
         return None
-
-    def closure(self, nodes: list[Node]) -> list[Node]:
-        names: set[str] = set()
-        queue = [n.name for n in nodes]
-        while queue:
-            name = queue.pop()
-            if name not in names:
-                names.add(name)
-                queue += next((n.includes for n in self.nodes if n.name == name), ())
-        return [n for n in self.nodes if n.name in names]
 
 
 def _resolved(path: Path) -> Path:

@@ -81,3 +81,10 @@ _UNREAD = Map(Place(""))
 def unread() -> Map:
     """The source of what was not read from a file: an empty mapping that stands nowhere."""
     return _UNREAD
+
+
+def plain(value: Any) -> Any:
+    """A tree without positions, at any depth."""
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
+    return [plain(item) for item in value] if isinstance(value, list) else value

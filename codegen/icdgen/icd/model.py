@@ -6,6 +6,7 @@ where a model was made in memory or came from the cache).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -108,8 +109,14 @@ class Field:
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
     summary: str = ""
+    byte_order: str = ""  # its own or its message's; empty: the node's
+    bit_order: str = ""  # likewise; `at` is counted by it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
+
+    def orders(self, node: Node) -> tuple[str, str]:
+        """Byte order and bit order; ``node`` is the one that declares its message."""
+        return self.byte_order or node.byte_order, self.bit_order or node.bit_order
 
     @property
     def signed(self) -> bool:
@@ -238,14 +245,7 @@ class Icd:
 
     def included(self, node: Node) -> tuple[Node, ...]:
         """All nodes that ``node`` includes, directly or not, each once, in the order of the set."""
-        queue = list(node.includes)
-        names: set[str] = set()
-        while queue:
-            name = queue.pop()
-            if name not in names:
-                names.add(name)
-                queue += self.node(name).includes
-        return tuple(n for n in self.nodes if n.name in names)
+        return closure(self.nodes, node.includes)
 
     def messages_of(self, node: Node) -> tuple[Message, ...]:
         """All messages that the node speaks: those of included nodes first, then its own."""
@@ -257,3 +257,16 @@ class Icd:
         for one in (*self.included(node), node):
             merged.update(one.protocol)
         return merged
+
+
+def closure(nodes: Iterable[Node], names: Iterable[str]) -> tuple[Node, ...]:
+    """The nodes of these names and all that they include, directly or not, each once, in the order of ``nodes``."""
+    known = {node.name: node for node in reversed(tuple(nodes))}
+    wanted: set[str] = set()
+    queue = list(names)
+    while queue:
+        name = queue.pop()
+        if name in known and name not in wanted:
+            wanted.add(name)
+            queue += known[name].includes
+    return tuple(node for node in nodes if node.name in wanted)

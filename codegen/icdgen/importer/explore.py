@@ -7,6 +7,7 @@ import re
 from collections import Counter
 from dataclasses import dataclass, field
 
+from icdgen.icd.rules.wording import count
 from icdgen.importer import labels
 from icdgen.importer.document import Table
 from icdgen.importer.profile import Profile
@@ -113,11 +114,12 @@ def unknown_labels(result: Result, profile: Profile) -> Counter[str]:
 def report(result: Result, profile: Profile) -> str:
     """The kinds of tables as comments, and below them the proposed profile: together a file for ``--profile``."""
     found = kinds(result)
-    lines = [f"# {result.document.file}: {len(found)} kinds of tables. Lines with ? are guesses: correct them, then"]
+    lines = [
+        f"# {result.document.file}: {count(len(found), 'kind')} of tables. Lines with ? are guesses: correct them, then"
+    ]
     lines += ["# icdgen import MANUAL --profile THIS-FILE --pages 1-20 --report report.html", "#"]
     for one in found:
-        count = len(one.tables)
-        lines.append(f"# {count} time{'s' if count != 1 else ''} ({one.what}), {one.where}:")
+        lines.append(f"# {count(len(one.tables), 'time')} ({one.what}), {one.where}:")
         lines.append(f"#   {' | '.join(_shown(title) for title in one.titles)}")
         if one.what == UNKNOWN and (rows := _body(one.tables[0])):
             lines.append(f"#   {' | '.join(_shown(cell) for cell in rows[0])}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from icdgen.icd.fmt.emit import Spelled
 from icdgen.icd.units import SPELLINGS, STANDARD
 from icdgen.importer.document import Document, Table, Trouble
 from icdgen.importer.parts import NodeParts
@@ -13,17 +14,6 @@ from icdgen.importer.understand.model import Listed, ReadEnum, ReadField, ReadMe
 from icdgen.importer.words import squeezed
 
 NOT_STATED = "not stated"
-
-
-class Spelled(int):
-    """A number with the way it is written: ``0x5A``."""
-
-    spelling: str
-
-    def __new__(cls, spelling: str) -> Spelled:
-        made = super().__new__(cls, int(spelling, 16) if "x" in spelling.lower() else int(spelling))
-        made.spelling = spelling
-        return made
 
 
 def tree(node: NodeParts, document: Document, profile: Profile, prose: bool, troubles: list[Trouble]) -> dict[str, Any]:

@@ -10,8 +10,7 @@ from typing import Any, Protocol
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.icd import source
-from icdgen.icd.build import plain_mapping
-from icdgen.icd.located import Map
+from icdgen.icd.located import Map, plain
 from icdgen.importer.words import folded
 
 DEFAULT = Path(__file__).with_name("profile.yaml")
@@ -191,12 +190,12 @@ def find(name: str | None) -> Path | None:
 
 def load(path: Path | None = None) -> Profile:
     """The profile that comes with icdgen, with ``path`` laid over it. Raises `Findings` for a profile that is wrong."""
-    base = plain_mapping(source.read(DEFAULT))
+    base = plain(source.read(DEFAULT))
     if path is None:
         return Profile(base)
     tree = source.read(path)
     _check(tree, base, str(path))
-    own = plain_mapping(tree)
+    own = plain(tree)
     return Profile(_laid_over(_without_moved(base, own), own), str(path), own)
 
 

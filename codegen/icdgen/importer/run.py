@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from icdgen.errors import UserError
-from icdgen.importer import assemble, emit, profile, reading, repairs, update
+from icdgen.icd.fmt import emit
+from icdgen.importer import assemble, profile, reading, repairs, update
 from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Document, Table, Trouble
 from icdgen.importer.understand import survey
 from icdgen.importer.understand.survey import Survey

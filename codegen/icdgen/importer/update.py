@@ -8,9 +8,8 @@ from itertools import pairwise
 from typing import Any
 
 from icdgen.icd import source
-from icdgen.icd.fmt import read, scalars
+from icdgen.icd.fmt import emit, read, scalars
 from icdgen.icd.fmt.commented import NOTHING, Branch, Child, Text
-from icdgen.importer import emit
 
 # What people add to the manual's facts.
 _OURS = {

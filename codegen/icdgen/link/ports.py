@@ -11,8 +11,8 @@ import re
 import select
 import socket
 import stat
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from typing import Any, Protocol
 from urllib.parse import urlsplit
 
@@ -42,12 +42,21 @@ class Port(Protocol):
     def close(self) -> None: ...
 
 
+@contextmanager
+def _failures(name: str, *kinds: type[Exception], help: str = "") -> Iterator[None]:
+    """Errors of these kinds become a `PortError` that begins with the name."""
+    try:
+        yield
+    except kinds as error:
+        raise PortError(f"{name}: {getattr(error, 'strerror', None) or error}", help) from None
+
+
 class Socket:
     """TCP or UDP."""
 
     def __init__(self, kind: str, host: str, port: int) -> None:
         self.name = f"{kind}://{host}:{port}"
-        try:
+        with _failures(f"cannot connect to {self.name}", OSError, help="is it running?"):
             if kind == "tcp":
                 self.socket = socket.create_connection((host, port), CONNECT_TIMEOUT)
                 self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
@@ -56,18 +65,15 @@ class Socket:
                 self.socket = socket.socket(family, socket.SOCK_DGRAM)
                 self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
                 self.socket.connect(address)
-        except OSError as error:
-            raise PortError(f"cannot connect to {self.name}: {error.strerror or error}", "is it running?") from None
         self.stream = kind == "tcp"
 
     def read(self, timeout: float) -> bytes:
         try:
-            self.socket.settimeout(max(timeout, 1e-6))
-            data = self.socket.recv(65536)
+            with _failures(self.name, ConnectionRefusedError, help="is it running?"):
+                self.socket.settimeout(max(timeout, 1e-6))
+                data = self.socket.recv(65536)
         except (TimeoutError, BlockingIOError):
             return b""
-        except ConnectionRefusedError as error:
-            raise PortError(f"{self.name}: {error.strerror}", "is it running?") from None
         except OSError as error:
             raise PortError(f"{self.name}: {error.strerror or error}") from None
         if not data and self.stream:
@@ -75,15 +81,13 @@ class Socket:
         return data
 
     def write(self, data: bytes) -> None:
-        try:
+        with _failures(self.name, OSError):
             self.socket.settimeout(WRITE_TIMEOUT)
             if self.stream:
                 self.socket.sendall(data)
             else:
                 for at in range(0, len(data), 1400):
                     self.socket.send(data[at : at + 1400])
-        except OSError as error:
-            raise PortError(f"{self.name}: {error.strerror or error}") from None
 
     def close(self) -> None:
         self.socket.close()
@@ -96,10 +100,8 @@ class Terminal:
         import tty
 
         self.path = path
-        try:
+        with _failures(f"cannot open {path}", OSError, help="check the path and your rights to it"):
             self.file = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
-        except OSError as error:
-            raise PortError(f"cannot open {path}: {error.strerror}", "check the path and your rights to it") from None
         with suppress(OSError):
             tty.setraw(self.file)
 
@@ -136,8 +138,8 @@ class Serial:
 
     def __init__(self, name: str, settings: dict[str, Any]) -> None:
         serial = _library("serial", "pyserial")
-        self.name, self.error = name, (serial.SerialException, OSError)
-        try:
+        self.name, self.errors = name, (serial.SerialException, OSError)
+        with _failures(f"cannot open {name}", *self.errors, ValueError, help=f"a port is named so: {FORMS}"):
             self.serial = serial.Serial(
                 name,
                 settings.get("baud_rate", 115200),
@@ -146,22 +148,16 @@ class Serial:
                 stopbits=settings.get("stop_bits", 1),
                 write_timeout=WRITE_TIMEOUT,
             )
-        except (*self.error, ValueError) as error:
-            raise PortError(f"cannot open {name}: {error}", f"a port is named so: {FORMS}") from None
 
     def read(self, timeout: float) -> bytes:
-        try:
+        with _failures(self.name, *self.errors):
             self.serial.timeout = max(timeout, 0)
             first = self.serial.read(1)
             return first + self.serial.read(self.serial.in_waiting) if first else b""
-        except self.error as error:
-            raise PortError(f"{self.name}: {error}") from None
 
     def write(self, data: bytes) -> None:
-        try:
+        with _failures(self.name, *self.errors):
             self.serial.write(data)
-        except self.error as error:
-            raise PortError(f"{self.name}: {error}") from None
 
     def close(self) -> None:
         self.serial.close()
@@ -173,27 +169,23 @@ class Can:
     def __init__(self, interface: str, channel: str, bit_rate: int) -> None:
         self.can = _library("can", "python-can")
         self.name = f"can://{interface}/{channel}"
-        try:
+        self.errors = self.can.CanError, OSError
+        help = f"a port is named so: {FORMS}"
+        with _failures(f"cannot open {self.name}", *self.errors, ValueError, ImportError, help=help):
             self.bus = self.can.Bus(interface=interface, channel=channel, bitrate=bit_rate)
-        except (self.can.CanError, OSError, ValueError, ImportError) as error:
-            raise PortError(f"cannot open {self.name}: {error}", f"a port is named so: {FORMS}") from None
 
     def receive(self, timeout: float) -> CanPacket | None:
         """The next packet with a 29-bit identifier, after ``timeout`` none. Raises `PortError`."""
-        try:
+        with _failures(self.name, *self.errors):
             found = self.bus.recv(max(timeout, 0))
-        except (self.can.CanError, OSError) as error:
-            raise PortError(f"{self.name}: {error}") from None
         if found is None or not found.is_extended_id or found.is_error_frame or found.is_remote_frame:
             return None
         return CanPacket(found.arbitration_id, bytes(found.data))
 
     def send(self, packet: CanPacket) -> None:
         message = self.can.Message(arbitration_id=packet.id, data=packet.data, is_extended_id=True)
-        try:
+        with _failures(self.name, *self.errors):
             self.bus.send(message, timeout=WRITE_TIMEOUT)
-        except (self.can.CanError, OSError) as error:
-            raise PortError(f"{self.name}: {error}") from None
 
     def close(self) -> None:
         self.bus.shutdown()

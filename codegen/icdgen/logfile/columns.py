@@ -10,7 +10,8 @@ from icdgen import layout, naming
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.layout import Piece
-from icdgen.protocol.facts import Facts, LogBit, need
+from icdgen.protocol.facts import Facts, need
+from icdgen.protocol.sections import LogBit
 
 TIME = "time"
 
@@ -97,7 +98,7 @@ def _columns(icd: Icd, known: Facts, slot: LogBit, start: int) -> Iterator[Colum
         if field.unit:
             name += f"_{naming.snake(naming.words(field.unit.identifier))}"
         pieces = tuple(p._replace(byte=p.byte + start) for p in layout.pieces(field, owner))
-        yield Column(name, message.name, message, field, start, slot.length, owner.byte_order, pieces)
+        yield Column(name, message.name, message, field, start, slot.length, field.orders(owner)[0], pieces)
 
 
 def _identifier(item: Message | Field, vocabulary: tuple[str, ...]) -> str:

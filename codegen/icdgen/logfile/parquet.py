@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-import queue
-import threading
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from icdgen.errors import UserError
 from icdgen.logfile.columns import TIME, Column, Plan
@@ -52,37 +51,11 @@ def _groups(source: Source, decoder: Decoder, head: int | None, done: Callable[[
 
 def _ahead(items: Iterator[pa.Table]) -> Iterator[pa.Table]:
     """The items, made in a thread, one ahead."""
-    made: queue.Queue[Any] = queue.Queue(maxsize=1)
-    stop = threading.Event()
-
-    def put(item: object) -> None:
-        while not stop.is_set():
-            try:
-                made.put(item, timeout=0.2)
-                return
-            except queue.Full:
-                continue
-
-    def make() -> None:
-        try:
-            for item in items:
-                put(item)
-                if stop.is_set():
-                    return
-            put(None)
-        except BaseException as error:
-            put(error)
-
-    thread = threading.Thread(target=make, daemon=True)
-    thread.start()
-    try:
-        while (item := made.get()) is not None:
-            if isinstance(item, BaseException):
-                raise item
+    with ThreadPoolExecutor(1) as thread:
+        coming = thread.submit(next, items, None)
+        while (item := coming.result()) is not None:
+            coming = thread.submit(next, items, None)
             yield item
-    finally:
-        stop.set()
-        thread.join()
 
 
 class Decoder:

@@ -11,8 +11,8 @@ from math import ceil
 from typing import NamedTuple
 
 from icdgen.protocol.errors import TooLongError
-from icdgen.protocol.facts import Can, Facts, need
-from icdgen.protocol.sections import CAN_WITH_DATA
+from icdgen.protocol.facts import Facts, need
+from icdgen.protocol.sections import CAN_WITH_DATA, Can
 
 MESSAGE = "message"
 DUPLICATE = "duplicate"  # a packet that was there already, dropped

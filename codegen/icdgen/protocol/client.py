@@ -18,8 +18,8 @@ from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol import can, i2c, uart
 from icdgen.protocol.errors import BusyError, LengthError, UnknownIdError
-from icdgen.protocol.facts import CAN, I2C, UART, Facts, need
-from icdgen.protocol.facts import Client as Settings
+from icdgen.protocol.facts import Facts, need
+from icdgen.protocol.sections import CAN, I2C, UART, Settings
 
 TELECOMMAND, TELEMETRY = "telecommand", "telemetry"
 IDLE, HOLD, WAIT, PAUSE, POLL = "idle", "hold", "wait", "pause", "poll"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from icdgen.protocol.facts import Crc
+from icdgen.protocol.sections import Crc
 
 
 class Register:

@@ -10,36 +10,26 @@ from math import ceil
 from typing import TypeVar
 
 from icdgen.icd.model import Icd, Message, Node
-from icdgen.protocol.reading import BUSES, CAN, I2C, UART, Assumption, Reader
+from icdgen.protocol.reading import Assumption, Reader
 from icdgen.protocol.sections import (
     Acknowledge,
     Can,
-    CanPart,
     Checksum,
-    Client,
     Crc,
     Direction,
-    Extended,
     Files,
     Framing,
     HoleMap,
     Index,
-    IndexField,
-    LogBit,
     LogFile,
     LogMask,
     LogMessage,
     Operation,
     Polled,
+    Settings,
     Step,
     TimePart,
 )
-
-__all__ = [
-    "BUSES", "CAN", "I2C", "UART", "Acknowledge", "Assumption", "Can", "CanPart", "Checksum", "Client", "Crc", "Direction",
-    "Extended", "Facts", "Files", "Framing", "HoleMap", "Index", "IndexField", "LogBit", "LogFile", "LogMask", "LogMessage",
-    "Operation", "Polled", "Step", "TimePart", "Unsupported", "need", "of",
-]  # fmt: skip
 
 T = TypeVar("T")
 
@@ -58,7 +48,7 @@ class Facts:
     telemetry_ids: Direction
     telecommands: dict[int, Message]
     telemetry: dict[int, Message]
-    client: Client
+    client: Settings
     framing: Framing | None
     acknowledge: Acknowledge | None
     polled: Polled | None
@@ -147,7 +137,7 @@ def of(icd: Icd, node: Node) -> Facts:
         telemetry_ids=reader.direction("telemetry"),
         telecommands=reader.telecommands,
         telemetry=reader.telemetry,
-        client=reader.part("client", Client) or Client(),
+        client=reader.part("client", Settings) or Settings(),
         framing=reader.part("uart.framing", Framing),
         acknowledge=reader.acknowledge(),
         polled=reader.polled(),

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from icdgen.protocol.errors import LengthError
-from icdgen.protocol.facts import Facts, LogBit, need
+from icdgen.protocol.facts import Facts, need
+from icdgen.protocol.sections import LogBit
 
 
 class Frame(NamedTuple):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from icdgen.protocol.errors import RangeError
-from icdgen.protocol.facts import Facts, Operation, Step, need
+from icdgen.protocol.facts import Facts, need
+from icdgen.protocol.sections import Operation, Step
 from icdgen.protocol.transfer import Ended, Procedure, Steps
 
 

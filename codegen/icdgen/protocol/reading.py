@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.protocol.declared import Fact, read
 from icdgen.protocol.sections import (
+    BUSES,
     PROCEDURES,
     Acknowledge,
     Can,
@@ -33,7 +34,6 @@ from icdgen.protocol.sections import (
     TimePart,
 )
 
-UART, I2C, CAN = BUSES = ("uart", "i2c", "can")
 T = TypeVar("T")
 
 

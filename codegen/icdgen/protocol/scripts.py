@@ -7,9 +7,9 @@ from typing import Any
 from icdgen.protocol import can, programs, transfer
 from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Client, Request
 from icdgen.protocol.errors import BusyError, LengthError, UnknownIdError
-from icdgen.protocol.facts import CAN, I2C, UART, Facts
-from icdgen.protocol.facts import Client as Settings
+from icdgen.protocol.facts import Facts
 from icdgen.protocol.request_keys import Refusal, flag, hex_bytes, mappings, number, octets, text
+from icdgen.protocol.sections import CAN, I2C, UART, Settings
 
 BUSES = (UART, I2C, CAN)
 LONGEST = 1 << 20  # how often the bytes of an upload are repeated at most

@@ -26,6 +26,8 @@ from icdgen.protocol.declared import (
     time,
 )
 
+UART, I2C, CAN = BUSES = ("uart", "i2c", "can")
+
 _BITS = ("lsb0", "msb0")
 _MSB0 = "whether bit 0 is the most significant one of a byte"
 CAN_WITH_DATA = ("telecommand", "reply")  # the other kinds have no data
@@ -194,7 +196,7 @@ class LogFile:
 class LogMessage:
     """The unsolicited form of a log. Places count from the id."""
 
-    id: int = number("id", "id of such messages", holds=BYTE)
+    id: int = number("id", "id of such messages", most=BYTE)
     mask_at: int = octets("", "where the mask stands")
     frames_at: int = octets("frames_byte", "where the selected frames begin, counted from the id", 0)
 
@@ -354,7 +356,7 @@ class Operation:
 
 
 @dataclass(frozen=True, slots=True)
-class Client:
+class Settings:
     """How a client waits and tries again, unless it is told otherwise."""
 
     reply_timeout: int = time("reply_timeout_ms", "how long a reply may take", 1000)
@@ -364,7 +366,7 @@ class Client:
 
 
 PLACES: tuple[tuple[str, type[Any]], ...] = (
-    ("client", Client),
+    ("client", Settings),
     ("uart.framing", Framing),
     ("uart.acknowledge", Acknowledge),
     ("can", Can),

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from icdgen import codec
 from icdgen.protocol import crc, files
 from icdgen.protocol.client import TELECOMMAND, TELEMETRY, Request
 from icdgen.protocol.errors import RangeError, TooLongError
-from icdgen.protocol.facts import UART, Facts, Step, need
+from icdgen.protocol.facts import Facts, need
+from icdgen.protocol.sections import UART, Step
 
 OUTCOMES = ("done", "refused", "timeout")
 
@@ -30,7 +31,10 @@ class Wait:
     until: int
 
 
-Steps = Generator["Request | Wait", "dict[str, Any] | None", None]
+T = TypeVar("T")
+# Gives out what is to be sent, is told what came, and has a result.
+Asking = Generator["Request | Wait", "dict[str, Any] | None", T]
+Steps = Asking[None]
 
 
 class Procedure:
@@ -86,23 +90,31 @@ class Procedure:
         except Ended as failure:
             self._wanted, self.result = None, str(failure)
 
-    def ask(self, request: Request) -> Generator[Request | Wait, dict[str, Any] | None, dict[str, Any]]:
+    def ask(self, request: Request) -> Asking[dict[str, Any]]:
         """A request; its outcome."""
         outcome = yield request
         assert outcome
         return outcome
 
-    def wait(self, milliseconds: int) -> Generator[Request | Wait, dict[str, Any] | None, None]:
-        yield Wait(self.now + milliseconds)
-
-    def telecommand(
-        self, step: str, repeat: bool = True, **values: int | bytes
-    ) -> Generator[Request | Wait, dict[str, Any] | None, dict[str, Any]]:
-        """Sends the telecommand of a step with values by role; others as a fresh message has them."""
-        outcome = yield from self.ask(self.request(step, repeat, **values))
+    def demand(self, request: Request) -> Asking[dict[str, Any]]:
+        """A request that must succeed; its outcome."""
+        outcome = yield from self.ask(request)
         if outcome["event"] != "done":
             raise Ended(outcome["event"])
         return outcome
+
+    def wait(self, milliseconds: int) -> Steps:
+        yield Wait(self.now + milliseconds)
+
+    def telecommand(self, step: str, repeat: bool = True, **values: int | bytes) -> Asking[dict[str, Any]]:
+        """Sends the telecommand of a step with values by role; others as a fresh message has them."""
+        return self.demand(self.request(step, repeat, **values))
+
+    def once(self, step: str, **values: int | bytes) -> Steps:
+        """Sends a telecommand once, whatever becomes of it but a refusal: what follows tells whether it arrived."""
+        outcome = yield from self.ask(self.request(step, False, **values))
+        if outcome["event"] == "refused":
+            raise Ended("refused")
 
     def step(self, name: str) -> Step:
         """The message of a step and its fields by role. Raises `icdgen.protocol.facts.Unsupported`."""
@@ -122,20 +134,18 @@ class Procedure:
         assert message.telecommand_id is not None
         return Request(TELECOMMAND, message.telecommand_id, codec.encode(self.known.node, message, raw), repeat)
 
-    def telemetry(self, step: str) -> Generator[Request | Wait, dict[str, Any] | None, tuple[dict[str, Any], bytes]]:
+    def telemetry(self, step: str) -> Asking[tuple[dict[str, Any], bytes]]:
         """Requests the frame of a step: its values by role, and its bytes."""
         part = self.step(step)
         assert part.message.telemetry_id is not None
-        outcome = yield from self.ask(Request(TELEMETRY, part.message.telemetry_id, repeat=True))
-        if outcome["event"] != "done":
-            raise Ended(outcome["event"])
+        outcome = yield from self.demand(Request(TELEMETRY, part.message.telemetry_id, repeat=True))
         frame = bytes.fromhex(outcome["bytes"])
         raw = codec.decode(self.known.node, part.message, frame)
         return {role: raw[name] for role, name in part.fields.items()}, frame
 
     def poll(
         self, step: str, role: str, wanted: int, interval: str, timeout: int, program: int | None = None
-    ) -> Generator[Request | Wait, dict[str, Any] | None, tuple[dict[str, Any], bytes]]:
+    ) -> Asking[tuple[dict[str, Any], bytes]]:
         """Requests the frame until the flag is as wanted, of that program if the frame says of which one."""
         end = self.now + timeout
         while True:
@@ -185,9 +195,7 @@ class FileList(Transfer):
                 raise Ended("timeout")
             last, again = frame, again + 1
             # Sent once: if only its acknowledge was lost, the next frame tells that it arrived.
-            outcome = yield from self.ask(self.request("list.advance", False))
-            if outcome["event"] == "refused":
-                raise Ended("refused")
+            yield from self.once("list.advance")
 
 
 class Download(Transfer):
@@ -223,7 +231,7 @@ class Download(Transfer):
             if self.size is None and len(data) < want:
                 return
 
-    def _block(self, want: int) -> Generator[Request | Wait, dict[str, Any] | None, bytes]:
+    def _block(self, want: int) -> Asking[bytes]:
         rounds = 0
         while True:
             self.got, self.count = {}, 0
@@ -259,26 +267,13 @@ class Download(Transfer):
         everything = not self.got
         self.last = self.now
         # Sent once: that packets come, or none, tells more than its acknowledge.
-        outcome = yield from self.ask(
-            self.request(
-                "download.burst",
-                False,
-                length=self.number("download.message_length"),
-                ignore_hole_map=int(everything),
-            )
-        )
-        if outcome["event"] == "refused":
-            raise Ended("refused")
+        length = self.number("download.message_length")
+        yield from self.once("download.burst", length=length, ignore_hole_map=int(everything))
         if self.bus != UART:
             counter = self.files.counter_bytes
+            id = need(self.files.packet_ids.get(self.bus), f"file_transfer.download.{self.bus}")
             for _ in missing:
-                outcome = yield from self.ask(
-                    Request(
-                        TELEMETRY,
-                        need(self.files.packet_ids.get(self.bus), f"file_transfer.download.{self.bus}"),
-                        repeat=True,
-                    )
-                )
+                outcome = yield from self.ask(Request(TELEMETRY, id, repeat=True))
                 if outcome["event"] == "done":
                     data = bytes.fromhex(outcome["bytes"])
                     self.packet(self.known.number(data[:counter]), data[counter:])
@@ -290,18 +285,11 @@ class Download(Transfer):
     def _send_hole_map(self) -> Steps:
         form, first = need(self.known.hole_map, "file_transfer.hole_map"), self.files.first_packet
         map_ = files.hole_map(self.known, self.count, [first + position for position in self.got])
-        for message, piece in list(zip(form.messages, files.in_messages(self.known, map_), strict=True))[
-            : self._maps()
-        ]:
+        carried = -(-self.count // (form.message_bytes * 8))  # messages that carry the map of this block
+        for message, piece in list(zip(form.messages, files.in_messages(self.known, map_), strict=True))[:carried]:
             assert message.telecommand_id is not None
             data = codec.encode(self.known.node, message, {form.field: piece})
-            outcome = yield from self.ask(Request(TELECOMMAND, message.telecommand_id, data, repeat=True))
-            if outcome["event"] != "done":
-                raise Ended(outcome["event"])
-
-    def _maps(self) -> int:
-        """Messages that carry the hole map of this block."""
-        return -(-self.count // (need(self.known.hole_map, "file_transfer.hole_map").message_bytes * 8))
+            yield from self.demand(Request(TELECOMMAND, message.telecommand_id, data, repeat=True))
 
 
 class Upload(Transfer):
@@ -364,15 +352,13 @@ class Upload(Transfer):
             if rounds == self.number("upload.rounds"):
                 raise Ended("checksum")
 
-    def _missing(self, count: int) -> Generator[Request | Wait, dict[str, Any] | None, list[int]]:
+    def _missing(self, count: int) -> Asking[list[int]]:
         """Positions of the packets that the node has not."""
         form = need(self.known.hole_map, "file_transfer.hole_map")
         map_ = b""
         for message in form.messages[: -(-count // (form.message_bytes * 8))]:
             assert message.telemetry_id is not None
-            outcome = yield from self.ask(Request(TELEMETRY, message.telemetry_id, repeat=True))
-            if outcome["event"] != "done":
-                raise Ended(outcome["event"])
+            outcome = yield from self.demand(Request(TELEMETRY, message.telemetry_id, repeat=True))
             raw = codec.decode(self.known.node, message, bytes.fromhex(outcome["bytes"]))
             map_ += raw[form.field]  # type: ignore[operator]
         lost = files.missing(self.known, count, map_.ljust(form.bytes, b"\0"))

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from icdgen.protocol.facts import Facts, Framing, need
+from icdgen.protocol.facts import Facts, need
+from icdgen.protocol.sections import Framing
 
 MESSAGE = "message"
 UNEXPECTED_START = "unexpected_start"  # a message began within another one, which is dropped

@@ -3,65 +3,76 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import fields
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 from icdgen.describe.bounds import bounds
-from icdgen.icd.model import Enum, Erratum, Field, Icd, Limits, Loggable, Message, Node
-from icdgen.icd.wire_ids import DEFAULT_BITS
+from icdgen.icd.located import plain
+from icdgen.icd.model import Enum, Erratum, Field, Icd, Limits, Loggable, Member, Message, Node
 
 FORMAT = 1
 SCHEMA = Path(__file__).parent.with_name("show.schema.json")
 
 _Object = dict[str, object]
 
+_PLAIN = ("str", "int", "str | None", "int | None")  # types, as the model's classes declare them
+_OTHERWISE = {  # what is not shown, or not as it is
+    Node: ("file",),
+    Message: ("node",),
+    Field: ("at", "formula"),
+    Enum: ("node",),
+    Erratum: ("why",),
+}
+
 
 def to_json(icd: Icd) -> _Object:
     """A tree for `json.dumps`. A node lists only its own messages and enumerations; see its ``includes`` for more."""
-    loggable = [{"node": node.name} | _loggable(row) for node in icd.nodes for row in node.loggable]
+    loggable = [{"node": node.name} | _row(row) for node in icd.nodes for row in node.loggable]
     return {"format": FORMAT, "nodes": [_node(node) for node in icd.nodes], "loggable": loggable}
+
+
+@cache
+def as_they_are(kind: Any) -> tuple[str, ...]:
+    """The attributes of a class of the model that are shown as they are, under their own names."""
+    found = (one.name for one in fields(kind) if one.type in _PLAIN)
+    return tuple(name for name in found if name not in _OTHERWISE.get(kind, ()))
+
+
+def _attributes(one: Any) -> _Object:
+    kind: Any = type(one)
+    values = {name: getattr(one, name) for name in as_they_are(kind)}
+    return {name: value for name, value in values.items() if value != _defaults(kind).get(name)}
+
+
+@cache
+def _defaults(kind: Any) -> dict[str, object]:
+    return {one.name: one.default for one in fields(kind)}
 
 
 def _node(node: Node) -> _Object:
     return _present(
-        name=node.name,
-        title=node.title,
-        summary=node.summary,
-        node_type=node.node_type,
-        interface_version=node.interface_version,
-        byte_order=node.byte_order,
-        bit_order=node.bit_order,
-        id_bits=node.id_bits if node.id_bits != DEFAULT_BITS else None,
+        **_attributes(node),
         document=dict(node.document),
         vocabulary=list(node.vocabulary),
         units=[_present(**unit._asdict()) for unit in node.units],
         protocol=node.protocol,
-        missing=[{"kind": m.kind, "id": m.id, "name": m.name, "why": m.why} for m in node.missing],
+        missing=[_attributes(one) for one in node.missing],
         errata=_errata(node, is_note=False),
         notes=_errata(node, is_note=True),
-        digest=node.digest,
     ) | {
         "includes": list(node.includes),
         "messages": [_message(m) for m in node.messages],
         "enums": [_enum(e) for e in node.enums],
-        "loggable": [_loggable(row) for row in node.loggable],
+        "loggable": [_row(row) for row in node.loggable],
     }
 
 
 def _message(message: Message) -> _Object:
     return _present(
-        name=message.name,
-        identifier=message.identifier,
-        kind=message.kind,
-        id=message.id,
-        set_id=message.set_id,
-        get_id=message.get_id,
-        length=message.length,
-        group=message.group,
-        table=message.table,
-        page=message.page,
-        summary=message.summary,
+        **_attributes(message),
         acknowledge=None if message.acknowledge else "reset" if message.expects_reset else False,
-        hazard=message.hazard,
         contains=[{"message": part.message, "offset": part.at} for part in message.contains],
         **_ids(message.errata),
     ) | {"fields": [_field(f) for f in message.fields]}
@@ -70,41 +81,25 @@ def _message(message: Message) -> _Object:
 def _field(field: Field) -> _Object:
     scale = field.scale
     return _present(
-        name=field.name,
-        identifier=field.identifier,
+        **_attributes(field),
         offset=field.at,
-        bits=field.bits,
-        type=field.type,
         enum=field.enum.name if field.enum else None,
         unit=field.unit.symbol if field.unit else None,
         scale=str(scale.factor) if scale else None,
         scale_offset=str(scale.offset) if scale and scale.offset else None,
         formula=field.formula if scale else None,
-        const=field.const,
-        special=[{"value": s.value, "meaning": s.meaning} for s in field.special],
+        special=[_attributes(one) for one in field.special],
         limits=_limits(field.limits),
-        summary=field.summary,
         **_ids(field.errata),
     )
 
 
 def _enum(enum: Enum) -> _Object:
-    return _present(
-        name=enum.name,
-        identifier=enum.identifier,
-        table=enum.table,
-        summary=enum.summary,
-        **_ids(enum.errata),
-    ) | {
-        "members": [
-            _present(value=m.value, name=m.name, identifier=m.identifier, summary=m.summary, **_ids(m.errata))
-            for m in enum.members
-        ]
-    }
+    return _row(enum) | {"members": [_row(member) for member in enum.members]}
 
 
-def _loggable(row: Loggable) -> _Object:
-    return _present(bit=row.bit, id=row.id, name=row.name, **_ids(row.errata))
+def _row(one: Enum | Member | Loggable) -> _Object:
+    return _present(**_attributes(one), **_ids(one.errata))
 
 
 def _limits(limits: Limits | None) -> dict[str, str] | None:
@@ -119,14 +114,11 @@ def _errata(node: Node, is_note: bool) -> list[_Object]:
             places.setdefault(erratum.id, []).append(place)
     return [
         _present(
-            id=e.id,
-            title=e.title,
+            **_attributes(e),
             **{"what" if is_note else "why": e.why},
-            evidence=e.evidence,
-            confidence=e.confidence,
             tables=list(e.tables),
-            printed=_plain(dict(e.printed)),
-            held=_plain(dict(e.held)),
+            printed=plain(dict(e.printed)),
+            held=plain(dict(e.held)),
             places=places.get(e.id, []),
         )
         | ({} if is_note else {"changes": e.changes})
@@ -154,12 +146,6 @@ def _ids(errata: tuple[Erratum, ...]) -> dict[str, list[str]]:
         "errata": [erratum.id for erratum in errata if not erratum.is_note],
         "notes": [erratum.id for erratum in errata if erratum.is_note],
     }
-
-
-def _plain(value: object) -> object:
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    return [_plain(item) for item in value] if isinstance(value, list) else value
 
 
 def _present(**items: object) -> _Object:

@@ -6,7 +6,7 @@ import heapq
 
 from icdgen_runtime.wire.uart import UartDecoder, uart_encode
 
-from icdgen.protocol.facts import UART
+from icdgen.protocol.sections import UART
 from icdgen.sim.computer import Computer
 from icdgen.sim.faults import Faults
 from icdgen.sim.program import Outcome

@@ -5,7 +5,8 @@ from __future__ import annotations
 from icdgen_runtime.wire.link import Link
 
 from icdgen.icd.model import Message
-from icdgen.protocol.facts import Facts, Operation
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import Operation
 from icdgen.sim.storage import Storage, checksum_of
 from icdgen.sim.transfers import Raw, Refused
 

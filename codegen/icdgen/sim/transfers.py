@@ -9,7 +9,8 @@ from icdgen_runtime.wire.files import HoleMap
 from icdgen_runtime.wire.link import Link
 
 from icdgen.icd.model import Message
-from icdgen.protocol.facts import Facts, Files
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import Files
 from icdgen.sim.storage import Storage, checksum_of
 
 Raw = dict[str, "int | bytes"]

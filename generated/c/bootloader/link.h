@@ -38,32 +38,33 @@ static inline const icd_link_t *bootloader_link(void)
     };
     static const icd_message_t telecommands[] = {
         /*
-         * Reset. Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for,
-         * and one that comes is accepted.
+         * Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for, and
+         * one that comes is accepted.
          */
-        {1u, ICD_EXPECTS_RESET, 1u},
-        {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u},    /* Current Unix Time */
-        {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u},    /* Cache enabled state */
-        {4u, ICD_ACKNOWLEDGED, 0u},                  /* Reset Log Pointer */
-        {5u, ICD_ACKNOWLEDGED, 0u},                  /* Advance Log Pointer */
-        {6u, ICD_ACKNOWLEDGED, 0u},                  /* Reset Boot Registers */
-        {7u, ICD_ACKNOWLEDGED, 0u},                  /* Clear Error Flags */
-        {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u},    /* SRAM Scrub Parameters */
-        {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u},    /* Unix Time Save to Flash */
-        {33u, ICD_ACKNOWLEDGED, 1u},                 /* Format SD card */
-        {100u, ICD_ACKNOWLEDGED, 1u},                /* Set Boot Index */
-        {101u, ICD_EXPECTS_RESET, 0u},               /* Run Selected Program. Assumed acknowledge: As for Reset. */
-        {102u, ICD_ACKNOWLEDGED, 1u},                /* Read Program Information */
-        {103u, ICD_ACKNOWLEDGED, 2u},                /* Copy Program to Internal Flash */
-        {108u, ICD_ACKNOWLEDGED, 3u},                /* Erase File */
-        {112u, ICD_ACKNOWLEDGED, 8u},                /* Load File Download Block */
-        {113u, ICD_ACKNOWLEDGED, 0u},                /* Advance File List Read Pointer */
-        {114u, ICD_ACKNOWLEDGED, 2u},                /* Initiate File Upload */
-        {115u, 0u, 22u},                             /* File Upload Packet */
-        {116u, ICD_ACKNOWLEDGED, 7u},                /* Finalize Upload Block */
-        {117u, ICD_ACKNOWLEDGED, 0u},                /* Reset Upload Block */
-        {118u, ICD_ACKNOWLEDGED, 0u},                /* Reset File List Read Pointer */
-        {119u, ICD_ACKNOWLEDGED, 2u},                /* Initiate Download Burst */
+        {1u, ICD_EXPECTS_RESET, 1u}, /* Reset */
+        {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Current Unix Time */
+        {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u}, /* Cache enabled state */
+        {4u, ICD_ACKNOWLEDGED, 0u}, /* Reset Log Pointer */
+        {5u, ICD_ACKNOWLEDGED, 0u}, /* Advance Log Pointer */
+        {6u, ICD_ACKNOWLEDGED, 0u}, /* Reset Boot Registers */
+        {7u, ICD_ACKNOWLEDGED, 0u}, /* Clear Error Flags */
+        {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* SRAM Scrub Parameters */
+        {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* Unix Time Save to Flash */
+        {33u, ICD_ACKNOWLEDGED, 1u}, /* Format SD card */
+        {100u, ICD_ACKNOWLEDGED, 1u}, /* Set Boot Index */
+        /* Assumed acknowledge: As for Reset. */
+        {101u, ICD_EXPECTS_RESET, 0u}, /* Run Selected Program */
+        {102u, ICD_ACKNOWLEDGED, 1u}, /* Read Program Information */
+        {103u, ICD_ACKNOWLEDGED, 2u}, /* Copy Program to Internal Flash */
+        {108u, ICD_ACKNOWLEDGED, 3u}, /* Erase File */
+        {112u, ICD_ACKNOWLEDGED, 8u}, /* Load File Download Block */
+        {113u, ICD_ACKNOWLEDGED, 0u}, /* Advance File List Read Pointer */
+        {114u, ICD_ACKNOWLEDGED, 2u}, /* Initiate File Upload */
+        {115u, 0u, 22u}, /* File Upload Packet */
+        {116u, ICD_ACKNOWLEDGED, 7u}, /* Finalize Upload Block */
+        {117u, ICD_ACKNOWLEDGED, 0u}, /* Reset Upload Block */
+        {118u, ICD_ACKNOWLEDGED, 0u}, /* Reset File List Read Pointer */
+        {119u, ICD_ACKNOWLEDGED, 2u}, /* Initiate Download Burst */
         {120u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 1 */
         {121u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 2 */
         {122u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 3 */
@@ -74,28 +75,28 @@ static inline const icd_link_t *bootloader_link(void)
         {127u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 8 */
     };
     static const icd_message_t telemetry[] = {
-        {128u, 0u, 8u},  /* Identification */
-        {129u, 0u, 6u},  /* Boot And Running Program Status */
-        {130u, 0u, 2u},  /* Boot Index and Status */
-        {131u, 0u, 1u},  /* Cache enabled state */
-        {132u, 0u, 6u},  /* Bootloader State */
-        {134u, 0u, 2u},  /* SRAM Scrub Parameters */
-        {140u, 0u, 6u},  /* Current Unix Time */
-        {141u, 0u, 6u},  /* Last Logged Event */
-        {142u, 0u, 6u},  /* SRAM Latchup counters */
-        {143u, 0u, 6u},  /* EDAC Error Counters */
-        {144u, 0u, 6u},  /* Communication Status */
-        {145u, 0u, 2u},  /* Unix Time Save to Flash */
-        {232u, 0u, 8u},  /* Program Information */
-        {233u, 0u, 1u},  /* Copy To Internal Flash Progress */
-        {234u, 0u, 1u},  /* SD card format/erase progress */
-        {240u, 0u, 4u},  /* Telecommand Acknowledge */
+        {128u, 0u, 8u}, /* Identification */
+        {129u, 0u, 6u}, /* Boot And Running Program Status */
+        {130u, 0u, 2u}, /* Boot Index and Status */
+        {131u, 0u, 1u}, /* Cache enabled state */
+        {132u, 0u, 6u}, /* Bootloader State */
+        {134u, 0u, 2u}, /* SRAM Scrub Parameters */
+        {140u, 0u, 6u}, /* Current Unix Time */
+        {141u, 0u, 6u}, /* Last Logged Event */
+        {142u, 0u, 6u}, /* SRAM Latchup counters */
+        {143u, 0u, 6u}, /* EDAC Error Counters */
+        {144u, 0u, 6u}, /* Communication Status */
+        {145u, 0u, 2u}, /* Unix Time Save to Flash */
+        {232u, 0u, 8u}, /* Program Information */
+        {233u, 0u, 1u}, /* Copy To Internal Flash Progress */
+        {234u, 0u, 1u}, /* SD card format/erase progress */
+        {240u, 0u, 4u}, /* Telecommand Acknowledge */
         {241u, 0u, 22u}, /* File Download Buffer with File Contents */
-        {242u, 0u, 5u},  /* Download Block Ready */
+        {242u, 0u, 5u}, /* Download Block Ready */
         {243u, 0u, 12u}, /* File Information */
-        {244u, 0u, 1u},  /* Initialize Upload Complete */
-        {245u, 0u, 1u},  /* Upload Block Complete */
-        {246u, 0u, 2u},  /* Block Checksum */
+        {244u, 0u, 1u}, /* Initialize Upload Complete */
+        {245u, 0u, 1u}, /* Upload Block Complete */
+        {246u, 0u, 2u}, /* Block Checksum */
         {247u, 0u, 16u}, /* Hole Map 1 */
         {248u, 0u, 16u}, /* Hole Map 2 */
         {249u, 0u, 16u}, /* Hole Map 3 */
@@ -121,7 +122,7 @@ static inline const icd_link_t *bootloader_link(void)
         0x7fu, /* start */
         0xffu, /* end */
         0x1fu, /* escaped */
-        true,  /* escapes_id */
+        true, /* escapes_id */
         false, /* ignores_other */
     };
     /**
@@ -134,81 +135,91 @@ static inline const icd_link_t *bootloader_link(void)
         1u, /* error_at */
     };
     static const icd_place_t polled_places[] = {
-        {ICD_ROLE_ID, 0u, 8u},         /* Last TC ID */
-        {ICD_ROLE_PROCESSED, 8u, 1u},  /* Processed flag */
-        {ICD_ROLE_ERROR, 16u, 8u},     /* TC error status */
+        {ICD_ROLE_ID, 0u, 8u}, /* Last TC ID */
+        {ICD_ROLE_PROCESSED, 8u, 1u}, /* Processed flag */
+        {ICD_ROLE_ERROR, 16u, 8u}, /* TC error status */
         {ICD_ROLE_PARAMETER, 24u, 8u}, /* TC parameter error index */
     };
     static const icd_step_t polled = {
-        -1, 240, 4u, 4u, polled_places, NULL
+        -1, 240, 4u, 4u, polled_places, NULL,
     };
     /**
      * Assumed fill: Neither the value of the fill nor how the receiver learns the true length is said. The receiver
      * takes the length of the message from its id. Assumed packet_timeout_ms: No time-out between packets is given.
      */
     static const icd_can_extended_t can_extended = {
-        7u,    /* data_bytes */
-        7u,    /* left_at */
-        0u,    /* left_in_last */
-        256u,  /* packets */
+        7u, /* data_bytes */
+        7u, /* left_at */
+        0u, /* left_in_last */
+        256u, /* packets */
         1792u, /* bytes */
         0x00u, /* fill */
         1000u, /* packet_timeout in ms */
     };
     static const icd_can_form_t can = {
-        0x01u,                  /* node_address */
-        8u,                     /* data_bytes */
-        {5u, 24u},              /* type: bits, shift */
-        {8u, 16u},              /* channel: bits, shift */
-        {8u, 8u},               /* source: bits, shift */
-        {8u, 0u},               /* destination: bits, shift */
-        {1, 2, 3, 4, 5, 6},     /* types */
+        0x01u, /* node_address */
+        8u, /* data_bytes */
+        {5u, 24u}, /* type: bits, shift */
+        {8u, 16u}, /* channel: bits, shift */
+        {8u, 8u}, /* source: bits, shift */
+        {8u, 0u}, /* destination: bits, shift */
+        {1, 2, 3, 4, 5, 6}, /* types */
         {7, -1, -1, -1, 8, -1}, /* types of messages of several packets */
-        &can_extended,          /* messages of several packets */
+        &can_extended, /* messages of several packets */
     };
     static const uint16_t crc16_table[] = {
-        0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50a5u, 0x60c6u, 0x70e7u, 0x8108u, 0x9129u, 0xa14au, 0xb16bu,
-        0xc18cu, 0xd1adu, 0xe1ceu, 0xf1efu, 0x1231u, 0x0210u, 0x3273u, 0x2252u, 0x52b5u, 0x4294u, 0x72f7u, 0x62d6u,
-        0x9339u, 0x8318u, 0xb37bu, 0xa35au, 0xd3bdu, 0xc39cu, 0xf3ffu, 0xe3deu, 0x2462u, 0x3443u, 0x0420u, 0x1401u,
-        0x64e6u, 0x74c7u, 0x44a4u, 0x5485u, 0xa56au, 0xb54bu, 0x8528u, 0x9509u, 0xe5eeu, 0xf5cfu, 0xc5acu, 0xd58du,
-        0x3653u, 0x2672u, 0x1611u, 0x0630u, 0x76d7u, 0x66f6u, 0x5695u, 0x46b4u, 0xb75bu, 0xa77au, 0x9719u, 0x8738u,
-        0xf7dfu, 0xe7feu, 0xd79du, 0xc7bcu, 0x48c4u, 0x58e5u, 0x6886u, 0x78a7u, 0x0840u, 0x1861u, 0x2802u, 0x3823u,
-        0xc9ccu, 0xd9edu, 0xe98eu, 0xf9afu, 0x8948u, 0x9969u, 0xa90au, 0xb92bu, 0x5af5u, 0x4ad4u, 0x7ab7u, 0x6a96u,
-        0x1a71u, 0x0a50u, 0x3a33u, 0x2a12u, 0xdbfdu, 0xcbdcu, 0xfbbfu, 0xeb9eu, 0x9b79u, 0x8b58u, 0xbb3bu, 0xab1au,
-        0x6ca6u, 0x7c87u, 0x4ce4u, 0x5cc5u, 0x2c22u, 0x3c03u, 0x0c60u, 0x1c41u, 0xedaeu, 0xfd8fu, 0xcdecu, 0xddcdu,
-        0xad2au, 0xbd0bu, 0x8d68u, 0x9d49u, 0x7e97u, 0x6eb6u, 0x5ed5u, 0x4ef4u, 0x3e13u, 0x2e32u, 0x1e51u, 0x0e70u,
-        0xff9fu, 0xefbeu, 0xdfddu, 0xcffcu, 0xbf1bu, 0xaf3au, 0x9f59u, 0x8f78u, 0x9188u, 0x81a9u, 0xb1cau, 0xa1ebu,
-        0xd10cu, 0xc12du, 0xf14eu, 0xe16fu, 0x1080u, 0x00a1u, 0x30c2u, 0x20e3u, 0x5004u, 0x4025u, 0x7046u, 0x6067u,
-        0x83b9u, 0x9398u, 0xa3fbu, 0xb3dau, 0xc33du, 0xd31cu, 0xe37fu, 0xf35eu, 0x02b1u, 0x1290u, 0x22f3u, 0x32d2u,
-        0x4235u, 0x5214u, 0x6277u, 0x7256u, 0xb5eau, 0xa5cbu, 0x95a8u, 0x8589u, 0xf56eu, 0xe54fu, 0xd52cu, 0xc50du,
-        0x34e2u, 0x24c3u, 0x14a0u, 0x0481u, 0x7466u, 0x6447u, 0x5424u, 0x4405u, 0xa7dbu, 0xb7fau, 0x8799u, 0x97b8u,
-        0xe75fu, 0xf77eu, 0xc71du, 0xd73cu, 0x26d3u, 0x36f2u, 0x0691u, 0x16b0u, 0x6657u, 0x7676u, 0x4615u, 0x5634u,
-        0xd94cu, 0xc96du, 0xf90eu, 0xe92fu, 0x99c8u, 0x89e9u, 0xb98au, 0xa9abu, 0x5844u, 0x4865u, 0x7806u, 0x6827u,
-        0x18c0u, 0x08e1u, 0x3882u, 0x28a3u, 0xcb7du, 0xdb5cu, 0xeb3fu, 0xfb1eu, 0x8bf9u, 0x9bd8u, 0xabbbu, 0xbb9au,
-        0x4a75u, 0x5a54u, 0x6a37u, 0x7a16u, 0x0af1u, 0x1ad0u, 0x2ab3u, 0x3a92u, 0xfd2eu, 0xed0fu, 0xdd6cu, 0xcd4du,
-        0xbdaau, 0xad8bu, 0x9de8u, 0x8dc9u, 0x7c26u, 0x6c07u, 0x5c64u, 0x4c45u, 0x3ca2u, 0x2c83u, 0x1ce0u, 0x0cc1u,
-        0xef1fu, 0xff3eu, 0xcf5du, 0xdf7cu, 0xaf9bu, 0xbfbau, 0x8fd9u, 0x9ff8u, 0x6e17u, 0x7e36u, 0x4e55u, 0x5e74u,
-        0x2e93u, 0x3eb2u, 0x0ed1u, 0x1ef0u,
+        0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50a5u, 0x60c6u, 0x70e7u,
+        0x8108u, 0x9129u, 0xa14au, 0xb16bu, 0xc18cu, 0xd1adu, 0xe1ceu, 0xf1efu,
+        0x1231u, 0x0210u, 0x3273u, 0x2252u, 0x52b5u, 0x4294u, 0x72f7u, 0x62d6u,
+        0x9339u, 0x8318u, 0xb37bu, 0xa35au, 0xd3bdu, 0xc39cu, 0xf3ffu, 0xe3deu,
+        0x2462u, 0x3443u, 0x0420u, 0x1401u, 0x64e6u, 0x74c7u, 0x44a4u, 0x5485u,
+        0xa56au, 0xb54bu, 0x8528u, 0x9509u, 0xe5eeu, 0xf5cfu, 0xc5acu, 0xd58du,
+        0x3653u, 0x2672u, 0x1611u, 0x0630u, 0x76d7u, 0x66f6u, 0x5695u, 0x46b4u,
+        0xb75bu, 0xa77au, 0x9719u, 0x8738u, 0xf7dfu, 0xe7feu, 0xd79du, 0xc7bcu,
+        0x48c4u, 0x58e5u, 0x6886u, 0x78a7u, 0x0840u, 0x1861u, 0x2802u, 0x3823u,
+        0xc9ccu, 0xd9edu, 0xe98eu, 0xf9afu, 0x8948u, 0x9969u, 0xa90au, 0xb92bu,
+        0x5af5u, 0x4ad4u, 0x7ab7u, 0x6a96u, 0x1a71u, 0x0a50u, 0x3a33u, 0x2a12u,
+        0xdbfdu, 0xcbdcu, 0xfbbfu, 0xeb9eu, 0x9b79u, 0x8b58u, 0xbb3bu, 0xab1au,
+        0x6ca6u, 0x7c87u, 0x4ce4u, 0x5cc5u, 0x2c22u, 0x3c03u, 0x0c60u, 0x1c41u,
+        0xedaeu, 0xfd8fu, 0xcdecu, 0xddcdu, 0xad2au, 0xbd0bu, 0x8d68u, 0x9d49u,
+        0x7e97u, 0x6eb6u, 0x5ed5u, 0x4ef4u, 0x3e13u, 0x2e32u, 0x1e51u, 0x0e70u,
+        0xff9fu, 0xefbeu, 0xdfddu, 0xcffcu, 0xbf1bu, 0xaf3au, 0x9f59u, 0x8f78u,
+        0x9188u, 0x81a9u, 0xb1cau, 0xa1ebu, 0xd10cu, 0xc12du, 0xf14eu, 0xe16fu,
+        0x1080u, 0x00a1u, 0x30c2u, 0x20e3u, 0x5004u, 0x4025u, 0x7046u, 0x6067u,
+        0x83b9u, 0x9398u, 0xa3fbu, 0xb3dau, 0xc33du, 0xd31cu, 0xe37fu, 0xf35eu,
+        0x02b1u, 0x1290u, 0x22f3u, 0x32d2u, 0x4235u, 0x5214u, 0x6277u, 0x7256u,
+        0xb5eau, 0xa5cbu, 0x95a8u, 0x8589u, 0xf56eu, 0xe54fu, 0xd52cu, 0xc50du,
+        0x34e2u, 0x24c3u, 0x14a0u, 0x0481u, 0x7466u, 0x6447u, 0x5424u, 0x4405u,
+        0xa7dbu, 0xb7fau, 0x8799u, 0x97b8u, 0xe75fu, 0xf77eu, 0xc71du, 0xd73cu,
+        0x26d3u, 0x36f2u, 0x0691u, 0x16b0u, 0x6657u, 0x7676u, 0x4615u, 0x5634u,
+        0xd94cu, 0xc96du, 0xf90eu, 0xe92fu, 0x99c8u, 0x89e9u, 0xb98au, 0xa9abu,
+        0x5844u, 0x4865u, 0x7806u, 0x6827u, 0x18c0u, 0x08e1u, 0x3882u, 0x28a3u,
+        0xcb7du, 0xdb5cu, 0xeb3fu, 0xfb1eu, 0x8bf9u, 0x9bd8u, 0xabbbu, 0xbb9au,
+        0x4a75u, 0x5a54u, 0x6a37u, 0x7a16u, 0x0af1u, 0x1ad0u, 0x2ab3u, 0x3a92u,
+        0xfd2eu, 0xed0fu, 0xdd6cu, 0xcd4du, 0xbdaau, 0xad8bu, 0x9de8u, 0x8dc9u,
+        0x7c26u, 0x6c07u, 0x5c64u, 0x4c45u, 0x3ca2u, 0x2c83u, 0x1ce0u, 0x0cc1u,
+        0xef1fu, 0xff3eu, 0xcf5du, 0xdf7cu, 0xaf9bu, 0xbfbau, 0x8fd9u, 0x9ff8u,
+        0x6e17u, 0x7e36u, 0x4e55u, 0x5e74u, 0x2e93u, 0x3eb2u, 0x0ed1u, 0x1ef0u,
     };
     static const icd_crc_form_t crc16 = {
-        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, crc16_table
+        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, crc16_table,
     };
     static const icd_time_form_t packed_time = {
         {25u, 7u, 1u, 1980u}, /* year */
-        {21u, 4u, 1u, 0u},    /* month */
-        {16u, 5u, 1u, 0u},    /* day */
-        {11u, 5u, 1u, 0u},    /* hour */
-        {5u, 6u, 1u, 0u},     /* minute */
-        {0u, 5u, 2u, 0u},     /* second */
+        {21u, 4u, 1u, 0u}, /* month */
+        {16u, 5u, 1u, 0u}, /* day */
+        {11u, 5u, 1u, 0u}, /* hour */
+        {5u, 6u, 1u, 0u}, /* minute */
+        {0u, 5u, 2u, 0u}, /* second */
     };
     static const icd_index_form_t index_entry = {
-        37u,        /* entry_bytes */
-        15,         /* file_type */
-        {0u, 1u},   /* type */
-        {1u, 1u},   /* counter */
-        {2u, 2u},   /* checksum */
-        {4u, 4u},   /* size */
-        {8u, 4u},   /* time */
+        37u, /* entry_bytes */
+        15, /* file_type */
+        {0u, 1u}, /* type */
+        {1u, 1u}, /* counter */
+        {2u, 2u}, /* checksum */
+        {4u, 4u}, /* size */
+        {8u, 4u}, /* time */
         {12u, 25u}, /* meta */
     };
     static const icd_hole_map_message_t hole_maps[] = {
@@ -226,32 +237,32 @@ static inline const icd_link_t *bootloader_link(void)
      * sent for them; from the node they are ignored.
      */
     static const icd_hole_map_form_t hole_map = {
-        128u,  /* bytes */
-        16u,   /* message_bytes */
+        128u, /* bytes */
+        16u, /* message_bytes */
         false, /* msb0 */
-        true,  /* received */
-        true,  /* beyond_end */
-        8u, hole_maps,
+        true, /* received */
+        true, /* beyond_end */
+        8u, hole_maps, /* messages */
     };
     /**
      * Assumed first_packet: Where the count begins is not said. Bit 0 of the hole map is the first packet. Assumed
      * fill: The value is not defined. Erased flash memory reads 0xFF.
      */
     static const icd_files_form_t files = {
-        20u,             /* packet_bytes */
-        2u,              /* counter_bytes */
-        0u,              /* first_packet */
-        0xffu,           /* fill */
-        1024u,           /* block_packets */
-        20480u,          /* block_bytes */
+        20u, /* packet_bytes */
+        2u, /* counter_bytes */
+        0u, /* first_packet */
+        0xffu, /* fill */
+        1024u, /* block_packets */
+        20480u, /* block_bytes */
         {119, 241, 241}, /* ids of download packets */
     };
     static const icd_place_t list_information_places[] = {
-        {ICD_ROLE_BUSY, 4u, 1u},       /* Busy Updating */
-        {ICD_ROLE_TYPE, 0u, 4u},       /* File Type */
-        {ICD_ROLE_COUNTER, 8u, 8u},    /* File Ctr */
-        {ICD_ROLE_SIZE, 16u, 32u},     /* File Size */
-        {ICD_ROLE_TIME, 48u, 32u},     /* File Date and Time */
+        {ICD_ROLE_BUSY, 4u, 1u}, /* Busy Updating */
+        {ICD_ROLE_TYPE, 0u, 4u}, /* File Type */
+        {ICD_ROLE_COUNTER, 8u, 8u}, /* File Ctr */
+        {ICD_ROLE_SIZE, 16u, 32u}, /* File Size */
+        {ICD_ROLE_TIME, 48u, 32u}, /* File Date and Time */
         {ICD_ROLE_CHECKSUM, 80u, 16u}, /* File CRC16 Checksum */
     };
     /**
@@ -259,26 +270,26 @@ static inline const icd_link_t *bootloader_link(void)
      * has to be computed meanwhile.
      */
     static const icd_list_form_t list = {
-        {118, -1, 0u, 0u, NULL, NULL},                     /* Reset File List Read Pointer */
-        {113, -1, 0u, 0u, NULL, NULL},                     /* Advance File List Read Pointer */
+        {118, -1, 0u, 0u, NULL, NULL}, /* Reset File List Read Pointer */
+        {113, -1, 0u, 0u, NULL, NULL}, /* Advance File List Read Pointer */
         {-1, 243, 12u, 6u, list_information_places, NULL}, /* File Information */
-        50u,                                               /* poll_interval in ms */
-        10000u,                                            /* timeout in ms */
+        50u, /* poll_interval in ms */
+        10000u, /* timeout in ms */
     };
     static const icd_place_t download_load_places[] = {
-        {ICD_ROLE_TYPE, 0u, 8u},     /* File Type */
-        {ICD_ROLE_COUNTER, 8u, 8u},  /* Counter */
+        {ICD_ROLE_TYPE, 0u, 8u}, /* File Type */
+        {ICD_ROLE_COUNTER, 8u, 8u}, /* Counter */
         {ICD_ROLE_OFFSET, 16u, 32u}, /* Offset */
         {ICD_ROLE_LENGTH, 48u, 16u}, /* BlockLength */
     };
     static const icd_place_t download_ready_places[] = {
-        {ICD_ROLE_READY, 0u, 1u},     /* Ready */
-        {ICD_ROLE_ERROR, 1u, 1u},     /* ParameterError */
+        {ICD_ROLE_READY, 0u, 1u}, /* Ready */
+        {ICD_ROLE_ERROR, 1u, 1u}, /* ParameterError */
         {ICD_ROLE_CHECKSUM, 8u, 16u}, /* Block CRC16 Checksum */
-        {ICD_ROLE_LENGTH, 24u, 16u},  /* Block Length */
+        {ICD_ROLE_LENGTH, 24u, 16u}, /* Block Length */
     };
     static const icd_place_t download_burst_places[] = {
-        {ICD_ROLE_LENGTH, 0u, 8u},          /* Message Length */
+        {ICD_ROLE_LENGTH, 0u, 8u}, /* Message Length */
         {ICD_ROLE_IGNORE_HOLE_MAP, 8u, 1u}, /* Ignore Hole Map */
     };
     /**
@@ -291,26 +302,26 @@ static inline const icd_link_t *bootloader_link(void)
      * CAN is not described. The packets are requested one by one as on I2C.
      */
     static const icd_download_form_t download = {
-        {112, -1, 8u, 4u, download_load_places, NULL},  /* Load File Download Block */
+        {112, -1, 8u, 4u, download_load_places, NULL}, /* Load File Download Block */
         {-1, 242, 5u, 4u, download_ready_places, NULL}, /* Download Block Ready */
         {119, -1, 2u, 2u, download_burst_places, NULL}, /* Initiate Download Burst */
-        20u,                                            /* message_length */
-        false,                                          /* checksum_covers_fill */
-        0u,                                             /* index_counter */
-        50u,                                            /* poll_interval in ms */
-        10000u,                                         /* ready_timeout in ms */
-        500u,                                           /* silence in ms */
-        32u,                                            /* rounds */
+        20u, /* message_length */
+        false, /* checksum_covers_fill */
+        0u, /* index_counter */
+        50u, /* poll_interval in ms */
+        10000u, /* ready_timeout in ms */
+        500u, /* silence in ms */
+        32u, /* rounds */
     };
     static const icd_place_t upload_initiate_places[] = {
         {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
-        {ICD_ROLE_BLOCK_SIZE, 8u, 8u},  /* BlockSize */
+        {ICD_ROLE_BLOCK_SIZE, 8u, 8u}, /* BlockSize */
     };
     static const icd_place_t upload_initiated_places[] = {
         {ICD_ROLE_BUSY, 0u, 1u}, /* Busy */
     };
     static const icd_place_t upload_packet_places[] = {
-        {ICD_ROLE_NUMBER, 0u, 16u},  /* Packet Number */
+        {ICD_ROLE_NUMBER, 0u, 16u}, /* Packet Number */
         {ICD_ROLE_BYTES, 16u, 160u}, /* File Bytes */
     };
     static const icd_place_t upload_checksum_places[] = {
@@ -318,11 +329,11 @@ static inline const icd_link_t *bootloader_link(void)
     };
     static const icd_place_t upload_finalize_places[] = {
         {ICD_ROLE_DESTINATION, 0u, 8u}, /* Destination */
-        {ICD_ROLE_OFFSET, 8u, 32u},     /* Offset */
-        {ICD_ROLE_LENGTH, 40u, 16u},    /* Block Length */
+        {ICD_ROLE_OFFSET, 8u, 32u}, /* Offset */
+        {ICD_ROLE_LENGTH, 40u, 16u}, /* Block Length */
     };
     static const icd_place_t upload_finalized_places[] = {
-        {ICD_ROLE_BUSY, 0u, 1u},  /* Busy */
+        {ICD_ROLE_BUSY, 0u, 1u}, /* Busy */
         {ICD_ROLE_ERROR, 1u, 1u}, /* Error */
     };
     static const uint8_t upload_destinations[] = {
@@ -335,36 +346,36 @@ static inline const icd_link_t *bootloader_link(void)
      * commits the block. Assumed finalize_timeout_ms: No time is given.
      */
     static const icd_upload_form_t upload = {
-        {114, -1, 2u, 2u, upload_initiate_places, NULL},  /* Initiate File Upload */
+        {114, -1, 2u, 2u, upload_initiate_places, NULL}, /* Initiate File Upload */
         {-1, 244, 1u, 1u, upload_initiated_places, NULL}, /* Initialize Upload Complete */
-        {117, -1, 0u, 0u, NULL, NULL},                    /* Reset Upload Block */
-        {115, -1, 22u, 2u, upload_packet_places, NULL},   /* File Upload Packet */
-        {-1, 246, 2u, 1u, upload_checksum_places, NULL},  /* Block Checksum */
-        {116, -1, 7u, 3u, upload_finalize_places, NULL},  /* Finalize Upload Block */
+        {117, -1, 0u, 0u, NULL, NULL}, /* Reset Upload Block */
+        {115, -1, 22u, 2u, upload_packet_places, NULL}, /* File Upload Packet */
+        {-1, 246, 2u, 1u, upload_checksum_places, NULL}, /* Block Checksum */
+        {116, -1, 7u, 3u, upload_finalize_places, NULL}, /* Finalize Upload Block */
         {-1, 245, 1u, 2u, upload_finalized_places, NULL}, /* Upload Block Complete */
-        0u,                                               /* block_size */
-        true,                                             /* checksum_covers_fill */
-        50u,                                              /* poll_interval in ms */
-        8000u,                                            /* erase_timeout in ms */
-        5000u,                                            /* finalize_timeout in ms */
-        32u,                                              /* rounds */
-        524288u,                                          /* destination_bytes */
-        upload_destinations, 7u,                          /* destinations */
+        0u, /* block_size */
+        true, /* checksum_covers_fill */
+        50u, /* poll_interval in ms */
+        8000u, /* erase_timeout in ms */
+        5000u, /* finalize_timeout in ms */
+        32u, /* rounds */
+        524288u, /* destination_bytes */
+        upload_destinations, 7u, /* destinations */
     };
     static const icd_place_t erase_request_places[] = {
-        {ICD_ROLE_TYPE, 0u, 8u},    /* File Type */
+        {ICD_ROLE_TYPE, 0u, 8u}, /* File Type */
         {ICD_ROLE_COUNTER, 8u, 8u}, /* File Counter */
-        {ICD_ROLE_ALL, 16u, 1u},    /* Erase All */
+        {ICD_ROLE_ALL, 16u, 1u}, /* Erase All */
     };
     static const icd_place_t erase_progress_places[] = {
         {ICD_ROLE_BUSY, 1u, 1u}, /* Erase All Busy */
     };
     /** Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. */
     static const icd_erase_form_t erase = {
-        {108, -1, 3u, 3u, erase_request_places, NULL},  /* Erase File */
+        {108, -1, 3u, 3u, erase_request_places, NULL}, /* Erase File */
         {-1, 234, 1u, 1u, erase_progress_places, NULL}, /* SD card format/erase progress */
-        200u,                                           /* poll_interval in ms */
-        60000u,                                         /* timeout in ms */
+        200u, /* poll_interval in ms */
+        60000u, /* timeout in ms */
     };
     static const uint8_t format_request_fresh[] = {
         0x5au,
@@ -374,16 +385,16 @@ static inline const icd_link_t *bootloader_link(void)
     };
     /** Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. */
     static const icd_erase_form_t format = {
-        {33, -1, 1u, 0u, NULL, format_request_fresh},    /* Format SD card */
+        {33, -1, 1u, 0u, NULL, format_request_fresh}, /* Format SD card */
         {-1, 234, 1u, 1u, format_progress_places, NULL}, /* SD card format/erase progress */
-        200u,                                            /* poll_interval in ms */
-        60000u,                                          /* timeout in ms */
+        200u, /* poll_interval in ms */
+        60000u, /* timeout in ms */
     };
     static const icd_place_t program_copy_request_places[] = {
         {ICD_ROLE_PROGRAM, 0u, 8u}, /* Source Program Index */
     };
     static const icd_place_t program_copy_progress_places[] = {
-        {ICD_ROLE_BUSY, 0u, 1u},  /* Busy */
+        {ICD_ROLE_BUSY, 0u, 1u}, /* Busy */
         {ICD_ROLE_ERROR, 1u, 1u}, /* Error */
     };
     static const uint8_t program_copy_programs[] = {
@@ -395,35 +406,35 @@ static inline const icd_link_t *bootloader_link(void)
      * erased as for an upload, which takes up to 8 s, and then written.
      */
     static const icd_operation_form_t program_copy = {
-        {103, -1, 2u, 1u, program_copy_request_places, NULL},  /* Copy Program to Internal Flash */
+        {103, -1, 2u, 1u, program_copy_request_places, NULL}, /* Copy Program to Internal Flash */
         {-1, 233, 1u, 2u, program_copy_progress_places, NULL}, /* Copy To Internal Flash Progress */
-        50u,                                                   /* poll_interval in ms */
-        10000u,                                                /* timeout in ms */
-        program_copy_programs, 7u,                             /* programs */
+        50u, /* poll_interval in ms */
+        10000u, /* timeout in ms */
+        program_copy_programs, 7u, /* programs */
     };
     static const icd_place_t program_information_request_places[] = {
         {ICD_ROLE_PROGRAM, 0u, 8u}, /* Program Index */
     };
     static const icd_place_t program_information_progress_places[] = {
-        {ICD_ROLE_PROGRAM, 0u, 8u},    /* Program Index */
-        {ICD_ROLE_BUSY, 8u, 1u},       /* Busy */
-        {ICD_ROLE_SIZE, 16u, 32u},     /* File Size */
+        {ICD_ROLE_PROGRAM, 0u, 8u}, /* Program Index */
+        {ICD_ROLE_BUSY, 8u, 1u}, /* Busy */
+        {ICD_ROLE_SIZE, 16u, 32u}, /* File Size */
         {ICD_ROLE_CHECKSUM, 48u, 16u}, /* Checksum */
     };
     /** Assumed poll_interval_ms: No time is given. */
     static const icd_operation_form_t program_information = {
-        {102, -1, 1u, 1u, program_information_request_places, NULL},  /* Read Program Information */
+        {102, -1, 1u, 1u, program_information_request_places, NULL}, /* Read Program Information */
         {-1, 232, 8u, 4u, program_information_progress_places, NULL}, /* Program Information */
-        50u,                                                          /* poll_interval in ms */
-        2000u,                                                        /* timeout in ms */
-        NULL, 0u,                                                     /* programs */
+        50u, /* poll_interval in ms */
+        2000u, /* timeout in ms */
+        NULL, 0u, /* programs */
     };
     static const icd_place_t identification_places[] = {
-        {ICD_ROLE_NODE_TYPE, 0u, 8u},         /* Node type */
+        {ICD_ROLE_NODE_TYPE, 0u, 8u}, /* Node type */
         {ICD_ROLE_INTERFACE_VERSION, 8u, 8u}, /* Interface version */
     };
     static const icd_step_t identification = {
-        -1, 128, 8u, 2u, identification_places, NULL
+        -1, 128, 8u, 2u, identification_places, NULL,
     };
     /**
      * Assumed reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing
@@ -433,23 +444,23 @@ static inline const icd_link_t *bootloader_link(void)
      */
     static const icd_link_t link = {
         nodes,
-        2u,                   /* how many */
-        true,                 /* byte order: little */
-        false,                /* bit 0 is the most significant one */
-        128u, 255u,           /* ids of telemetry */
+        2u, /* how many */
+        true, /* byte order: little */
+        false, /* bit 0 is the most significant one */
+        128u, 255u, /* ids of telemetry */
         telecommands,
         telemetry,
-        31u, 30u,             /* how many */
-        23u, 23u, 23u,        /* longest telecommand, reply, any */
-        22u,                  /* longest without id and checksum */
-        110,                  /* node type */
-        3,                    /* interface version */
+        31u, 30u, /* how many */
+        23u, 23u, 23u, /* longest telecommand, reply, any */
+        22u, /* longest without id and checksum */
+        110, /* node type */
+        3, /* interface version */
         {1000u, 3u, 20u, 5000u},
         errors,
-        5u, 0u,               /* how many; no error */
+        5u, 0u, /* how many; no error */
         &framing,
         &acknowledge,
-        87,                   /* I2C address */
+        87, /* I2C address */
         &polled,
         &can,
         NULL,
@@ -461,14 +472,14 @@ static inline const icd_link_t *bootloader_link(void)
         &index_entry,
         &hole_map,
         &files,
-        &list,                /* list */
-        &download,            /* download */
-        &upload,              /* upload */
-        &erase,               /* erase */
-        &format,              /* format */
-        &program_copy,        /* program copy */
+        &list, /* list */
+        &download, /* download */
+        &upload, /* upload */
+        &erase, /* erase */
+        &format, /* format */
+        &program_copy, /* program copy */
         &program_information, /* program information */
-        &identification,      /* identification */
+        &identification, /* identification */
     };
     /* clang-format on */
     return &link;

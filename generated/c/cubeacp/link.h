@@ -136,69 +136,69 @@ static inline const icd_link_t *cubeacp_link(void)
     };
     static const icd_message_t telecommands[] = {
         /*
-         * Reset. Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for,
-         * and one that comes is accepted.
+         * Assumed acknowledge: Whether the acknowledge comes before the restart is not said. None is waited for, and
+         * one that comes is accepted.
          */
-        {1u, ICD_EXPECTS_RESET, 1u},
-        {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u},    /* Current Unix Time */
-        {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u},    /* Cache enabled state */
-        {4u, ICD_ACKNOWLEDGED, 0u},                  /* Reset Log Pointer */
-        {5u, ICD_ACKNOWLEDGED, 0u},                  /* Advance Log Pointer */
-        {6u, ICD_ACKNOWLEDGED, 0u},                  /* Reset Boot Registers */
-        {7u, ICD_ACKNOWLEDGED, 1u},                  /* Deploy Magnetometer Boom */
-        {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u},    /* SRAM Scrub Parameters */
-        {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u},    /* Unix Time Save to Flash */
-        {10u, ICD_ACKNOWLEDGED, 1u},                 /* ADCS Run Mode */
-        {11u, ICD_ACKNOWLEDGED | ICD_SETTING, 3u},   /* ADCS Power Control */
-        {12u, ICD_ACKNOWLEDGED, 1u},                 /* Clear Errors */
-        {13u, ICD_ACKNOWLEDGED, 3u},                 /* Set Attitude Control Mode */
-        {14u, ICD_ACKNOWLEDGED, 1u},                 /* Set Attitude Estimation Mode */
-        {15u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u},   /* Commanded Attitude Angles */
-        {16u, ICD_ACKNOWLEDGED, 6u},                 /* Set Magnetorquer Output */
-        {17u, ICD_ACKNOWLEDGED, 6u},                 /* Set Wheel Speed */
-        {18u, ICD_ACKNOWLEDGED, 0u},                 /* Trigger ADCS Loop */
-        {19u, ICD_ACKNOWLEDGED, 127u},               /* Trigger ADCS Loop with Simulated Sensor Data */
+        {1u, ICD_EXPECTS_RESET, 1u}, /* Reset */
+        {2u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Current Unix Time */
+        {3u, ICD_ACKNOWLEDGED | ICD_SETTING, 1u}, /* Cache enabled state */
+        {4u, ICD_ACKNOWLEDGED, 0u}, /* Reset Log Pointer */
+        {5u, ICD_ACKNOWLEDGED, 0u}, /* Advance Log Pointer */
+        {6u, ICD_ACKNOWLEDGED, 0u}, /* Reset Boot Registers */
+        {7u, ICD_ACKNOWLEDGED, 1u}, /* Deploy Magnetometer Boom */
+        {8u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* SRAM Scrub Parameters */
+        {9u, ICD_ACKNOWLEDGED | ICD_SETTING, 2u}, /* Unix Time Save to Flash */
+        {10u, ICD_ACKNOWLEDGED, 1u}, /* ADCS Run Mode */
+        {11u, ICD_ACKNOWLEDGED | ICD_SETTING, 3u}, /* ADCS Power Control */
+        {12u, ICD_ACKNOWLEDGED, 1u}, /* Clear Errors */
+        {13u, ICD_ACKNOWLEDGED, 3u}, /* Set Attitude Control Mode */
+        {14u, ICD_ACKNOWLEDGED, 1u}, /* Set Attitude Estimation Mode */
+        {15u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Commanded Attitude Angles */
+        {16u, ICD_ACKNOWLEDGED, 6u}, /* Set Magnetorquer Output */
+        {17u, ICD_ACKNOWLEDGED, 6u}, /* Set Wheel Speed */
+        {18u, ICD_ACKNOWLEDGED, 0u}, /* Trigger ADCS Loop */
+        {19u, ICD_ACKNOWLEDGED, 127u}, /* Trigger ADCS Loop with Simulated Sensor Data */
         {20u, ICD_ACKNOWLEDGED | ICD_SETTING, 504u}, /* ADCS Configuration */
-        {21u, ICD_ACKNOWLEDGED | ICD_SETTING, 3u},   /* Set Magnetorquer Configuration */
-        {22u, ICD_ACKNOWLEDGED | ICD_SETTING, 4u},   /* Set Wheel Configuration */
-        {23u, ICD_ACKNOWLEDGED | ICD_SETTING, 10u},  /* Set Rate Gyro Configuration */
-        {24u, ICD_ACKNOWLEDGED | ICD_SETTING, 21u},  /* CSS Configuration */
+        {21u, ICD_ACKNOWLEDGED | ICD_SETTING, 3u}, /* Set Magnetorquer Configuration */
+        {22u, ICD_ACKNOWLEDGED | ICD_SETTING, 4u}, /* Set Wheel Configuration */
+        {23u, ICD_ACKNOWLEDGED | ICD_SETTING, 10u}, /* Set Rate Gyro Configuration */
+        {24u, ICD_ACKNOWLEDGED | ICD_SETTING, 21u}, /* CSS Configuration */
         {25u, ICD_ACKNOWLEDGED | ICD_SETTING, 112u}, /* CubeSense Configuration */
-        {26u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u},  /* Magnetometer Configuration */
-        {27u, ICD_ACKNOWLEDGED | ICD_SETTING, 31u},  /* Estimation Parameters */
-        {28u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u},  /* Augmented-SGP4 Parameters */
-        {29u, ICD_ACKNOWLEDGED | ICD_SETTING, 96u},  /* User-coded Controller and Estimator Parameters */
+        {26u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Magnetometer Configuration */
+        {27u, ICD_ACKNOWLEDGED | ICD_SETTING, 31u}, /* Estimation Parameters */
+        {28u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Augmented-SGP4 Parameters */
+        {29u, ICD_ACKNOWLEDGED | ICD_SETTING, 96u}, /* User-coded Controller and Estimator Parameters */
         {30u, ICD_ACKNOWLEDGED | ICD_SETTING, 173u}, /* ADCS System Configuration */
-        {31u, ICD_ACKNOWLEDGED, 1u},                 /* ASGP4 Run Mode */
-        {32u, ICD_ACKNOWLEDGED, 0u},                 /* ASGP4 Trigger */
-        {33u, ICD_ACKNOWLEDGED, 1u},                 /* Format SD card */
-        {34u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u},   /* Inertial Pointing Reference Vector */
-        {36u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u},  /* Redundant Magnetometer Configuration */
-        {37u, ICD_ACKNOWLEDGED | ICD_SETTING, 53u},  /* Set Star Tracker Configuration */
-        {38u, ICD_ACKNOWLEDGED | ICD_SETTING, 14u},  /* Set Detumbling Control Parameters */
-        {39u, ICD_ACKNOWLEDGED | ICD_SETTING, 20u},  /* Set Y-Wheel Control Parameters */
-        {40u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u},  /* Set Reaction Wheel Control Parameters */
-        {41u, ICD_ACKNOWLEDGED | ICD_SETTING, 24u},  /* Moment of Inertia Matrix */
-        {45u, ICD_ACKNOWLEDGED | ICD_SETTING, 64u},  /* SGP4 Orbit Parameters */
-        {54u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u},  /* Set Tracking Controller Gain Parameters */
-        {55u, ICD_ACKNOWLEDGED | ICD_SETTING, 12u},  /* Tracking Controller Target Reference */
-        {56u, ICD_ACKNOWLEDGED, 1u},                 /* Set Mode of Magnetometer Operation */
-        {57u, ICD_ACKNOWLEDGED, 3u},                 /* Convert to JPG file */
-        {63u, ICD_ACKNOWLEDGED, 0u},                 /* Save Configuration */
-        {64u, ICD_ACKNOWLEDGED, 0u},                 /* Save Orbit Parameters */
-        {80u, ICD_ACKNOWLEDGED, 2u},                 /* Save Image */
+        {31u, ICD_ACKNOWLEDGED, 1u}, /* ASGP4 Run Mode */
+        {32u, ICD_ACKNOWLEDGED, 0u}, /* ASGP4 Trigger */
+        {33u, ICD_ACKNOWLEDGED, 1u}, /* Format SD card */
+        {34u, ICD_ACKNOWLEDGED | ICD_SETTING, 6u}, /* Inertial Pointing Reference Vector */
+        {36u, ICD_ACKNOWLEDGED | ICD_SETTING, 30u}, /* Redundant Magnetometer Configuration */
+        {37u, ICD_ACKNOWLEDGED | ICD_SETTING, 53u}, /* Set Star Tracker Configuration */
+        {38u, ICD_ACKNOWLEDGED | ICD_SETTING, 14u}, /* Set Detumbling Control Parameters */
+        {39u, ICD_ACKNOWLEDGED | ICD_SETTING, 20u}, /* Set Y-Wheel Control Parameters */
+        {40u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* Set Reaction Wheel Control Parameters */
+        {41u, ICD_ACKNOWLEDGED | ICD_SETTING, 24u}, /* Moment of Inertia Matrix */
+        {45u, ICD_ACKNOWLEDGED | ICD_SETTING, 64u}, /* SGP4 Orbit Parameters */
+        {54u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* Set Tracking Controller Gain Parameters */
+        {55u, ICD_ACKNOWLEDGED | ICD_SETTING, 12u}, /* Tracking Controller Target Reference */
+        {56u, ICD_ACKNOWLEDGED, 1u}, /* Set Mode of Magnetometer Operation */
+        {57u, ICD_ACKNOWLEDGED, 3u}, /* Convert to JPG file */
+        {63u, ICD_ACKNOWLEDGED, 0u}, /* Save Configuration */
+        {64u, ICD_ACKNOWLEDGED, 0u}, /* Save Orbit Parameters */
+        {80u, ICD_ACKNOWLEDGED, 2u}, /* Save Image */
         {104u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* SD Log1 Configuration */
         {105u, ICD_ACKNOWLEDGED | ICD_SETTING, 13u}, /* SD Log2 Configuration */
         {106u, ICD_ACKNOWLEDGED | ICD_SETTING, 12u}, /* UART Log Configuration */
-        {108u, ICD_ACKNOWLEDGED, 3u},                /* Erase File */
-        {112u, ICD_ACKNOWLEDGED, 8u},                /* Load File Download Block */
-        {113u, ICD_ACKNOWLEDGED, 0u},                /* Advance File List Read Pointer */
-        {114u, ICD_ACKNOWLEDGED, 2u},                /* Initiate File Upload */
-        {115u, 0u, 22u},                             /* File Upload Packet */
-        {116u, ICD_ACKNOWLEDGED, 7u},                /* Finalize Upload Block */
-        {117u, ICD_ACKNOWLEDGED, 0u},                /* Reset Upload Block */
-        {118u, ICD_ACKNOWLEDGED, 0u},                /* Reset File List Read Pointer */
-        {119u, ICD_ACKNOWLEDGED, 2u},                /* Initiate Download Burst */
+        {108u, ICD_ACKNOWLEDGED, 3u}, /* Erase File */
+        {112u, ICD_ACKNOWLEDGED, 8u}, /* Load File Download Block */
+        {113u, ICD_ACKNOWLEDGED, 0u}, /* Advance File List Read Pointer */
+        {114u, ICD_ACKNOWLEDGED, 2u}, /* Initiate File Upload */
+        {115u, 0u, 22u}, /* File Upload Packet */
+        {116u, ICD_ACKNOWLEDGED, 7u}, /* Finalize Upload Block */
+        {117u, ICD_ACKNOWLEDGED, 0u}, /* Reset Upload Block */
+        {118u, ICD_ACKNOWLEDGED, 0u}, /* Reset File List Read Pointer */
+        {119u, ICD_ACKNOWLEDGED, 2u}, /* Initiate Download Burst */
         {120u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 1 */
         {121u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 2 */
         {122u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 3 */
@@ -209,132 +209,132 @@ static inline const icd_link_t *cubeacp_link(void)
         {127u, ICD_ACKNOWLEDGED | ICD_SETTING, 16u}, /* Hole Map 8 */
     };
     static const icd_message_t telemetry[] = {
-        {128u, 0u, 8u},   /* Identification */
-        {129u, 0u, 6u},   /* Boot And Running Program Status */
-        {130u, 0u, 2u},   /* Boot Index and Status */
-        {131u, 0u, 1u},   /* Cache enabled state */
-        {132u, 0u, 6u},   /* Current ADCS State */
-        {133u, 0u, 3u},   /* JPG Conversion Progress */
-        {134u, 0u, 2u},   /* SRAM Scrub Parameters */
-        {135u, 0u, 1u},   /* CubeACP State */
-        {136u, 0u, 3u},   /* Set Magnetorquer Configuration */
-        {137u, 0u, 4u},   /* Set Wheel Configuration */
-        {138u, 0u, 10u},  /* Set Rate Gyro Configuration */
-        {139u, 0u, 21u},  /* CSS Configuration */
-        {140u, 0u, 6u},   /* Current Unix Time */
-        {141u, 0u, 6u},   /* Last Logged Event */
-        {142u, 0u, 6u},   /* SRAM Latchup counters */
-        {143u, 0u, 6u},   /* EDAC Error Counters */
-        {144u, 0u, 6u},   /* Communication Status */
-        {145u, 0u, 2u},   /* Unix Time Save to Flash */
-        {146u, 0u, 6u},   /* Estimated Attitude Angles */
-        {147u, 0u, 6u},   /* Estimated Angular Rates */
-        {148u, 0u, 6u},   /* Satellite Position (ECI) */
-        {149u, 0u, 6u},   /* Satellite Velocity (ECI) */
-        {150u, 0u, 6u},   /* Satellite Position (LLH) */
-        {151u, 0u, 6u},   /* Magnetic Field Vector */
-        {152u, 0u, 6u},   /* Coarse Sun Vector */
-        {153u, 0u, 6u},   /* Fine Sun Vector */
-        {154u, 0u, 6u},   /* Nadir Vector */
-        {155u, 0u, 6u},   /* Rate Sensor Rates */
-        {156u, 0u, 6u},   /* Wheel Speed */
-        {157u, 0u, 6u},   /* Magnetorquer Command */
-        {158u, 0u, 6u},   /* Wheel Speed Commands */
-        {159u, 0u, 6u},   /* IGRF Modelled Magnetic Field Vector */
-        {160u, 0u, 6u},   /* Modelled Sun Vector */
-        {161u, 0u, 6u},   /* Estimated Gyro Bias */
-        {162u, 0u, 6u},   /* Estimation Innovation Vector */
-        {163u, 0u, 6u},   /* Quaternion Error Vector */
-        {164u, 0u, 6u},   /* Quaternion Covariance */
-        {165u, 0u, 6u},   /* Angular Rate Covariance */
-        {166u, 0u, 6u},   /* Raw Cam2 Sensor */
-        {167u, 0u, 6u},   /* Raw Cam1 Sensor */
-        {168u, 0u, 6u},   /* Raw CSS 1 to 6 */
-        {169u, 0u, 6u},   /* Raw CSS 7 to 10 */
-        {170u, 0u, 6u},   /* Raw Magnetometer */
-        {171u, 0u, 4u},   /* CubeSense1 Current Measurements */
-        {172u, 0u, 6u},   /* CubeControl Current Measurements */
-        {173u, 0u, 6u},   /* Wheel Currents */
-        {174u, 0u, 6u},   /* ADCS Temperatures */
-        {175u, 0u, 6u},   /* Rate sensor temperatures */
-        {176u, 0u, 6u},   /* Raw GPS Status */
-        {177u, 0u, 6u},   /* Raw GPS Time */
-        {178u, 0u, 6u},   /* Raw GPS X */
-        {179u, 0u, 6u},   /* Raw GPS Y */
-        {180u, 0u, 6u},   /* Raw GPS Z */
-        {181u, 0u, 6u},   /* Star 1 Body Vector */
-        {182u, 0u, 6u},   /* Star 2 Body Vector */
-        {183u, 0u, 6u},   /* Star 3 Body Vector */
-        {184u, 0u, 6u},   /* Star 1 Orbit Vector */
-        {185u, 0u, 6u},   /* Star 2 Orbit Vector */
-        {186u, 0u, 6u},   /* Star 3 Orbit Vector */
-        {187u, 0u, 6u},   /* Star Magnitude */
-        {188u, 0u, 6u},   /* Star Performance1 */
-        {189u, 0u, 6u},   /* Star Timing */
-        {190u, 0u, 54u},  /* ADCS State */
-        {191u, 0u, 72u},  /* ADCS Measurements */
-        {192u, 0u, 12u},  /* Actuator Commands */
-        {193u, 0u, 42u},  /* Estimation Data */
-        {194u, 0u, 34u},  /* Raw Sensor Measurements */
-        {195u, 0u, 38u},  /* Power and Temperature Measurements */
-        {196u, 0u, 8u},   /* Adcs Execution Times */
-        {197u, 0u, 3u},   /* ADCS Power Control */
-        {198u, 0u, 6u},   /* ADCS Misc Current Measurements */
-        {199u, 0u, 6u},   /* Commanded Attitude Angles */
-        {200u, 0u, 12u},  /* Tracking Controller Target Reference */
-        {201u, 0u, 6u},   /* Fine Estimated Angular Rates */
-        {202u, 0u, 53u},  /* Set Star Tracker Configuration */
+        {128u, 0u, 8u}, /* Identification */
+        {129u, 0u, 6u}, /* Boot And Running Program Status */
+        {130u, 0u, 2u}, /* Boot Index and Status */
+        {131u, 0u, 1u}, /* Cache enabled state */
+        {132u, 0u, 6u}, /* Current ADCS State */
+        {133u, 0u, 3u}, /* JPG Conversion Progress */
+        {134u, 0u, 2u}, /* SRAM Scrub Parameters */
+        {135u, 0u, 1u}, /* CubeACP State */
+        {136u, 0u, 3u}, /* Set Magnetorquer Configuration */
+        {137u, 0u, 4u}, /* Set Wheel Configuration */
+        {138u, 0u, 10u}, /* Set Rate Gyro Configuration */
+        {139u, 0u, 21u}, /* CSS Configuration */
+        {140u, 0u, 6u}, /* Current Unix Time */
+        {141u, 0u, 6u}, /* Last Logged Event */
+        {142u, 0u, 6u}, /* SRAM Latchup counters */
+        {143u, 0u, 6u}, /* EDAC Error Counters */
+        {144u, 0u, 6u}, /* Communication Status */
+        {145u, 0u, 2u}, /* Unix Time Save to Flash */
+        {146u, 0u, 6u}, /* Estimated Attitude Angles */
+        {147u, 0u, 6u}, /* Estimated Angular Rates */
+        {148u, 0u, 6u}, /* Satellite Position (ECI) */
+        {149u, 0u, 6u}, /* Satellite Velocity (ECI) */
+        {150u, 0u, 6u}, /* Satellite Position (LLH) */
+        {151u, 0u, 6u}, /* Magnetic Field Vector */
+        {152u, 0u, 6u}, /* Coarse Sun Vector */
+        {153u, 0u, 6u}, /* Fine Sun Vector */
+        {154u, 0u, 6u}, /* Nadir Vector */
+        {155u, 0u, 6u}, /* Rate Sensor Rates */
+        {156u, 0u, 6u}, /* Wheel Speed */
+        {157u, 0u, 6u}, /* Magnetorquer Command */
+        {158u, 0u, 6u}, /* Wheel Speed Commands */
+        {159u, 0u, 6u}, /* IGRF Modelled Magnetic Field Vector */
+        {160u, 0u, 6u}, /* Modelled Sun Vector */
+        {161u, 0u, 6u}, /* Estimated Gyro Bias */
+        {162u, 0u, 6u}, /* Estimation Innovation Vector */
+        {163u, 0u, 6u}, /* Quaternion Error Vector */
+        {164u, 0u, 6u}, /* Quaternion Covariance */
+        {165u, 0u, 6u}, /* Angular Rate Covariance */
+        {166u, 0u, 6u}, /* Raw Cam2 Sensor */
+        {167u, 0u, 6u}, /* Raw Cam1 Sensor */
+        {168u, 0u, 6u}, /* Raw CSS 1 to 6 */
+        {169u, 0u, 6u}, /* Raw CSS 7 to 10 */
+        {170u, 0u, 6u}, /* Raw Magnetometer */
+        {171u, 0u, 4u}, /* CubeSense1 Current Measurements */
+        {172u, 0u, 6u}, /* CubeControl Current Measurements */
+        {173u, 0u, 6u}, /* Wheel Currents */
+        {174u, 0u, 6u}, /* ADCS Temperatures */
+        {175u, 0u, 6u}, /* Rate sensor temperatures */
+        {176u, 0u, 6u}, /* Raw GPS Status */
+        {177u, 0u, 6u}, /* Raw GPS Time */
+        {178u, 0u, 6u}, /* Raw GPS X */
+        {179u, 0u, 6u}, /* Raw GPS Y */
+        {180u, 0u, 6u}, /* Raw GPS Z */
+        {181u, 0u, 6u}, /* Star 1 Body Vector */
+        {182u, 0u, 6u}, /* Star 2 Body Vector */
+        {183u, 0u, 6u}, /* Star 3 Body Vector */
+        {184u, 0u, 6u}, /* Star 1 Orbit Vector */
+        {185u, 0u, 6u}, /* Star 2 Orbit Vector */
+        {186u, 0u, 6u}, /* Star 3 Orbit Vector */
+        {187u, 0u, 6u}, /* Star Magnitude */
+        {188u, 0u, 6u}, /* Star Performance1 */
+        {189u, 0u, 6u}, /* Star Timing */
+        {190u, 0u, 54u}, /* ADCS State */
+        {191u, 0u, 72u}, /* ADCS Measurements */
+        {192u, 0u, 12u}, /* Actuator Commands */
+        {193u, 0u, 42u}, /* Estimation Data */
+        {194u, 0u, 34u}, /* Raw Sensor Measurements */
+        {195u, 0u, 38u}, /* Power and Temperature Measurements */
+        {196u, 0u, 8u}, /* Adcs Execution Times */
+        {197u, 0u, 3u}, /* ADCS Power Control */
+        {198u, 0u, 6u}, /* ADCS Misc Current Measurements */
+        {199u, 0u, 6u}, /* Commanded Attitude Angles */
+        {200u, 0u, 12u}, /* Tracking Controller Target Reference */
+        {201u, 0u, 6u}, /* Fine Estimated Angular Rates */
+        {202u, 0u, 53u}, /* Set Star Tracker Configuration */
         {203u, 0u, 112u}, /* CubeSense Configuration */
-        {204u, 0u, 30u},  /* Magnetometer Configuration */
-        {205u, 0u, 30u},  /* Redundant Magnetometer Configuration */
+        {204u, 0u, 30u}, /* Magnetometer Configuration */
+        {205u, 0u, 30u}, /* Redundant Magnetometer Configuration */
         {206u, 0u, 504u}, /* ADCS Configuration */
-        {207u, 0u, 64u},  /* SGP4 Orbit Parameters */
-        {208u, 0u, 14u},  /* Set Detumbling Control Parameters */
-        {209u, 0u, 20u},  /* Set Y-Wheel Control Parameters */
-        {210u, 0u, 36u},  /* Raw GPS Measurements */
-        {211u, 0u, 54u},  /* Raw Star Tracker */
-        {212u, 0u, 6u},   /* Star 1 Raw Data */
-        {213u, 0u, 6u},   /* Star 2 Raw Data */
-        {214u, 0u, 6u},   /* Star 3 Raw Data */
-        {215u, 0u, 6u},   /* Secondary Magnetometer Raw Measurements */
-        {216u, 0u, 6u},   /* Raw Rate Sensor */
-        {217u, 0u, 13u},  /* Set Reaction Wheel Control Parameters */
-        {218u, 0u, 6u},   /* Estimated Quaternion */
-        {219u, 0u, 6u},   /* ECEF Position */
-        {220u, 0u, 3u},   /* ACP Execution State */
-        {221u, 0u, 13u},  /* Set Tracking Controller Gain Parameters */
-        {222u, 0u, 24u},  /* Moment of Inertia Matrix */
-        {223u, 0u, 31u},  /* Estimation Parameters */
-        {224u, 0u, 6u},   /* Current ADCS State 2 */
+        {207u, 0u, 64u}, /* SGP4 Orbit Parameters */
+        {208u, 0u, 14u}, /* Set Detumbling Control Parameters */
+        {209u, 0u, 20u}, /* Set Y-Wheel Control Parameters */
+        {210u, 0u, 36u}, /* Raw GPS Measurements */
+        {211u, 0u, 54u}, /* Raw Star Tracker */
+        {212u, 0u, 6u}, /* Star 1 Raw Data */
+        {213u, 0u, 6u}, /* Star 2 Raw Data */
+        {214u, 0u, 6u}, /* Star 3 Raw Data */
+        {215u, 0u, 6u}, /* Secondary Magnetometer Raw Measurements */
+        {216u, 0u, 6u}, /* Raw Rate Sensor */
+        {217u, 0u, 13u}, /* Set Reaction Wheel Control Parameters */
+        {218u, 0u, 6u}, /* Estimated Quaternion */
+        {219u, 0u, 6u}, /* ECEF Position */
+        {220u, 0u, 3u}, /* ACP Execution State */
+        {221u, 0u, 13u}, /* Set Tracking Controller Gain Parameters */
+        {222u, 0u, 24u}, /* Moment of Inertia Matrix */
+        {223u, 0u, 31u}, /* Estimation Parameters */
+        {224u, 0u, 6u}, /* Current ADCS State 2 */
         {225u, 0u, 173u}, /* ADCS System Configuration */
-        {226u, 0u, 96u},  /* User-coded Controller and Estimator Parameters */
-        {227u, 0u, 30u},  /* Augmented-SGP4 Parameters */
-        {228u, 0u, 33u},  /* ASGP4 TLEs */
-        {229u, 0u, 6u},   /* CubeStar Estimated Rates */
-        {230u, 0u, 6u},   /* CubeStar Estimated Quaternion */
-        {231u, 0u, 6u},   /* Star Performance2 */
-        {232u, 0u, 4u},   /* CubeSense2 Current Measurements */
-        {233u, 0u, 2u},   /* Status of Image Capture and Save Operation */
-        {234u, 0u, 1u},   /* SD card format/erase progress */
-        {235u, 0u, 13u},  /* SD Log1 Configuration */
-        {236u, 0u, 13u},  /* SD Log2 Configuration */
-        {237u, 0u, 12u},  /* UART Log Configuration */
-        {238u, 0u, 6u},   /* Inertial Pointing Reference Vector */
-        {240u, 0u, 4u},   /* Telecommand Acknowledge */
-        {241u, 0u, 22u},  /* File Download Buffer with File Contents */
-        {242u, 0u, 5u},   /* Download Block Ready */
-        {243u, 0u, 12u},  /* File Information */
-        {244u, 0u, 1u},   /* Initialize Upload Complete */
-        {245u, 0u, 1u},   /* Upload Block Complete */
-        {246u, 0u, 2u},   /* Block Checksum */
-        {247u, 0u, 16u},  /* Hole Map 1 */
-        {248u, 0u, 16u},  /* Hole Map 2 */
-        {249u, 0u, 16u},  /* Hole Map 3 */
-        {250u, 0u, 16u},  /* Hole Map 4 */
-        {251u, 0u, 16u},  /* Hole Map 5 */
-        {252u, 0u, 16u},  /* Hole Map 6 */
-        {253u, 0u, 16u},  /* Hole Map 7 */
-        {254u, 0u, 16u},  /* Hole Map 8 */
+        {226u, 0u, 96u}, /* User-coded Controller and Estimator Parameters */
+        {227u, 0u, 30u}, /* Augmented-SGP4 Parameters */
+        {228u, 0u, 33u}, /* ASGP4 TLEs */
+        {229u, 0u, 6u}, /* CubeStar Estimated Rates */
+        {230u, 0u, 6u}, /* CubeStar Estimated Quaternion */
+        {231u, 0u, 6u}, /* Star Performance2 */
+        {232u, 0u, 4u}, /* CubeSense2 Current Measurements */
+        {233u, 0u, 2u}, /* Status of Image Capture and Save Operation */
+        {234u, 0u, 1u}, /* SD card format/erase progress */
+        {235u, 0u, 13u}, /* SD Log1 Configuration */
+        {236u, 0u, 13u}, /* SD Log2 Configuration */
+        {237u, 0u, 12u}, /* UART Log Configuration */
+        {238u, 0u, 6u}, /* Inertial Pointing Reference Vector */
+        {240u, 0u, 4u}, /* Telecommand Acknowledge */
+        {241u, 0u, 22u}, /* File Download Buffer with File Contents */
+        {242u, 0u, 5u}, /* Download Block Ready */
+        {243u, 0u, 12u}, /* File Information */
+        {244u, 0u, 1u}, /* Initialize Upload Complete */
+        {245u, 0u, 1u}, /* Upload Block Complete */
+        {246u, 0u, 2u}, /* Block Checksum */
+        {247u, 0u, 16u}, /* Hole Map 1 */
+        {248u, 0u, 16u}, /* Hole Map 2 */
+        {249u, 0u, 16u}, /* Hole Map 3 */
+        {250u, 0u, 16u}, /* Hole Map 4 */
+        {251u, 0u, 16u}, /* Hole Map 5 */
+        {252u, 0u, 16u}, /* Hole Map 6 */
+        {253u, 0u, 16u}, /* Hole Map 7 */
+        {254u, 0u, 16u}, /* Hole Map 8 */
     };
     static const icd_error_code_t errors[] = {
         {ICD_REASON_NONE, 0u},
@@ -352,7 +352,7 @@ static inline const icd_link_t *cubeacp_link(void)
         0x7fu, /* start */
         0xffu, /* end */
         0x1fu, /* escaped */
-        true,  /* escapes_id */
+        true, /* escapes_id */
         false, /* ignores_other */
     };
     /**
@@ -365,55 +365,71 @@ static inline const icd_link_t *cubeacp_link(void)
         1u, /* error_at */
     };
     static const icd_place_t polled_places[] = {
-        {ICD_ROLE_ID, 0u, 8u},         /* Last TC ID */
-        {ICD_ROLE_PROCESSED, 8u, 1u},  /* Processed flag */
-        {ICD_ROLE_ERROR, 16u, 8u},     /* TC error status */
+        {ICD_ROLE_ID, 0u, 8u}, /* Last TC ID */
+        {ICD_ROLE_PROCESSED, 8u, 1u}, /* Processed flag */
+        {ICD_ROLE_ERROR, 16u, 8u}, /* TC error status */
         {ICD_ROLE_PARAMETER, 24u, 8u}, /* TC parameter error index */
     };
     static const icd_step_t polled = {
-        -1, 240, 4u, 4u, polled_places, NULL
+        -1, 240, 4u, 4u, polled_places, NULL,
     };
     /**
      * Assumed fill: Neither the value of the fill nor how the receiver learns the true length is said. The receiver
      * takes the length of the message from its id. Assumed packet_timeout_ms: No time-out between packets is given.
      */
     static const icd_can_extended_t can_extended = {
-        7u,    /* data_bytes */
-        7u,    /* left_at */
-        0u,    /* left_in_last */
-        256u,  /* packets */
+        7u, /* data_bytes */
+        7u, /* left_at */
+        0u, /* left_in_last */
+        256u, /* packets */
         1792u, /* bytes */
         0x00u, /* fill */
         1000u, /* packet_timeout in ms */
     };
     static const icd_can_form_t can = {
-        0x01u,                  /* node_address */
-        8u,                     /* data_bytes */
-        {5u, 24u},              /* type: bits, shift */
-        {8u, 16u},              /* channel: bits, shift */
-        {8u, 8u},               /* source: bits, shift */
-        {8u, 0u},               /* destination: bits, shift */
-        {1, 2, 3, 4, 5, 6},     /* types */
+        0x01u, /* node_address */
+        8u, /* data_bytes */
+        {5u, 24u}, /* type: bits, shift */
+        {8u, 16u}, /* channel: bits, shift */
+        {8u, 8u}, /* source: bits, shift */
+        {8u, 0u}, /* destination: bits, shift */
+        {1, 2, 3, 4, 5, 6}, /* types */
         {7, -1, -1, -1, 8, -1}, /* types of messages of several packets */
-        &can_extended,          /* messages of several packets */
+        &can_extended, /* messages of several packets */
     };
     static const uint16_t crc8_table[] = {
-        0x00u, 0x12u, 0x24u, 0x36u, 0x48u, 0x5au, 0x6cu, 0x7eu, 0x90u, 0x82u, 0xb4u, 0xa6u, 0xd8u, 0xcau, 0xfcu, 0xeeu,
-        0x32u, 0x20u, 0x16u, 0x04u, 0x7au, 0x68u, 0x5eu, 0x4cu, 0xa2u, 0xb0u, 0x86u, 0x94u, 0xeau, 0xf8u, 0xceu, 0xdcu,
-        0x64u, 0x76u, 0x40u, 0x52u, 0x2cu, 0x3eu, 0x08u, 0x1au, 0xf4u, 0xe6u, 0xd0u, 0xc2u, 0xbcu, 0xaeu, 0x98u, 0x8au,
-        0x56u, 0x44u, 0x72u, 0x60u, 0x1eu, 0x0cu, 0x3au, 0x28u, 0xc6u, 0xd4u, 0xe2u, 0xf0u, 0x8eu, 0x9cu, 0xaau, 0xb8u,
-        0xc8u, 0xdau, 0xecu, 0xfeu, 0x80u, 0x92u, 0xa4u, 0xb6u, 0x58u, 0x4au, 0x7cu, 0x6eu, 0x10u, 0x02u, 0x34u, 0x26u,
-        0xfau, 0xe8u, 0xdeu, 0xccu, 0xb2u, 0xa0u, 0x96u, 0x84u, 0x6au, 0x78u, 0x4eu, 0x5cu, 0x22u, 0x30u, 0x06u, 0x14u,
-        0xacu, 0xbeu, 0x88u, 0x9au, 0xe4u, 0xf6u, 0xc0u, 0xd2u, 0x3cu, 0x2eu, 0x18u, 0x0au, 0x74u, 0x66u, 0x50u, 0x42u,
-        0x9eu, 0x8cu, 0xbau, 0xa8u, 0xd6u, 0xc4u, 0xf2u, 0xe0u, 0x0eu, 0x1cu, 0x2au, 0x38u, 0x46u, 0x54u, 0x62u, 0x70u,
-        0x82u, 0x90u, 0xa6u, 0xb4u, 0xcau, 0xd8u, 0xeeu, 0xfcu, 0x12u, 0x00u, 0x36u, 0x24u, 0x5au, 0x48u, 0x7eu, 0x6cu,
-        0xb0u, 0xa2u, 0x94u, 0x86u, 0xf8u, 0xeau, 0xdcu, 0xceu, 0x20u, 0x32u, 0x04u, 0x16u, 0x68u, 0x7au, 0x4cu, 0x5eu,
-        0xe6u, 0xf4u, 0xc2u, 0xd0u, 0xaeu, 0xbcu, 0x8au, 0x98u, 0x76u, 0x64u, 0x52u, 0x40u, 0x3eu, 0x2cu, 0x1au, 0x08u,
-        0xd4u, 0xc6u, 0xf0u, 0xe2u, 0x9cu, 0x8eu, 0xb8u, 0xaau, 0x44u, 0x56u, 0x60u, 0x72u, 0x0cu, 0x1eu, 0x28u, 0x3au,
-        0x4au, 0x58u, 0x6eu, 0x7cu, 0x02u, 0x10u, 0x26u, 0x34u, 0xdau, 0xc8u, 0xfeu, 0xecu, 0x92u, 0x80u, 0xb6u, 0xa4u,
-        0x78u, 0x6au, 0x5cu, 0x4eu, 0x30u, 0x22u, 0x14u, 0x06u, 0xe8u, 0xfau, 0xccu, 0xdeu, 0xa0u, 0xb2u, 0x84u, 0x96u,
-        0x2eu, 0x3cu, 0x0au, 0x18u, 0x66u, 0x74u, 0x42u, 0x50u, 0xbeu, 0xacu, 0x9au, 0x88u, 0xf6u, 0xe4u, 0xd2u, 0xc0u,
-        0x1cu, 0x0eu, 0x38u, 0x2au, 0x54u, 0x46u, 0x70u, 0x62u, 0x8cu, 0x9eu, 0xa8u, 0xbau, 0xc4u, 0xd6u, 0xe0u, 0xf2u,
+        0x00u, 0x12u, 0x24u, 0x36u, 0x48u, 0x5au, 0x6cu, 0x7eu,
+        0x90u, 0x82u, 0xb4u, 0xa6u, 0xd8u, 0xcau, 0xfcu, 0xeeu,
+        0x32u, 0x20u, 0x16u, 0x04u, 0x7au, 0x68u, 0x5eu, 0x4cu,
+        0xa2u, 0xb0u, 0x86u, 0x94u, 0xeau, 0xf8u, 0xceu, 0xdcu,
+        0x64u, 0x76u, 0x40u, 0x52u, 0x2cu, 0x3eu, 0x08u, 0x1au,
+        0xf4u, 0xe6u, 0xd0u, 0xc2u, 0xbcu, 0xaeu, 0x98u, 0x8au,
+        0x56u, 0x44u, 0x72u, 0x60u, 0x1eu, 0x0cu, 0x3au, 0x28u,
+        0xc6u, 0xd4u, 0xe2u, 0xf0u, 0x8eu, 0x9cu, 0xaau, 0xb8u,
+        0xc8u, 0xdau, 0xecu, 0xfeu, 0x80u, 0x92u, 0xa4u, 0xb6u,
+        0x58u, 0x4au, 0x7cu, 0x6eu, 0x10u, 0x02u, 0x34u, 0x26u,
+        0xfau, 0xe8u, 0xdeu, 0xccu, 0xb2u, 0xa0u, 0x96u, 0x84u,
+        0x6au, 0x78u, 0x4eu, 0x5cu, 0x22u, 0x30u, 0x06u, 0x14u,
+        0xacu, 0xbeu, 0x88u, 0x9au, 0xe4u, 0xf6u, 0xc0u, 0xd2u,
+        0x3cu, 0x2eu, 0x18u, 0x0au, 0x74u, 0x66u, 0x50u, 0x42u,
+        0x9eu, 0x8cu, 0xbau, 0xa8u, 0xd6u, 0xc4u, 0xf2u, 0xe0u,
+        0x0eu, 0x1cu, 0x2au, 0x38u, 0x46u, 0x54u, 0x62u, 0x70u,
+        0x82u, 0x90u, 0xa6u, 0xb4u, 0xcau, 0xd8u, 0xeeu, 0xfcu,
+        0x12u, 0x00u, 0x36u, 0x24u, 0x5au, 0x48u, 0x7eu, 0x6cu,
+        0xb0u, 0xa2u, 0x94u, 0x86u, 0xf8u, 0xeau, 0xdcu, 0xceu,
+        0x20u, 0x32u, 0x04u, 0x16u, 0x68u, 0x7au, 0x4cu, 0x5eu,
+        0xe6u, 0xf4u, 0xc2u, 0xd0u, 0xaeu, 0xbcu, 0x8au, 0x98u,
+        0x76u, 0x64u, 0x52u, 0x40u, 0x3eu, 0x2cu, 0x1au, 0x08u,
+        0xd4u, 0xc6u, 0xf0u, 0xe2u, 0x9cu, 0x8eu, 0xb8u, 0xaau,
+        0x44u, 0x56u, 0x60u, 0x72u, 0x0cu, 0x1eu, 0x28u, 0x3au,
+        0x4au, 0x58u, 0x6eu, 0x7cu, 0x02u, 0x10u, 0x26u, 0x34u,
+        0xdau, 0xc8u, 0xfeu, 0xecu, 0x92u, 0x80u, 0xb6u, 0xa4u,
+        0x78u, 0x6au, 0x5cu, 0x4eu, 0x30u, 0x22u, 0x14u, 0x06u,
+        0xe8u, 0xfau, 0xccu, 0xdeu, 0xa0u, 0xb2u, 0x84u, 0x96u,
+        0x2eu, 0x3cu, 0x0au, 0x18u, 0x66u, 0x74u, 0x42u, 0x50u,
+        0xbeu, 0xacu, 0x9au, 0x88u, 0xf6u, 0xe4u, 0xd2u, 0xc0u,
+        0x1cu, 0x0eu, 0x38u, 0x2au, 0x54u, 0x46u, 0x70u, 0x62u,
+        0x8cu, 0x9eu, 0xa8u, 0xbau, 0xc4u, 0xd6u, 0xe0u, 0xf2u,
     };
     /**
      * Assumed covers_id: Whether the id counts among the bytes of a command is not said. The extra byte of a frame can
@@ -421,47 +437,57 @@ static inline const icd_link_t *cubeacp_link(void)
      * sent there by choice, for in an extended message the receiver could not tell the checksum from the fill.
      */
     static const icd_checksum_form_t checksum = {
-        false,                                                        /* covers_id */
-        3u,                                                           /* telecommand_buses */
-        2u,                                                           /* telemetry_buses */
-        1u,                                                           /* bytes */
+        false, /* covers_id */
+        3u, /* telecommand_buses */
+        2u, /* telemetry_buses */
+        1u, /* bytes */
         {8u, 0x12u, 0x0u, true, true, 0x0u, true, 0xffu, crc8_table}, /* CRC */
     };
     static const uint16_t crc16_table[] = {
-        0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50a5u, 0x60c6u, 0x70e7u, 0x8108u, 0x9129u, 0xa14au, 0xb16bu,
-        0xc18cu, 0xd1adu, 0xe1ceu, 0xf1efu, 0x1231u, 0x0210u, 0x3273u, 0x2252u, 0x52b5u, 0x4294u, 0x72f7u, 0x62d6u,
-        0x9339u, 0x8318u, 0xb37bu, 0xa35au, 0xd3bdu, 0xc39cu, 0xf3ffu, 0xe3deu, 0x2462u, 0x3443u, 0x0420u, 0x1401u,
-        0x64e6u, 0x74c7u, 0x44a4u, 0x5485u, 0xa56au, 0xb54bu, 0x8528u, 0x9509u, 0xe5eeu, 0xf5cfu, 0xc5acu, 0xd58du,
-        0x3653u, 0x2672u, 0x1611u, 0x0630u, 0x76d7u, 0x66f6u, 0x5695u, 0x46b4u, 0xb75bu, 0xa77au, 0x9719u, 0x8738u,
-        0xf7dfu, 0xe7feu, 0xd79du, 0xc7bcu, 0x48c4u, 0x58e5u, 0x6886u, 0x78a7u, 0x0840u, 0x1861u, 0x2802u, 0x3823u,
-        0xc9ccu, 0xd9edu, 0xe98eu, 0xf9afu, 0x8948u, 0x9969u, 0xa90au, 0xb92bu, 0x5af5u, 0x4ad4u, 0x7ab7u, 0x6a96u,
-        0x1a71u, 0x0a50u, 0x3a33u, 0x2a12u, 0xdbfdu, 0xcbdcu, 0xfbbfu, 0xeb9eu, 0x9b79u, 0x8b58u, 0xbb3bu, 0xab1au,
-        0x6ca6u, 0x7c87u, 0x4ce4u, 0x5cc5u, 0x2c22u, 0x3c03u, 0x0c60u, 0x1c41u, 0xedaeu, 0xfd8fu, 0xcdecu, 0xddcdu,
-        0xad2au, 0xbd0bu, 0x8d68u, 0x9d49u, 0x7e97u, 0x6eb6u, 0x5ed5u, 0x4ef4u, 0x3e13u, 0x2e32u, 0x1e51u, 0x0e70u,
-        0xff9fu, 0xefbeu, 0xdfddu, 0xcffcu, 0xbf1bu, 0xaf3au, 0x9f59u, 0x8f78u, 0x9188u, 0x81a9u, 0xb1cau, 0xa1ebu,
-        0xd10cu, 0xc12du, 0xf14eu, 0xe16fu, 0x1080u, 0x00a1u, 0x30c2u, 0x20e3u, 0x5004u, 0x4025u, 0x7046u, 0x6067u,
-        0x83b9u, 0x9398u, 0xa3fbu, 0xb3dau, 0xc33du, 0xd31cu, 0xe37fu, 0xf35eu, 0x02b1u, 0x1290u, 0x22f3u, 0x32d2u,
-        0x4235u, 0x5214u, 0x6277u, 0x7256u, 0xb5eau, 0xa5cbu, 0x95a8u, 0x8589u, 0xf56eu, 0xe54fu, 0xd52cu, 0xc50du,
-        0x34e2u, 0x24c3u, 0x14a0u, 0x0481u, 0x7466u, 0x6447u, 0x5424u, 0x4405u, 0xa7dbu, 0xb7fau, 0x8799u, 0x97b8u,
-        0xe75fu, 0xf77eu, 0xc71du, 0xd73cu, 0x26d3u, 0x36f2u, 0x0691u, 0x16b0u, 0x6657u, 0x7676u, 0x4615u, 0x5634u,
-        0xd94cu, 0xc96du, 0xf90eu, 0xe92fu, 0x99c8u, 0x89e9u, 0xb98au, 0xa9abu, 0x5844u, 0x4865u, 0x7806u, 0x6827u,
-        0x18c0u, 0x08e1u, 0x3882u, 0x28a3u, 0xcb7du, 0xdb5cu, 0xeb3fu, 0xfb1eu, 0x8bf9u, 0x9bd8u, 0xabbbu, 0xbb9au,
-        0x4a75u, 0x5a54u, 0x6a37u, 0x7a16u, 0x0af1u, 0x1ad0u, 0x2ab3u, 0x3a92u, 0xfd2eu, 0xed0fu, 0xdd6cu, 0xcd4du,
-        0xbdaau, 0xad8bu, 0x9de8u, 0x8dc9u, 0x7c26u, 0x6c07u, 0x5c64u, 0x4c45u, 0x3ca2u, 0x2c83u, 0x1ce0u, 0x0cc1u,
-        0xef1fu, 0xff3eu, 0xcf5du, 0xdf7cu, 0xaf9bu, 0xbfbau, 0x8fd9u, 0x9ff8u, 0x6e17u, 0x7e36u, 0x4e55u, 0x5e74u,
-        0x2e93u, 0x3eb2u, 0x0ed1u, 0x1ef0u,
+        0x0000u, 0x1021u, 0x2042u, 0x3063u, 0x4084u, 0x50a5u, 0x60c6u, 0x70e7u,
+        0x8108u, 0x9129u, 0xa14au, 0xb16bu, 0xc18cu, 0xd1adu, 0xe1ceu, 0xf1efu,
+        0x1231u, 0x0210u, 0x3273u, 0x2252u, 0x52b5u, 0x4294u, 0x72f7u, 0x62d6u,
+        0x9339u, 0x8318u, 0xb37bu, 0xa35au, 0xd3bdu, 0xc39cu, 0xf3ffu, 0xe3deu,
+        0x2462u, 0x3443u, 0x0420u, 0x1401u, 0x64e6u, 0x74c7u, 0x44a4u, 0x5485u,
+        0xa56au, 0xb54bu, 0x8528u, 0x9509u, 0xe5eeu, 0xf5cfu, 0xc5acu, 0xd58du,
+        0x3653u, 0x2672u, 0x1611u, 0x0630u, 0x76d7u, 0x66f6u, 0x5695u, 0x46b4u,
+        0xb75bu, 0xa77au, 0x9719u, 0x8738u, 0xf7dfu, 0xe7feu, 0xd79du, 0xc7bcu,
+        0x48c4u, 0x58e5u, 0x6886u, 0x78a7u, 0x0840u, 0x1861u, 0x2802u, 0x3823u,
+        0xc9ccu, 0xd9edu, 0xe98eu, 0xf9afu, 0x8948u, 0x9969u, 0xa90au, 0xb92bu,
+        0x5af5u, 0x4ad4u, 0x7ab7u, 0x6a96u, 0x1a71u, 0x0a50u, 0x3a33u, 0x2a12u,
+        0xdbfdu, 0xcbdcu, 0xfbbfu, 0xeb9eu, 0x9b79u, 0x8b58u, 0xbb3bu, 0xab1au,
+        0x6ca6u, 0x7c87u, 0x4ce4u, 0x5cc5u, 0x2c22u, 0x3c03u, 0x0c60u, 0x1c41u,
+        0xedaeu, 0xfd8fu, 0xcdecu, 0xddcdu, 0xad2au, 0xbd0bu, 0x8d68u, 0x9d49u,
+        0x7e97u, 0x6eb6u, 0x5ed5u, 0x4ef4u, 0x3e13u, 0x2e32u, 0x1e51u, 0x0e70u,
+        0xff9fu, 0xefbeu, 0xdfddu, 0xcffcu, 0xbf1bu, 0xaf3au, 0x9f59u, 0x8f78u,
+        0x9188u, 0x81a9u, 0xb1cau, 0xa1ebu, 0xd10cu, 0xc12du, 0xf14eu, 0xe16fu,
+        0x1080u, 0x00a1u, 0x30c2u, 0x20e3u, 0x5004u, 0x4025u, 0x7046u, 0x6067u,
+        0x83b9u, 0x9398u, 0xa3fbu, 0xb3dau, 0xc33du, 0xd31cu, 0xe37fu, 0xf35eu,
+        0x02b1u, 0x1290u, 0x22f3u, 0x32d2u, 0x4235u, 0x5214u, 0x6277u, 0x7256u,
+        0xb5eau, 0xa5cbu, 0x95a8u, 0x8589u, 0xf56eu, 0xe54fu, 0xd52cu, 0xc50du,
+        0x34e2u, 0x24c3u, 0x14a0u, 0x0481u, 0x7466u, 0x6447u, 0x5424u, 0x4405u,
+        0xa7dbu, 0xb7fau, 0x8799u, 0x97b8u, 0xe75fu, 0xf77eu, 0xc71du, 0xd73cu,
+        0x26d3u, 0x36f2u, 0x0691u, 0x16b0u, 0x6657u, 0x7676u, 0x4615u, 0x5634u,
+        0xd94cu, 0xc96du, 0xf90eu, 0xe92fu, 0x99c8u, 0x89e9u, 0xb98au, 0xa9abu,
+        0x5844u, 0x4865u, 0x7806u, 0x6827u, 0x18c0u, 0x08e1u, 0x3882u, 0x28a3u,
+        0xcb7du, 0xdb5cu, 0xeb3fu, 0xfb1eu, 0x8bf9u, 0x9bd8u, 0xabbbu, 0xbb9au,
+        0x4a75u, 0x5a54u, 0x6a37u, 0x7a16u, 0x0af1u, 0x1ad0u, 0x2ab3u, 0x3a92u,
+        0xfd2eu, 0xed0fu, 0xdd6cu, 0xcd4du, 0xbdaau, 0xad8bu, 0x9de8u, 0x8dc9u,
+        0x7c26u, 0x6c07u, 0x5c64u, 0x4c45u, 0x3ca2u, 0x2c83u, 0x1ce0u, 0x0cc1u,
+        0xef1fu, 0xff3eu, 0xcf5du, 0xdf7cu, 0xaf9bu, 0xbfbau, 0x8fd9u, 0x9ff8u,
+        0x6e17u, 0x7e36u, 0x4e55u, 0x5e74u, 0x2e93u, 0x3eb2u, 0x0ed1u, 0x1ef0u,
     };
     static const icd_crc_form_t crc16 = {
-        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, crc16_table
+        16u, 0x1021u, 0x0u, false, false, 0x0u, false, 0x0u, crc16_table,
     };
     static const icd_log_bit_t log_bits[] = {
         {144, 6u}, /* bit 0: Communication Status */
         {143, 6u}, /* bit 1: EDAC Error Counters */
-        {-1, 6u},  /* bit 2 */
+        {-1, 6u}, /* bit 2 */
         {141, 6u}, /* bit 3: Last Logged Event */
         {142, 6u}, /* bit 4: SRAM Latchup counters */
-        {-1, 6u},  /* bit 5 */
-        {-1, 6u},  /* bit 6 */
+        {-1, 6u}, /* bit 5 */
+        {-1, 6u}, /* bit 6 */
         {157, 6u}, /* bit 7: Magnetorquer Command */
         {158, 6u}, /* bit 8: Wheel Speed Commands */
         {151, 6u}, /* bit 9: Magnetic Field Vector */
@@ -521,20 +547,20 @@ static inline const icd_link_t *cubeacp_link(void)
         {230, 6u}, /* bit 63: CubeStar Estimated Quaternion */
         {231, 6u}, /* bit 64: Star Performance2 */
         {232, 4u}, /* bit 65: CubeSense2 Current Measurements */
-        {-1, 6u},  /* bit 66 */
-        {-1, 6u},  /* bit 67 */
-        {-1, 6u},  /* bit 68 */
-        {-1, 6u},  /* bit 69 */
-        {-1, 6u},  /* bit 70 */
-        {-1, 6u},  /* bit 71 */
-        {-1, 6u},  /* bit 72 */
-        {-1, 6u},  /* bit 73 */
-        {-1, 6u},  /* bit 74 */
-        {-1, 6u},  /* bit 75 */
-        {-1, 6u},  /* bit 76 */
-        {-1, 6u},  /* bit 77 */
-        {-1, 6u},  /* bit 78 */
-        {-1, 6u},  /* bit 79 */
+        {-1, 6u}, /* bit 66 */
+        {-1, 6u}, /* bit 67 */
+        {-1, 6u}, /* bit 68 */
+        {-1, 6u}, /* bit 69 */
+        {-1, 6u}, /* bit 70 */
+        {-1, 6u}, /* bit 71 */
+        {-1, 6u}, /* bit 72 */
+        {-1, 6u}, /* bit 73 */
+        {-1, 6u}, /* bit 74 */
+        {-1, 6u}, /* bit 75 */
+        {-1, 6u}, /* bit 76 */
+        {-1, 6u}, /* bit 77 */
+        {-1, 6u}, /* bit 78 */
+        {-1, 6u}, /* bit 79 */
     };
     /**
      * Assumed frame_order: The order of the frames in an entry is not said. They follow the bits of the mask, bit 0 of
@@ -544,19 +570,19 @@ static inline const icd_link_t *cubeacp_link(void)
      * sizes count every bit that is set.
      */
     static const icd_log_mask_form_t log_mask = {
-        10u,   /* size */
+        10u, /* size */
         false, /* msb0 */
-        6u,    /* slot_bytes */
+        6u, /* slot_bytes */
         0x00u, /* fill */
         log_bits,
     };
     static const icd_log_file_form_t log_file = {
-        0u,       /* mask_at */
-        10u,      /* header_bytes */
+        0u, /* mask_at */
+        10u, /* header_bytes */
         {0u, 4u}, /* seconds */
         {4u, 2u}, /* milliseconds */
-        6u,       /* frames_at */
-        2,        /* file_type */
+        6u, /* frames_at */
+        2, /* file_type */
     };
     /**
      * Assumed framed: Section 5.2 has start, end and escapes for all that goes over the UART, and makes no exception
@@ -564,25 +590,25 @@ static inline const icd_link_t *cubeacp_link(void)
      */
     static const icd_log_message_form_t log_message = {
         255u, /* id */
-        1u,   /* mask_at */
-        11u,  /* frames_at */
+        1u, /* mask_at */
+        11u, /* frames_at */
     };
     static const icd_time_form_t packed_time = {
         {25u, 7u, 1u, 1980u}, /* year */
-        {21u, 4u, 1u, 0u},    /* month */
-        {16u, 5u, 1u, 0u},    /* day */
-        {11u, 5u, 1u, 0u},    /* hour */
-        {5u, 6u, 1u, 0u},     /* minute */
-        {0u, 5u, 2u, 0u},     /* second */
+        {21u, 4u, 1u, 0u}, /* month */
+        {16u, 5u, 1u, 0u}, /* day */
+        {11u, 5u, 1u, 0u}, /* hour */
+        {5u, 6u, 1u, 0u}, /* minute */
+        {0u, 5u, 2u, 0u}, /* second */
     };
     static const icd_index_form_t index_entry = {
-        37u,        /* entry_bytes */
-        15,         /* file_type */
-        {0u, 1u},   /* type */
-        {1u, 1u},   /* counter */
-        {2u, 2u},   /* checksum */
-        {4u, 4u},   /* size */
-        {8u, 4u},   /* time */
+        37u, /* entry_bytes */
+        15, /* file_type */
+        {0u, 1u}, /* type */
+        {1u, 1u}, /* counter */
+        {2u, 2u}, /* checksum */
+        {4u, 4u}, /* size */
+        {8u, 4u}, /* time */
         {12u, 25u}, /* meta */
     };
     static const icd_hole_map_message_t hole_maps[] = {
@@ -600,32 +626,32 @@ static inline const icd_link_t *cubeacp_link(void)
      * sent for them; from the node they are ignored.
      */
     static const icd_hole_map_form_t hole_map = {
-        128u,  /* bytes */
-        16u,   /* message_bytes */
+        128u, /* bytes */
+        16u, /* message_bytes */
         false, /* msb0 */
-        true,  /* received */
-        true,  /* beyond_end */
-        8u, hole_maps,
+        true, /* received */
+        true, /* beyond_end */
+        8u, hole_maps, /* messages */
     };
     /**
      * Assumed first_packet: Where the count begins is not said. Bit 0 of the hole map is the first packet. Assumed
      * fill: The value is not defined. Erased flash memory reads 0xFF.
      */
     static const icd_files_form_t files = {
-        20u,             /* packet_bytes */
-        2u,              /* counter_bytes */
-        0u,              /* first_packet */
-        0xffu,           /* fill */
-        1024u,           /* block_packets */
-        20480u,          /* block_bytes */
+        20u, /* packet_bytes */
+        2u, /* counter_bytes */
+        0u, /* first_packet */
+        0xffu, /* fill */
+        1024u, /* block_packets */
+        20480u, /* block_bytes */
         {119, 241, 241}, /* ids of download packets */
     };
     static const icd_place_t list_information_places[] = {
-        {ICD_ROLE_BUSY, 4u, 1u},       /* Busy Updating */
-        {ICD_ROLE_TYPE, 0u, 4u},       /* File Type */
-        {ICD_ROLE_COUNTER, 8u, 8u},    /* File Ctr */
-        {ICD_ROLE_SIZE, 16u, 32u},     /* File Size */
-        {ICD_ROLE_TIME, 48u, 32u},     /* File Date and Time */
+        {ICD_ROLE_BUSY, 4u, 1u}, /* Busy Updating */
+        {ICD_ROLE_TYPE, 0u, 4u}, /* File Type */
+        {ICD_ROLE_COUNTER, 8u, 8u}, /* File Ctr */
+        {ICD_ROLE_SIZE, 16u, 32u}, /* File Size */
+        {ICD_ROLE_TIME, 48u, 32u}, /* File Date and Time */
         {ICD_ROLE_CHECKSUM, 80u, 16u}, /* File CRC16 Checksum */
     };
     /**
@@ -633,26 +659,26 @@ static inline const icd_link_t *cubeacp_link(void)
      * has to be computed meanwhile.
      */
     static const icd_list_form_t list = {
-        {118, -1, 0u, 0u, NULL, NULL},                     /* Reset File List Read Pointer */
-        {113, -1, 0u, 0u, NULL, NULL},                     /* Advance File List Read Pointer */
+        {118, -1, 0u, 0u, NULL, NULL}, /* Reset File List Read Pointer */
+        {113, -1, 0u, 0u, NULL, NULL}, /* Advance File List Read Pointer */
         {-1, 243, 12u, 6u, list_information_places, NULL}, /* File Information */
-        50u,                                               /* poll_interval in ms */
-        10000u,                                            /* timeout in ms */
+        50u, /* poll_interval in ms */
+        10000u, /* timeout in ms */
     };
     static const icd_place_t download_load_places[] = {
-        {ICD_ROLE_TYPE, 0u, 8u},     /* File Type */
-        {ICD_ROLE_COUNTER, 8u, 8u},  /* Counter */
+        {ICD_ROLE_TYPE, 0u, 8u}, /* File Type */
+        {ICD_ROLE_COUNTER, 8u, 8u}, /* Counter */
         {ICD_ROLE_OFFSET, 16u, 32u}, /* Offset */
         {ICD_ROLE_LENGTH, 48u, 16u}, /* BlockLength */
     };
     static const icd_place_t download_ready_places[] = {
-        {ICD_ROLE_READY, 0u, 1u},     /* Ready */
-        {ICD_ROLE_ERROR, 1u, 1u},     /* ParameterError */
+        {ICD_ROLE_READY, 0u, 1u}, /* Ready */
+        {ICD_ROLE_ERROR, 1u, 1u}, /* ParameterError */
         {ICD_ROLE_CHECKSUM, 8u, 16u}, /* Block CRC16 Checksum */
-        {ICD_ROLE_LENGTH, 24u, 16u},  /* Block Length */
+        {ICD_ROLE_LENGTH, 24u, 16u}, /* Block Length */
     };
     static const icd_place_t download_burst_places[] = {
-        {ICD_ROLE_LENGTH, 0u, 8u},          /* Message Length */
+        {ICD_ROLE_LENGTH, 0u, 8u}, /* Message Length */
         {ICD_ROLE_IGNORE_HOLE_MAP, 8u, 1u}, /* Ignore Hole Map */
     };
     /**
@@ -665,31 +691,31 @@ static inline const icd_link_t *cubeacp_link(void)
      * CAN is not described. The packets are requested one by one as on I2C.
      */
     static const icd_download_form_t download = {
-        {112, -1, 8u, 4u, download_load_places, NULL},  /* Load File Download Block */
+        {112, -1, 8u, 4u, download_load_places, NULL}, /* Load File Download Block */
         {-1, 242, 5u, 4u, download_ready_places, NULL}, /* Download Block Ready */
         {119, -1, 2u, 2u, download_burst_places, NULL}, /* Initiate Download Burst */
-        20u,                                            /* message_length */
-        false,                                          /* checksum_covers_fill */
-        0u,                                             /* index_counter */
-        50u,                                            /* poll_interval in ms */
-        10000u,                                         /* ready_timeout in ms */
-        500u,                                           /* silence in ms */
-        32u,                                            /* rounds */
+        20u, /* message_length */
+        false, /* checksum_covers_fill */
+        0u, /* index_counter */
+        50u, /* poll_interval in ms */
+        10000u, /* ready_timeout in ms */
+        500u, /* silence in ms */
+        32u, /* rounds */
     };
     static const icd_place_t erase_request_places[] = {
-        {ICD_ROLE_TYPE, 0u, 8u},    /* File Type */
+        {ICD_ROLE_TYPE, 0u, 8u}, /* File Type */
         {ICD_ROLE_COUNTER, 8u, 8u}, /* File Counter */
-        {ICD_ROLE_ALL, 16u, 1u},    /* Erase All */
+        {ICD_ROLE_ALL, 16u, 1u}, /* Erase All */
     };
     static const icd_place_t erase_progress_places[] = {
         {ICD_ROLE_BUSY, 1u, 1u}, /* Erase All Busy */
     };
     /** Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. */
     static const icd_erase_form_t erase = {
-        {108, -1, 3u, 3u, erase_request_places, NULL},  /* Erase File */
+        {108, -1, 3u, 3u, erase_request_places, NULL}, /* Erase File */
         {-1, 234, 1u, 1u, erase_progress_places, NULL}, /* SD card format/erase progress */
-        200u,                                           /* poll_interval in ms */
-        60000u,                                         /* timeout in ms */
+        200u, /* poll_interval in ms */
+        60000u, /* timeout in ms */
     };
     static const uint8_t format_request_fresh[] = {
         0x5au,
@@ -699,17 +725,17 @@ static inline const icd_link_t *cubeacp_link(void)
     };
     /** Assumed poll_interval_ms: No time is given. Assumed timeout_ms: No time is given. */
     static const icd_erase_form_t format = {
-        {33, -1, 1u, 0u, NULL, format_request_fresh},    /* Format SD card */
+        {33, -1, 1u, 0u, NULL, format_request_fresh}, /* Format SD card */
         {-1, 234, 1u, 1u, format_progress_places, NULL}, /* SD card format/erase progress */
-        200u,                                            /* poll_interval in ms */
-        60000u,                                          /* timeout in ms */
+        200u, /* poll_interval in ms */
+        60000u, /* timeout in ms */
     };
     static const icd_place_t identification_places[] = {
-        {ICD_ROLE_NODE_TYPE, 0u, 8u},         /* Node type */
+        {ICD_ROLE_NODE_TYPE, 0u, 8u}, /* Node type */
         {ICD_ROLE_INTERFACE_VERSION, 8u, 8u}, /* Interface version */
     };
     static const icd_step_t identification = {
-        -1, 128, 8u, 2u, identification_places, NULL
+        -1, 128, 8u, 2u, identification_places, NULL,
     };
     /**
      * Assumed reply_timeout_ms: No time is given. The longest message takes 90 ms on the UART. Assumed retries: Nothing
@@ -724,23 +750,23 @@ static inline const icd_link_t *cubeacp_link(void)
      */
     static const icd_link_t link = {
         nodes,
-        2u,               /* how many */
-        true,             /* byte order: little */
-        false,            /* bit 0 is the most significant one */
-        128u, 255u,       /* ids of telemetry */
+        2u, /* how many */
+        true, /* byte order: little */
+        false, /* bit 0 is the most significant one */
+        128u, 255u, /* ids of telemetry */
         telecommands,
         telemetry,
-        68u, 126u,        /* how many */
+        68u, 126u, /* how many */
         506u, 506u, 506u, /* longest telecommand, reply, any */
-        504u,             /* longest without id and checksum */
-        10,               /* node type */
-        7,                /* interface version */
+        504u, /* longest without id and checksum */
+        10, /* node type */
+        7, /* interface version */
         {1000u, 3u, 20u, 5000u},
         errors,
-        5u, 0u,           /* how many; no error */
+        5u, 0u, /* how many; no error */
         &framing,
         &acknowledge,
-        87,               /* I2C address */
+        87, /* I2C address */
         &polled,
         &can,
         &checksum,
@@ -752,14 +778,14 @@ static inline const icd_link_t *cubeacp_link(void)
         &index_entry,
         &hole_map,
         &files,
-        &list,            /* list */
-        &download,        /* download */
-        NULL,             /* upload */
-        &erase,           /* erase */
-        &format,          /* format */
-        NULL,             /* program copy */
-        NULL,             /* program information */
-        &identification,  /* identification */
+        &list, /* list */
+        &download, /* download */
+        NULL, /* upload */
+        &erase, /* erase */
+        &format, /* format */
+        NULL, /* program copy */
+        NULL, /* program information */
+        &identification, /* identification */
     };
     /* clang-format on */
     return &link;

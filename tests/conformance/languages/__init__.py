@@ -33,6 +33,7 @@ class Language:
     ]  # programs that must be there; with a space in it, the command that says the version, as "go version"
     build: Callable[[Path, Path], list[str]]
     kind: str = TESTEE
+    front: bool = True  # whether the program is asked by way of the front; else it answers requests in JSON
 
     def missing(self) -> list[str]:
         """The programs that are not there, or are a version manager's word that they are not."""

@@ -1,38 +1,20 @@
-"""Macros: ids, the only valid raw values, raw values with a meaning of their own, limits."""
+"""Values of macros and enumerators: the only valid raw values, raw values with a meaning of their own, limits."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from icdgen.backends.c import names
-from icdgen.backends.c.text import comment
 from icdgen.backends.c.types import mask
-from icdgen.describe import FieldDescription, MessageDescription
+from icdgen.describe import EnumDescription, FieldDescription, MessageDescription
 from icdgen.describe.constants import Constant
 from icdgen.describe.numbers import exact_text
-from icdgen.icd.model import Node
+
+_MAX_ENUMERATOR = 32767
+"""What every `int` can hold."""
 
 
-class Macro(NamedTuple):
-    """A macro."""
-
-    comment: str
-    name: str
-    value: str
-
-
-def ids(message: MessageDescription) -> list[Macro]:
-    """The id, or the set id and the get id."""
-    return [Macro(comment([id.comment]), names.constant(message, id.name), f"{id.value}u") for id in message.ids]
-
-
-def constants(message: MessageDescription) -> list[Macro]:
-    """The only valid raw values, raw values with a meaning of their own, and limits."""
-    return [
-        Macro(comment([one.comment]), names.constant(message, one.name), _value(one, field))
-        for field in message.fields
-        for one in field.constants
-    ]
+def of_fields(message: MessageDescription) -> list[tuple[Constant, str]]:
+    """The constants of a message's fields, and their values."""
+    return [(one, _value(one, field)) for field in message.fields for one in field.constants]
 
 
 def _value(one: Constant, field: FieldDescription) -> str:
@@ -52,11 +34,7 @@ def initial(message: MessageDescription) -> list[str]:
     ]
 
 
-def of_node(node: Node) -> list[Macro]:
-    """What the node says of itself."""
-    rows = (
-        ("NODE_TYPE", node.node_type, "What the node answers when asked for its type."),
-        ("INTERFACE_VERSION", node.interface_version, "Version of the interface that it reports."),
-    )
-    upper = node.name.upper()
-    return [Macro(comment([text]), f"{upper}_{end}", f"{value}u") for end, value, text in rows if value is not None]
+def of_enum(enum: EnumDescription) -> tuple[bool, str]:
+    """Whether the values of an enumeration must be macros, as not every `int` holds them; and the form of their literals."""
+    are_macros = any(one.model.value > _MAX_ENUMERATOR for one in enum.members)
+    return are_macros, "UINT64_C(%d)" if enum.storage.bits == 64 else "%du" if are_macros else "%d"

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from icdgen.backends.c import bits
 from icdgen.backends.c.member_groups import Flags, Row, member_groups, row_macro
-from icdgen.backends.c.members import EMPTY
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import call
 from icdgen.backends.c.text import WIDTH
 from icdgen.backends.lines import STEP
 from icdgen.describe import FieldDescription, MessageDescription
+
+EMPTY = "empty"
+"""Member of the struct of a message without fields: C has no empty structs."""
 
 
 def statements(message: MessageDescription) -> list[str]:
@@ -27,13 +29,14 @@ def statements(message: MessageDescription) -> list[str]:
 
 
 def _group(group: Flags | Row, message: MessageDescription) -> str:
-    names = [field.name for field in message.fields[group.first : group.first + group.count]]
+    members = message.fields[group.first : group.first + group.count]
+    names = [field.name for field in members]
     target = f"{stem(message)}_t", "message"
     if isinstance(group, Flags):
         value = f"buffer[{group.byte}]" + (f" >> {group.shift}" if group.shift else "")
         return call(f"ICDGEN_READ_{group.macro}", (*target, value, *names))
     value = f"&buffer[{group.byte}]"
-    return call(f"ICDGEN_READ_{row_macro(message.node)}", (*target, value, f"{group.count}u", names[0], names[-1]))
+    return call(f"ICDGEN_READ_{row_macro(members[0])}", (*target, value, f"{group.count}u", names[0], names[-1]))
 
 
 def _one(field: FieldDescription) -> str:

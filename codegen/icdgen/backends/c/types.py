@@ -20,6 +20,13 @@ def type_of(field: FieldDescription) -> str:
     return f"{'int' if field.storage.signed else 'uint'}{field.storage.bits}_t"
 
 
+def declaration(field: FieldDescription) -> str:
+    """The member of a message's struct."""
+    if field.model.type == "bytes":
+        return f"uint8_t {field.name}[{field.model.bits // 8}]"
+    return f"{type_of(field)} {field.name}"
+
+
 @cache
 def mask(value: int, bits: int) -> str:
     """``0x0Fu``: an unsigned literal of the width."""

@@ -9,8 +9,10 @@ from typing import NamedTuple
 from icdgen.backends.c import names, physical
 from icdgen.backends.c.accessors import whole_name
 from icdgen.backends.c.text import literal, plain
+from icdgen.backends.lines import in_rows
 from icdgen.backends.origin import origin
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
+from icdgen.describe.description import Direction
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from icdgen.vectors import MessageVectors, Row, make
@@ -18,7 +20,7 @@ from icdgen.vectors.ids import worth_asking
 from icdgen.vectors.patterns import values
 from icdgen.vectors.settings import NEVER
 
-WIDTH = 116
+BYTES_IN_ROW, NUMBERS_IN_ROW = 16, 4
 TYPES = {"bool": "BOOL", "bytes": "BYTES", "int": "SIGNED"}
 
 
@@ -32,75 +34,30 @@ class Accessors(NamedTuple):
 
 
 class FieldRow(NamedTuple):
-    """An entry of a message's table of fields."""
+    """A field, with what the table of a message's fields says of it."""
 
-    text: str
+    field: FieldDescription
     stem: str
-    member: str
-    size: int
-    packed: int
+    size: int  # bytes of the member
+    packed: int  # bytes in a vector
     type: str
     fresh: str
-    unfit: str
-    unfit_count: int
+    unfit: list[str]
     whole: Accessors | None
     scaled: Accessors | None
 
 
-class VectorRow(NamedTuple):
-    """The bytes of one vector: the frame, then the packed raw values."""
-
-    why: str
-    lines: list[str]
-
-
-class Constant(NamedTuple):
-    """A macro and the value that it must have."""
-
-    name: str
-    value: str
-
-
 class MessageRow(NamedTuple):
-    """A message with its vectors."""
+    """A message with its vectors: the reason for each, and its bytes, which are the frame, then the packed raw values."""
 
-    title: str
-    text: str
+    message: MessageDescription
     stem: str
-    member: str
-    length: int
-    vectors: list[VectorRow]
-    vector_count: int
+    vectors: list[tuple[str, list[str]]]
     vector_size: int
     kept: list[str]
     doubles: list[str]
     fields: list[FieldRow]
-    refused_lengths: str
-    refused_length_count: int
-    constants: list[Constant]
-
-
-class Name(NamedTuple):
-    """A value of an enumeration and its name."""
-
-    enum: str
-    value: str
-    text: str
-
-
-class Dispatcher(NamedTuple):
-    """A dispatcher and the length of the message under some ids, -1 where there is none."""
-
-    name: str
-    id_type: str
-    lengths: list[str]
-    id_count: int
-
-
-class EnumRow(NamedTuple):
-    """An enumeration."""
-
-    name: str
+    refused_lengths: list[int]
 
 
 def files(icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
@@ -122,84 +79,74 @@ class _Rows:
         self.vectors = make(icd, node.model)
 
     def all(self) -> dict[str, object]:
-        node = self.node
-        directions = (("telecommand", node.telecommands), ("telemetry", node.telemetry))
+        node, id_bits = self.node, describe(self.icd).id_bits
         return {
             "node": node.name,
-            "header": f"{node.name}.h",
-            "enums": [EnumRow(names.stem(enum)) for enum in node.enums],
+            "enums": [names.stem(enum) for enum in node.enums],
             "names": list(self.names()),
             "messages": [self.message(*both) for both in zip(node.messages, self.vectors.messages, strict=True)],
-            "dispatchers": [self.dispatcher(way, messages) for way, messages in directions if messages],
+            "dispatchers": [(f"{node.name}_{one.kind}", self.lengths(one, id_bits)) for one in node.directions],
+            "id_type": f"uint{id_bits}_t",
             "longest": max((one.model.length for one in node.spoken), default=0),
+            "constant": names.constant,
+            "literal": literal,
+            "plain": plain,
         }
 
-    def names(self) -> Iterator[Name]:
+    def names(self) -> Iterator[tuple[str, str, str]]:
+        """Enumeration, value and its name."""
         for enum, (_, unknown) in zip(self.node.enums, self.vectors.enums, strict=True):
             stem = names.stem(enum)
             for one in enum.members:
-                yield Name(stem, _unsigned(one.model.value), literal(one.model.name))
+                yield stem, _unsigned(one.model.value), literal(one.model.name)
             if unknown is not None:
-                yield Name(stem, _unsigned(unknown), "NULL")
+                yield stem, _unsigned(unknown), "NULL"
 
-    def dispatcher(self, direction: str, messages: Iterable[MessageDescription]) -> Dispatcher:
-        lengths = {getattr(one.model, f"{direction}_id"): one.model.length for one in messages}
-        bits = describe(self.icd).id_bits
-        rows = [f"{{{id}u, {lengths.get(id, -1)}}}" for id in worth_asking(lengths, bits)]
-        return Dispatcher(f"{self.node.name}_{direction}", f"uint{bits}_t", _lines(rows), len(rows))
+    def lengths(self, direction: Direction, id_bits: int) -> list[str]:
+        """Some ids and the lengths of their messages, -1 where there is none."""
+        lengths = {getattr(one.model, f"{direction.kind}_id"): one.model.length for one, _ in direction.messages}
+        return [f"{{{id}u, {lengths.get(id, -1)}}}" for id in worth_asking(lengths, id_bits)]
 
     def message(self, message: MessageDescription, vectors: MessageVectors) -> MessageRow:
-        length = message.model.length
-        kept = bytes(length)
+        kept = bytes(message.model.length)
         for row in vectors.rows:  # reserved bits are those that no vector keeps
             kept = bytes(a | b for a, b in zip(kept, row.encoded, strict=True))
         fields = [self.field(field, vectors) for field in message.fields]
-        vector_rows = [self.vector(message, row, fields) for row in vectors.rows]
-        size = length + sum(field.packed for field in fields)
+        size = message.model.length + sum(field.packed for field in fields)
+        doubles = (f"UINT64_C(0x{double})" for row in vectors.rows for double in row.doubles.values())
         return MessageRow(
-            title=plain(message.model.name),
-            text=literal(message.model.name),
+            message=message,
             stem=names.stem(message),
-            member=message.name if message.name != "bytes" else "bytes_",
-            length=length,
-            vectors=vector_rows if size else [],
-            vector_count=len(vector_rows),
+            vectors=[(plain(row.why), self.vector(row, fields)) for row in vectors.rows],
             vector_size=size,
-            kept=_lines(f"0x{byte:02X}" for byte in kept),
-            doubles=_lines(f"UINT64_C(0x{double})" for row in vectors.rows for double in row.doubles.values()),
+            kept=_bytes(kept),
+            doubles=in_rows(doubles, NUMBERS_IN_ROW),
             fields=fields,
-            refused_lengths=", ".join(map(str, vectors.lengths)),
-            refused_length_count=len(vectors.lengths),
-            constants=[
-                *(Constant(names.constant(message, id.name), f"{id.value}u") for id in message.ids),
-                Constant(names.constant(message, "length"), f"{length}u"),
-            ],
+            refused_lengths=list(vectors.lengths),
         )
 
-    def vector(self, message: MessageDescription, row: Row, fields: list[FieldRow]) -> VectorRow:
+    def vector(self, row: Row, fields: list[FieldRow]) -> list[str]:
         data = bytearray(row.frame)
-        for one, field in zip(message.fields, fields, strict=True):
-            value = row.raw[one.model.name]
+        for field in fields:
+            value = row.raw[field.field.model.name]
             if isinstance(value, bytes):
                 data += value
             else:
                 data += (value & ((1 << 8 * field.packed) - 1)).to_bytes(field.packed, "little")
-        return VectorRow(plain(row.why), _lines(f"0x{byte:02X}" for byte in data))
+        return _bytes(data)
 
     def field(self, one: FieldDescription, vectors: MessageVectors) -> FieldRow:
         field, storage = one.model, one.storage
         is_bytes = field.type == "bytes"
         unfit = [v for v in vectors.unfit.get(field.name, ()) if not is_bytes and storage.min <= v <= storage.max]
         return FieldRow(
-            text=literal(field.name),
+            field=one,
             stem=f"{names.stem(one.message)}_selftest_{one.name}",
-            member=one.name,
             size=field.bits // 8 if is_bytes else storage.bits // 8,
             packed=(field.bits + 7) // 8,
             type=f"ICDGEN_SELFTEST_{TYPES.get(field.type, 'UNSIGNED')}",
             fresh=_unsigned(one.fresh),
-            unfit=", ".join(map(_unsigned, unfit)),
-            unfit_count=len(unfit),
+            unfit=list(map(_unsigned, unfit)),
             whole=_whole(one),
             scaled=_scaled(one, vectors.settings[field.name]) if field.scale else None,
         )
@@ -238,12 +185,5 @@ def _unsigned(value: int) -> str:
     return f"{value}u" if 0 <= value < 1 << 16 else f"UINT64_C(0x{value & ((1 << 64) - 1):X})"
 
 
-def _lines(items: Iterable[str]) -> list[str]:
-    """The items separated by commas, as many on a line as fit."""
-    lines, line = [], ""
-    for item in items:
-        if line and len(line) + len(item) + 2 > WIDTH:
-            lines.append(line)
-            line = ""
-        line += f" {item}," if line else f"{item},"
-    return [*lines, line] if line else lines
+def _bytes(data: bytes | bytearray) -> list[str]:
+    return in_rows((f"0x{byte:02X}" for byte in data), BYTES_IN_ROW)

@@ -6,6 +6,7 @@ hexadecimal digits do.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
 
@@ -13,7 +14,7 @@ from icdgen import layout
 from icdgen.backends.html.labels import Label, fit
 from icdgen.backends.html.texts import clip
 from icdgen.describe.numbers import bit_range
-from icdgen.icd.model import Message, Node
+from icdgen.icd.model import Field, Message, Node
 
 WIDTH, LEFT, TOP = 1000, 64, 24
 _FEW = 3  # rows of one field that are drawn; of more only the first and the last
@@ -47,9 +48,10 @@ class Drawing:
     width: int = WIDTH
 
 
-def draw(message: Message, node: Node, anchors: list[str]) -> Drawing | None:
-    """The picture; None for a message without bytes. ``anchors`` are those of the fields."""
-    return _Canvas(message, node, anchors).drawing() if message.length else None
+def draw(message: Message, node: Node, anchors: list[str], first: int = 0, end: int | None = None) -> Drawing | None:
+    """The picture of bytes ``first`` to before ``end`` (all); None if there are none. ``anchors`` are those of the fields."""
+    end = message.length if end is None else end
+    return _Canvas(message, node, anchors, first, end).drawing() if end > first else None
 
 
 def hatch(x: int, y: int, width: int, height: int) -> str:
@@ -62,24 +64,25 @@ def hatch(x: int, y: int, width: int, height: int) -> str:
     return "".join(path)
 
 
-def bytes_a_row(message: Message) -> int:
+def bytes_a_row(length: int, fields: Sequence[Field]) -> int:
     """1 for short frames of small fields, 4 for long frames."""
-    small = any(f.bits < 8 for f in message.fields)
-    if message.length == 1 or (small and message.length <= 12):
+    small = any(f.bits < 8 for f in fields)
+    if length == 1 or (small and length <= 12):
         return 1
-    return 2 if message.length <= 48 else 4
+    return 2 if length <= 48 else 4
 
 
 class _Canvas:
-    def __init__(self, message: Message, node: Node, anchors: list[str]) -> None:
-        self.message, self.node = message, node
-        self.across = bytes_a_row(message)
+    def __init__(self, message: Message, node: Node, anchors: list[str], first: int, end: int) -> None:
+        self.message, self.node, self.first, self.length = message, node, first, end - first
+        inside = [one for one in message.fields if one.at < 8 * end and one.at + one.bits > 8 * first]
+        self.across = bytes_a_row(self.length, inside)
         self.cell = (WIDTH - LEFT) / (8 * self.across)
         self.shapes = [
             Shape(key, one.type, f"{clip(one.name, 200)}: {bit_range(one.at, one.bits)}", anchors[key - 1])
             for key, one in enumerate(message.fields, 1)
         ]
-        self.owner = self._owners()
+        self.owner = self._owners()[8 * first : 8 * end]
         self.grid, self.rows = self._grid()
         narrow = any(len(set(row)) > 2 * self.across for _, row in self.grid)
         self.row = (46 if narrow else 34) if self.across < 4 else 30
@@ -114,20 +117,27 @@ class _Canvas:
         msb0 = self.node.bit_order == "msb0"
         columns = [
             (LEFT + (column + 0.5) * self.cell, str(column if msb0 else column // 8 * 8 + 7 - column % 8))
-            for column in range(8 * min(self.across, self.message.length))
+            for column in range(8 * min(self.across, self.length))
         ]
-        gaps = layout.gaps(self.message)
+        gaps = [
+            gap
+            for gap in layout.gaps(self.message, self.node)
+            if 8 * self.first <= gap.at < 8 * (self.first + self.length)
+        ]
         reserved = Shape(0, "reserved", "Reserved: " + ", ".join(bit_range(g.at, g.bits) for g in gaps[:20]))
         reserved.rects = self._rects(0)
-        rows = [(self._y(i), str(first), str(8 * first)) for i, first in enumerate(self.rows) if first >= 0]
+        rows = [
+            (self._y(i), str(self.first + at), str(8 * (self.first + at))) for i, at in enumerate(self.rows) if at >= 0
+        ]
         plan = {
             "across": self.across, "cell": self.cell, "left": LEFT, "top": TOP, "row": self.row, "rows": self.rows,
+            "first": self.first,
         }  # fmt: skip
         return Drawing(
             height=height + 2,
             columns=columns,
             rows=rows,
-            shapes=self.shapes,
+            shapes=[shape for shape in self.shapes if shape.rects],
             reserved=[reserved] if reserved.rects else [],
             lines=self._lines(),
             keyed=any(label.key for shape in self.shapes for label in shape.labels),

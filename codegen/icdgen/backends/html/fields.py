@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import groupby
 
 from icdgen import layout
 from icdgen.backends.html import texts
 from icdgen.backends.html.links import Links
+from icdgen.backends.html.sections import Section
 from icdgen.icd.model import Enum, Erratum, Field, Member, Message, Node
 from icdgen.show.fields import remarks
 
@@ -37,6 +39,16 @@ class FieldRow:
     errata: tuple[Erratum, ...] = ()
 
 
+@dataclass
+class FlagRow:
+    """Flags one after the other, which stand in a grid."""
+
+    flags: list[FieldRow]
+    key: int = -1
+
+
+_MANY_FLAGS = 6  # of so many flags on end a grid is made
+
 # Columns of the table that are left out where no field has anything in them.
 _COLUMNS = (
     ("raw", "Raw"),
@@ -55,8 +67,22 @@ def columns_of(rows: list[FieldRow]) -> list[tuple[str, str]]:
 def rows(message: Message, node: Node, links: Links, anchors: list[str]) -> list[FieldRow]:
     """Fields and reserved bits in the order of the frame."""
     found = [_row(key, field, links, anchors[key - 1]) for key, field in enumerate(message.fields, 1)]
-    found += [FieldRow(0, gap.at, gap.bits) for gap in layout.gaps(message)]
+    found += [FieldRow(0, gap.at, gap.bits) for gap in layout.gaps(message, node)]
     return sorted(found, key=lambda row: row.at)
+
+
+def between(found: list[FieldRow], section: Section) -> list[FieldRow | FlagRow]:
+    """Of these rows those of a section, flags in grids."""
+    inside = [
+        row
+        for row in found
+        if row.key in section.keys or (not row.key and section.first * 8 <= row.at < section.end * 8)
+    ]
+    made: list[FieldRow | FlagRow] = []
+    for is_flag, group in groupby(inside, key=lambda row: row.kind == "bool"):
+        run = list(group)
+        made += [FlagRow(run)] if is_flag and len(run) >= _MANY_FLAGS else run
+    return made
 
 
 def _row(key: int, field: Field, links: Links, anchor: str) -> FieldRow:

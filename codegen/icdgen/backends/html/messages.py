@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from icdgen.backends.html import drawing, fields, plan, texts, wire
+from icdgen.backends.html import drawing, fields, plan, sections, texts, wire
 from icdgen.backends.html.examples import examples, frames
 from icdgen.backends.html.relations import Relations
-from icdgen.backends.html.usage import snippets
+from icdgen.backends.html.usage import names, snippets
 from icdgen.describe import describe
 from icdgen.describe.errata import errata_of_message
 from icdgen.describe.fresh import fresh_values
@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 def values(relations: Relations, node: Node, message: Message, render: Renderer) -> dict[str, Any]:
     """Values of the page of a message that ``node`` declares."""
     anchors = relations.anchors(message)
-    picture = drawing.draw(message, node, anchors)
+    parts = sections.bands(relations, message)
+    shares = parts or sections.shares(message)
+    pictures = _pictures(message, node, anchors, parts)
+    rows = fields.rows(message, node, relations.links, anchors)
     travels = relations.wire(message)
     shown = examples(message, node)
     data = shown[0].frame if shown and message.telemetry_id is not None else _fresh(message, node)
@@ -31,9 +34,14 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
         "node": node,
         "url": relations.links.message(message),
         "ids": texts.ids(message),
+        "names": names(describe(relations.icd).message(message)),
         "facts": _facts(relations, node, message),
-        "drawing": picture,
-        "rows": fields.rows(message, node, relations.links, anchors),
+        "drawings": pictures,
+        "keyed": any(picture.keyed for picture in pictures),
+        "rows": rows,
+        "columns": fields.columns_of(rows),
+        "bands": [(one, fields.between(rows, one), picture) for one, picture in zip(parts, pictures, strict=False)],
+        "shares": [(one, fields.between(rows, one)) for one in shares],
         "buses": wire.buses(message, travels, data),
         "example_data": message.telemetry_id is not None and bool(data),
         "examples": shown,
@@ -42,7 +50,7 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
         "contains": relations.contains.get((message.node, message.name), []),
         "contained_in": relations.contained_in.get((message.node, message.name), []),
         "errata": errata_of_message(message),
-        "plan": _script_json(_plan(relations, node, message, picture, travels)),
+        "plan": _script_json(_plan(node, message, pictures, shares, travels)),
     }
 
 
@@ -72,14 +80,27 @@ def _fresh(message: Message, node: Node) -> bytes:
     return codec.encode(node, message, fresh_values(message))
 
 
+def _pictures(message: Message, node: Node, anchors: list[str], parts: list[sections.Section]) -> list[drawing.Drawing]:
+    """One of each part; of what has none, one of the message."""
+    places = [(one.first, one.end) for one in parts] or [(0, message.length)]
+    made = [drawing.draw(message, node, anchors, first, end) for first, end in places]
+    return [picture for picture in made if picture is not None]
+
+
 def _plan(
-    relations: Relations, node: Node, message: Message, picture: drawing.Drawing | None, travels: wire.Wire
+    node: Node,
+    message: Message,
+    pictures: list[drawing.Drawing],
+    shares: list[sections.Section],
+    travels: wire.Wire,
 ) -> dict[str, object]:
     enums = {field.enum.name: plan.enum_plan(field.enum) for field in message.fields if field.enum is not None}
+    shown = [one for one in shares if one.keys]
     return {
         **plan.message_plan(message, node),
         "enums": enums,
-        "drawing": picture.plan if picture else None,
+        "drawings": [picture.plan for picture in pictures],
+        "sections": [{"title": f"{s.title}, {s.about}", "keys": s.keys, "open": s.open} for s in shown],
         "wire": {**wire.page_facts(message, travels), "id_bytes": wire_ids.size(node.id_bits)},
     }
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from icdgen.backends.html import texts
+from icdgen.backends.html import examples, protocol, texts, wire
 from icdgen.backends.html.relations import Place, Relations, document, manual
 from icdgen.describe.errata import errata_of_message
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Erratum, Loggable, Message, Node
@@ -37,7 +37,19 @@ def home(relations: Relations) -> dict[str, object]:
         "confidence": [(level, sum(e.confidence == level for e in errata)) for level in _CONFIDENCE],
         "documents": list(dict.fromkeys(manual(node) for node in icd.nodes if node.document)),
         "example": relations.place(example) if example else None,
+        "paste_example": _paste_example(relations, example),
     }
+
+
+def _paste_example(relations: Relations, example: Message | None) -> str:
+    """A frame as it goes over the line, to show what can be pasted."""
+    if example is None:
+        return ""
+    buses = wire.buses(
+        example, relations.wire(example), examples.examples(example, relations.icd.node(example.node))[0].frame
+    )
+    lines = buses[0].lines if buses else []
+    return " ".join(chunk.text for chunk in lines[-1].chunks) if lines else ""
 
 
 def _card(relations: Relations, node: Node) -> dict[str, object]:
@@ -89,6 +101,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         "speakers": [
             Place(one.title, relations.links.node(one.name)) for one in relations.speakers[node.name] if one is not node
         ],
+        "protocol": protocol.has_page(relations, node),
         "printed": relations.links.printed(node.name),
         "errata_count": sum(not erratum.is_note for erratum in node.errata),
         "notes_count": sum(erratum.is_note for erratum in node.errata),

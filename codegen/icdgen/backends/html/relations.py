@@ -22,10 +22,11 @@ class Place(NamedTuple):
 
 
 class Contained(NamedTuple):
-    """``place`` repeats, or is repeated, from bit ``at``."""
+    """``place``, of ``length`` bytes, repeats, or is repeated, from bit ``at``."""
 
     place: Place
     at: int
+    length: int
 
 
 class Relations:
@@ -60,8 +61,10 @@ class Relations:
             for part in message.contains:
                 other = spoken.get(part.message)
                 if other is not None:
-                    self.contains[node.name, message.name].append(Contained(self.place(other), part.at))
-                    self.contained_in[other.node, other.name].append(Contained(self.place(message), part.at))
+                    self.contains[node.name, message.name].append(Contained(self.place(other), part.at, other.length))
+                    self.contained_in[other.node, other.name].append(
+                        Contained(self.place(message), part.at, message.length)
+                    )
         for enum in node.enums:
             url = self.links.enum(enum)
             self._errata(enum.errata, Place(enum.name, url))

@@ -3,54 +3,101 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
+from typing import NamedTuple
 
-from icdgen.backends.html import texts
+from icdgen.backends.html import protocol, texts
 from icdgen.backends.html.relations import Relations
-from icdgen.icd.model import Message
+from icdgen.icd.model import CONFIGURATION, Enum, Field, Member, Message, Node
+from icdgen.naming import words
 
-_MOST = 300  # characters of a name that is searched
+_MOST = 300  # characters of a text that is searched
 
-Entry = tuple[str, str, str, str, str]  # kind, title, context, further words, url
+
+class Entry(NamedTuple):
+    """``own``: the words of its identifier, where they are not those of the title; ``about``: what else is said of it;
+    ``phrases``: what means exactly this."""
+
+    kind: str
+    title: str
+    context: str
+    own: str
+    about: str
+    phrases: tuple[str, ...]
+    url: str
 
 
 def entries(relations: Relations) -> Iterator[Entry]:
-    """Nodes, messages, enumerations, units and errata, then fields and members."""
-    icd, links = relations.icd, relations.links
-    for node in icd.nodes:
-        yield "node", node.title, node.summary, node.name, links.node(node.name)
-    for node in icd.nodes:
-        for message in node.messages:
-            yield "message", message.name, _about(node.title, message), _numbers(message), links.message(message)
-        for enum in node.enums:
-            yield "enumeration", enum.name, node.title, "", links.enum(enum)
+    """Nodes, messages, enumerations, units, fields, members and errata."""
+    links = relations.links
+    for node in relations.icd.nodes:
+        yield Entry("node", node.title, node.summary, node.name, "", (node.name,), links.node(node.name))
     for unit, _ in relations.units.values():
-        yield "unit", unit.symbol, unit.quantity, unit.identifier, links.unit(unit)
-    for node in icd.nodes:
+        about = f"unit {unit.identifier} {unit.summary}"
+        phrases = (unit.symbol, unit.identifier)
+        yield Entry("unit", unit.symbol, unit.quantity, unit.identifier, about, phrases, links.unit(unit))
+    for node in relations.icd.nodes:
+        if protocol.has_page(relations, node):
+            for words_, title, place in protocol.entries(relations, node, links.protocol(node.name)):
+                yield Entry("protocol", title, place.text, "", f"protocol {words_}", (), place.url)
         for message in node.messages:
-            for field in message.fields:
-                words = f"{field.unit.symbol} {field.unit.identifier}" if field.unit else ""
-                yield "field", field.name, f"{message.name} · {node.title}", words, links.field(message, field)
+            yield from _of_message(relations, node, message)
         for enum in node.enums:
-            for member in enum.members:
-                url = f"{links.enum(enum)}#{links.anchor(enum, str(member.value))}"
-                yield "member", member.name, f"{enum.name} = {member.value} · {node.title}", "", url
+            yield from _of_enum(relations, node, enum)
         for erratum in node.errata:
-            yield erratum.label.lower(), f"{erratum.id} {erratum.title}", node.title, "", links.erratum(erratum)
+            about = " ".join([*(f"table {table}" for table in erratum.tables), erratum.why])
+            title = f"{erratum.id} {erratum.title}"
+            yield Entry(erratum.label.lower(), title, node.title, "", about, (erratum.id,), links.erratum(erratum))
 
 
 def script(relations: Relations) -> str:
     """The index as a script, since a page opened from a folder may not fetch anything else."""
-    rows = [[texts.clip(part, _MOST) for part in entry[:4]] + [entry[4]] for entry in entries(relations)]
+    rows = [
+        [*(texts.clip(part, _MOST) for part in one[:5]), texts.clip("|".join(one.phrases), _MOST), one.url]
+        for one in entries(relations)
+    ]
     lines = ",\n".join(json.dumps(row, separators=(",", ":")) for row in rows)
     return f'"use strict";\nglobalThis.icdgenSearchIndex = [\n{lines}\n];\n'
 
 
-def _about(title: str, message: Message) -> str:
-    ids = "/".join(f"{id} (0x{id:02X})" for _, id in texts.ids(message))
-    return f"{message.kind} {ids} · {title}"
+def _of_message(relations: Relations, node: Node, message: Message) -> Iterator[Entry]:
+    links = relations.links
+    numbers = [(way, id) for way, id in texts.ids(message)]
+    ids = "/".join(f"{id} (0x{id:02X})" for _, id in numbers)
+    own = _words(message, node)
+    phrases = [spelling for id in message.ids for spelling in (str(id), f"0x{id:02x}", f"{id:02x}h", f"id {id}")]
+    for way, id in numbers:
+        phrases += [f"{message.kind} {id}"] if way == "id" else [f"{way} {id}"]
+    if message.kind == CONFIGURATION:
+        phrases += [f"telecommand {message.set_id}", f"telemetry {message.get_id}"]
+    phrases += _table(message.table)
+    about = f"{node.name} {message.group} {message.summary}"
+    context = f"{message.kind} {ids} · {node.title}"
+    yield Entry("message", message.name, context, own, about, tuple(phrases), links.message(message))
+    for field in message.fields:
+        unit = f"{field.unit.symbol} {field.unit.identifier.replace('_', ' ')}" if field.unit else ""
+        about = f"{node.name} {own} {unit} {field.summary}"
+        context = f"{message.name} · {node.title}"
+        yield Entry("field", field.name, context, _words(field, node), about, (), links.field(message, field))
 
 
-def _numbers(message: Message) -> str:
-    """Ids in every spelling: decimal, hexadecimal with and without prefix."""
-    return " ".join(f"{id} 0x{id:02x} {id:02x}h" for id in message.ids)
+def _of_enum(relations: Relations, node: Node, enum: Enum) -> Iterator[Entry]:
+    links, own = relations.links, " ".join(words(enum.identifier or enum.name, node.vocabulary)).lower()
+    about = f"enum {node.name} {enum.summary}"
+    yield Entry("enumeration", enum.name, node.title, own, about, tuple(_table(enum.table)), links.enum(enum))
+    for member in enum.members:
+        url = f"{links.enum(enum)}#{links.anchor(enum, str(member.value))}"
+        context = f"{enum.name} = {member.value} · {node.title}"
+        about = f"{node.name} {own} {member.summary}"
+        yield Entry("member", member.name, context, _words(member, node), about, (), url)
+
+
+def _words(thing: Message | Field | Enum | Member, node: Node) -> str:
+    """The words of its identifiers, unless they are those of its name."""
+    found = " ".join(words(thing.identifier or thing.name, node.vocabulary)).lower()
+    return "" if found == " ".join(re.findall(r"[^\W_]+", thing.name)).lower() else found
+
+
+def _table(table: int | None) -> list[str]:
+    return [f"table {table}"] if table else []

@@ -8,7 +8,19 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from icdgen import __version__, show
-from icdgen.backends.html import drawing, enums, errata, fields, llms, messages, nodes, search, units
+from icdgen.backends.html import (
+    drawing,
+    enums,
+    errata,
+    llms,
+    messages,
+    nodes,
+    protocol,
+    recognition,
+    search,
+    sidebar,
+    units,
+)
 from icdgen.backends.html.links import CHANGES, ERRATA, HOME, UNITS
 from icdgen.backends.html.relations import Relations
 from icdgen.icd.model import Icd
@@ -18,7 +30,12 @@ if TYPE_CHECKING:
     from icdgen.render import Renderer
 
 # Written by hand; the pages load them.
-_LOADED = ("style.css", "print.css", "theme.js", "site.js", "codec.js", "frames.js", "pasted.js", "try.js", "icon.svg")
+_LOADED = (
+    *("style.css", "layout.css", "print.css", "icon.svg"),
+    *("theme.js", "site.js", "load.js", "search.js", "find.js", "filter.js", "errata.js", "copy.js"),
+    *("codec.js", "frames.js", "packets.js", "pasted.js", "stream.js", "recognize.js"),
+    *("frame-links.js", "paste.js", "values.js", "lit.js", "try.js", "protocol.js"),
+)
 
 
 def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[tuple[PurePosixPath, str]]:
@@ -29,16 +46,17 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
         "version": __version__,
         "nodes": [nodes.brief(relations, node) for node in icd.nodes],
         "compared": compared,
+        "further": [(ERRATA, "Errata"), (UNITS, "Units"), *([(CHANGES, "Changes")] if compared else [])],
+        "sidebar": "",
         "changed": errata.changed,
         "hatch": drawing.hatch,
-        "columns_of": fields.columns_of,
         "mask_of": nodes.mask_of,
         "policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'",
     }
 
     def page(path: str, template: str, **values: object) -> tuple[PurePosixPath, str]:
         root = "../" * path.count("/")
-        return PurePosixPath(path), render(template, root=root, path=path, **common, **values)
+        return PurePosixPath(path), render(template, **{"root": root, "path": path, **common, **values})
 
     yield page(HOME, "home.html.j2", **nodes.home(relations))
     yield page(ERRATA, "errata.html.j2", **errata.values(relations))
@@ -48,17 +66,24 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
 
         yield page(CHANGES, "changes.html.j2", **changes.values(relations, previous))
     for node in icd.nodes:
-        yield page(relations.links.node(node.name), "node.html.j2", **nodes.values(relations, node))
+        beside = sidebar.of_node(relations, node, render)
+        url = relations.links.node(node.name)
+        yield page(url, "node.html.j2", sidebar=beside(url), **nodes.values(relations, node))
+        if protocol.has_page(relations, node):
+            url = relations.links.protocol(node.name)
+            yield page(url, "protocol.html.j2", sidebar=beside(url), **protocol.values(relations, node))
         shown = [messages.values(relations, node, message, render) for message in node.messages]
         for before, one, after in zip([None, *shown], shown, [*shown[1:], None], strict=False):
-            yield page(one["url"], "message.html.j2", before=before, after=after, **one)
+            yield page(one["url"], "message.html.j2", before=before, after=after, sidebar=beside(one["url"]), **one)
         yield page(relations.links.printed(node.name), "print.html.j2", shown=shown, **nodes.values(relations, node))
         for enum in node.enums:
-            yield page(relations.links.enum(enum), "enum.html.j2", **enums.values(relations, enum))
+            url = relations.links.enum(enum)
+            yield page(url, "enum.html.j2", sidebar=beside(url), **enums.values(relations, enum))
     for name in _LOADED:
         yield PurePosixPath(name), render(name)
     most = max((len(m.fields) for node in icd.nodes for m in node.messages), default=0)
     yield PurePosixPath("highlight.css"), render("highlight.css.j2", most=most)
     yield PurePosixPath("search-index.js"), search.script(relations)
+    yield PurePosixPath("frame-index.js"), recognition.script(relations)
     yield PurePosixPath("icd.json"), json.dumps(show.to_json(icd), indent=1) + "\n"
     yield PurePosixPath("llms.txt"), llms.text(relations, compared)

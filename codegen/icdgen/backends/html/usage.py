@@ -48,6 +48,11 @@ def snippets(message: MessageDescription, render: Renderer) -> list[Snippet]:
     return [Snippet(name, key, render(template, **shown).rstrip("\n")) for name, key, template in _LANGUAGES]
 
 
+def names(message: MessageDescription) -> list[tuple[str, str]]:
+    """Language and the name of the message's type in it."""
+    return [("C", f"{stem(message)}_t"), ("Python", camel(message.words)), ("Rust", camel(message.words))]
+
+
 def _worth_showing(message: MessageDescription) -> FieldDescription | None:
     """The first field with a scale, else the first that is neither constant nor a byte array."""
     usual = [one for one in message.fields if one.model.const is None and one.model.type != "bytes"]

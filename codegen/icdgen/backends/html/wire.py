@@ -15,8 +15,8 @@ from icdgen_runtime.wire.uart import uart_encode
 
 from icdgen.backends.html.texts import count
 from icdgen.icd.model import Message
-from icdgen.protocol.facts import Can, Facts
-from icdgen.protocol.sections import CAN_WITH_DATA
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import Can
 
 _SHOWN = 24  # data bytes that are written out
 
@@ -72,28 +72,45 @@ def page_facts(message: Message, wire: Wire) -> dict[str, object]:
         "ids": list(message.ids),
         "id": message.telecommand_id if message.telecommand_id is not None else message.telemetry_id,
         "command": message.telecommand_id is not None,
-        "crc": [_crc_facts(one.facts) for one in wire.checked if one.section["crc8"]["width"] == 8],
+        "telemetry": message.telemetry_id,
+        "crc": [crc_facts(one.facts) for one in wire.checked if one.section["crc8"]["width"] == 8],
     }
-    framing = wire.facts.framing
-    if framing:
-        facts["framing"] = [framing.escape, framing.start, framing.end, framing.escaped]
-        if not framing.escapes_id:
-            facts["plain_id"] = True
+    facts |= framing_facts(wire.facts)
     if wire.facts.can:
-        facts["can"] = _can_facts(wire.facts.can)
+        facts["can"] = can_facts(wire.facts.can)
     return facts
 
 
-def _can_facts(form: Can) -> dict[str, object]:
-    """Where an identifier has type and id, which types carry data, and where packets of long messages have what."""
-    found: dict[str, object] = {role: [form.parts[role].shift, form.parts[role].bits] for role in ("type", "channel")}
-    for name in ("types", "extended_types"):
-        types = getattr(form, name)
-        found[name] = [types[kind] for kind in CAN_WITH_DATA if kind in types]
-    return found | ({"extended": [form.extended.data_bytes, form.extended.left_at]} if form.extended else {})
+def framing_facts(facts: Facts) -> dict[str, object]:
+    """The bytes that delimit messages on the UART, and what is unusual about them; empty without framing."""
+    framing = facts.framing
+    if framing is None:
+        return {}
+    found: dict[str, object] = {"framing": [framing.escape, framing.start, framing.end, framing.escaped]}
+    if not framing.escapes_id:
+        found["plain_id"] = True
+    if framing.ignores_other:
+        found["ignores_other"] = True
+    return found
 
 
-def _crc_facts(facts: Facts) -> dict[str, object]:
+def can_facts(form: Can) -> dict[str, object]:
+    """Shift and width of the parts of an identifier, types by kind, and where packets of long messages have what."""
+    found: dict[str, object] = {
+        "parts": {role: [part.shift, part.bits] for role, part in form.parts.items()},
+        "types": form.types,
+        "extended_types": form.extended_types,
+        "data_bytes": form.data_bytes,
+        "node": form.node_address,
+    }
+    if form.extended:
+        one = form.extended
+        found["extended"] = [one.data_bytes, one.left_at, one.left_in_last, one.fill, one.bytes]
+    return found
+
+
+def crc_facts(facts: Facts) -> dict[str, object]:
+    """Parameters of the checksum of messages, and whether it covers the id."""
     form = facts.checksum
     assert form is not None
     found = {key: value for key, value in asdict(form.crc).items() if value is not None}

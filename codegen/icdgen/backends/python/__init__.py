@@ -33,6 +33,7 @@ class PythonBackend:
         """The project's files, then the package's, then those of each node."""
         from icdgen.backends.python import links, messages, nodes  # the rules about names need none of them
         from icdgen.backends.python.text import prose
+        from icdgen.describe.links import links_of
 
         root = PurePosixPath(self.package)
         common = {
@@ -42,7 +43,7 @@ class PythonBackend:
             "project": self.package.replace("_", "-"),
         }
         description = describe(icd)
-        listed = nodes.listed(description)
+        listed, linked = nodes.listed(description), links_of(description)
         yield PurePosixPath("pyproject.toml"), render("pyproject.toml.j2", **common)
         yield PurePosixPath("README.md"), render("README.md.j2", **common, **listed)
         yield root / "__init__.py", render("package.py.j2", **common, **listed)
@@ -59,10 +60,12 @@ class PythonBackend:
                 origin=origin(node.model, with_digest=True),
                 **nodes.values(node, description),
             )
-            if node.is_linked:
-                yield folder / "_link.py", render("link.py.j2", **first, **links.values(icd, node.model))
+            title = prose(node.model.title)
+            if node.name in linked:
+                link = links.literal(linked[node.name])
+                yield folder / "_link.py", render("link.py.j2", **first, title=title, link=link)
             folder /= names.TYPES
-            yield folder / "__init__.py", render("types.py.j2", **first, title=prose(node.model.title))
+            yield folder / "__init__.py", render("types.py.j2", **first, title=title)
             for enum in node.enums:
                 path = folder / f"{names.module_name(enum)}.py"
                 yield path, render("enum.py.j2", **first, **nodes.enum_values(enum))

@@ -1,4 +1,4 @@
-"""Python expressions from values, laid out the way Black does it."""
+"""Python expressions from values."""
 
 from __future__ import annotations
 
@@ -6,17 +6,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from icdgen.backends.lines import wrapped
+from icdgen.backends.literals import Brackets, Item, written
 from icdgen.backends.python.text import WIDTH, literal, prose
 from icdgen.describe.comments import sentence
 
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """``name(positional, keyword=value)``."""
+    """``name(positional, keyword=value)``; ``is_flat``: on one line."""
 
     name: str
     positional: tuple[object, ...] = ()
     keywords: Mapping[str, object] = field(default_factory=dict)
+    is_flat: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,79 +30,40 @@ class Verbatim:
 
 @dataclass(frozen=True, slots=True)
 class Noted:
-    """An item of a call or a mapping, with a comment above it."""
+    """An item of a call or a mapping, with comments above it."""
 
     item: object
     notes: tuple[str, ...]
 
 
-def expression(value: object, indent: int = 0, before: int = 0, after: int = 0) -> str:
-    """The source of a value: on one line if it fits between so many characters, else one item a line.
-
-    ``indent`` is that of the line it begins on.
-    """
-    is_noted = _is_noted(value)
-    line = "" if is_noted else _line(value)
-    if not is_noted and indent + before + len(line) + after <= WIDTH:
-        return line
-    if isinstance(value, str):
-        return _long_text(value, indent)
-    opening, items, closing = _parts(value)
-    if not items:
-        return line
-    rows = [_row(head, item, indent + 4) for head, item in items]
-    return f"{opening}\n{''.join(rows)}{' ' * indent}{closing}"
+def expression(value: object) -> str:
+    """The source of a value: calls and mappings with an item a line, tuples on one."""
+    return written(_spelled(value), _note)
 
 
-def _row(head: str, item: object, indent: int) -> str:
-    """An item on lines of its own, under its comment."""
-    pad = " " * indent
-    if not isinstance(item, Noted):
-        return f"{pad}{head}{expression(item, indent, len(head), 1)},\n"
-    comment = ""
-    for note in item.notes:
-        first, *rest = wrapped(prose(sentence(note)), WIDTH - indent - 4)
-        # What goes on is indented, so that no line of it can be read as an instruction to a tool.
-        comment += f"{pad}# {first}\n" + "".join(f"{pad}#   {line}\n" for line in rest)
-    return comment + _row(head, item.item, indent)
+def _note(text: str, indent: str) -> str:
+    first, *rest = wrapped(prose(sentence(text)), WIDTH - len(indent) - 4)
+    # What goes on is indented, so that no line of it can be read as an instruction to a tool.
+    return "\n".join([f"{indent}# {first}", *(f"{indent}#   {line}" for line in rest)])
 
 
-def _is_noted(value: object) -> bool:
-    if isinstance(value, Noted):
-        return True
-    return not isinstance(value, str | Verbatim) and any(_is_noted(item) for _, item in _parts(value)[1])
-
-
-def _long_text(text: str, indent: int) -> str:
-    """A string in pieces, in brackets."""
-    pieces = wrapped(text, WIDTH - indent - 8)
-    if len(pieces) == 1:
-        return literal(text)
-    pad = " " * (indent + 4)
-    spaced = [*(f"{piece} " for piece in pieces[:-1]), pieces[-1]]
-    return "(\n" + "".join(f"{pad}{literal(piece)}\n" for piece in spaced) + " " * indent + ")"
-
-
-def _line(value: object) -> str:
+def _spelled(value: object) -> str | Brackets:
     if isinstance(value, Verbatim):
         return value.text
     if isinstance(value, str):
-        return literal(str(value))
-    if value is None or isinstance(value, bool | int | float):
-        return repr(value)
-    opening, items, closing = _parts(value)
-    inner = ", ".join(f"{head}{_line(item)}" for head, item in items)
-    single = "," if opening == "(" and len(items) == 1 else ""
-    return f"{opening}{inner}{single}{closing}"
-
-
-def _parts(value: object) -> tuple[str, list[tuple[str, object]], str]:
-    """Opening bracket, items with what stands before each, closing bracket."""
+        return literal(value)
     if isinstance(value, Call):
-        named = [(f"{key}=", item) for key, item in value.keywords.items()]
-        return f"{value.name}(", [*(("", item) for item in value.positional), *named], ")"
+        items = [*map(_item, value.positional), *(_item(one, f"{key}=") for key, one in value.keywords.items())]
+        return Brackets(f"{value.name}(", tuple(items), ")", value.is_flat)
     if isinstance(value, Mapping):
-        return "{", [(f"{_line(key)}: ", item) for key, item in value.items()], "}"
+        return Brackets("{", tuple(_item(one, f"{_spelled(key)}: ") for key, one in value.items()), "}")
     if isinstance(value, Sequence):
-        return "(", [("", item) for item in value], ")"
-    return "", [], repr(value)
+        is_flat = not any(isinstance(one, Call | Mapping | Noted) for one in value)
+        return Brackets("(", tuple(map(_item, value)), ",)" if is_flat and len(value) == 1 else ")", is_flat)
+    return repr(value)
+
+
+def _item(value: object, head: str = "") -> Item:
+    if isinstance(value, Noted):
+        return Item(_spelled(value.item), head, value.notes)
+    return Item(_spelled(value), head)

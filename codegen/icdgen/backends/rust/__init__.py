@@ -11,7 +11,7 @@ from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
 from icdgen.backends.rust import names
 from icdgen.backends.rust.declared_names import declared_names
-from icdgen.describe import describe
+from icdgen.describe import Description, describe
 from icdgen.icd.model import Icd
 
 if TYPE_CHECKING:
@@ -32,54 +32,64 @@ class RustBackend:
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The crate."""
-        from icdgen.backends.rust import nodes  # the rules about names need none of them
-        from icdgen.backends.rust.enumerations import EnumRow
-        from icdgen.backends.rust.messages import MessageRow
+        from icdgen.backends.rust import messages, nodes  # the rules about names need none of them
 
-        common: dict[str, object] = {"origin": origin(), "version": __version__, "crate": self.crate}
         description = describe(icd)
-        id_bits = description.id_bits
+        common = {
+            "origin": origin(),
+            "version": __version__,
+            "crate": self.crate,
+            "id_bits": description.id_bits,
+            **_functions(),
+        }
         wired = any(node.is_linked for node in description.nodes)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         yield PurePosixPath("src/lib.rs"), render(
-            "lib.rs.j2", nodes=[nodes.Summary(node) for node in icd.nodes], wired=wired, **common
+            "lib.rs.j2", nodes=icd.nodes, summary=nodes.summary, wired=wired, **common
         )
         yield from _runtime("src/support", render)
         for node in description.nodes:
             folder = PurePosixPath("src") / node.name
-            shared = {**common, "origin": origin(node.model)}
-            rows = [MessageRow(message, f"u{id_bits}") for message in node.messages]
-            row = nodes.NodeRow(node, rows, id_bits)
-            yield folder / "mod.rs", render(
-                "node.rs.j2",
-                node=row,
-                wired=node.is_linked,
-                **common | {"origin": origin(node.model, with_digest=True)},
-            )
+            digested = {**common, "origin": origin(node.model, with_digest=True)}
+            about = nodes.about(node)
+            yield folder / "mod.rs", render("node.rs.j2", node=node, about=about, typed=nodes.typed, **digested)
+            shared = {**common, "origin": origin(node.model), "wired": wired}
             if node.enums:
-                enums = [EnumRow(enum) for enum in node.enums]
-                yield folder / "enums.rs", render("enums.rs.j2", enums=enums, **shared)
-            for message, values in zip(node.messages, rows, strict=True):
-                text = render("message.rs.j2", m=values, node=node.name, wired=wired, **shared)
+                yield folder / "enums.rs", render("enums.rs.j2", enums=node.enums, **shared)
+            for message in node.messages:
+                text = render("message.rs.j2", m=message, **messages.values(message), **shared)
                 yield folder / f"{message.name}.rs", text
         if wired:
-            yield from _wire(icd, render, common)
+            yield from _wire(description, render, common)
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that the crate declares, by scope."""
         return declared_names(describe(icd))
 
 
-def _wire(icd: Icd, render: Renderer, common: dict[str, object]) -> Iterator[tuple[PurePosixPath, str]]:
+def _functions() -> dict[str, object]:
+    """What templates spell names and text with."""
+    from icdgen.backends.rust import text
+    from icdgen.backends.rust.physical import physical
+    from icdgen.describe.comments import physical_comment, physical_name, sentence, words
+
+    found = (
+        names.catch_all, names.message_path, names.raw_type, names.type_name, physical, physical_comment, physical_name,
+        sentence, text.arm, text.assigned, text.described, text.doc, text.integer, text.prose, text.signature, text.string, words,
+    )  # fmt: skip
+    return {function.__name__: function for function in found}
+
+
+def _wire(description: Description, render: Renderer, common: dict[str, object]) -> Iterator[tuple[PurePosixPath, str]]:
     """How the messages travel."""
-    from icdgen.backends.rust import wire
+    from icdgen.backends.rust import links
+    from icdgen.describe.links import links_of
 
     yield from _runtime("src/wire", render)
-    folder = PurePosixPath(LINKS)
-    layer = wire.Wire(icd)
-    yield folder / "mod.rs", render("links.rs.j2", links=layer.links, sizes=layer.sizes, **common)
-    for link in layer.links:
-        yield folder / f"{link.node}.rs", render("node_link.rs.j2", link=link, origin=origin(icd.node(link.node)))
+    folder, found = PurePosixPath(LINKS), links_of(description)
+    yield folder / "mod.rs", render("links.rs.j2", nodes=list(found), sizes=links.sizes(found.values()), **common)
+    for name, link in found.items():
+        yield folder / f"{name}.rs", render("node_link.rs.j2", link=links.values(link), origin=origin(link.facts.node))
 
 
 def _runtime(folder: str, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:

@@ -1,37 +1,21 @@
-"""Associated constants: ids, and values with a name of their own."""
+"""Types and values of associated constants."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from icdgen.backends.rust.names import integer_type
-from icdgen.backends.rust.text import assigned, doc, double, integer, prose
+from icdgen.backends.rust.text import double, integer
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.describe import constants as described
+from icdgen.describe.constants import Constant
 
 
-class Constant(NamedTuple):
-    """An associated constant."""
-
-    name: str
-    doc: str
-    declaration: str
+def of_fields(message: MessageDescription) -> list[tuple[Constant, str, str]]:
+    """The constants of a message's fields, their types and values."""
+    return [(one, *_value(field, one)) for field in message.fields for one in field.constants]
 
 
-def of_message(message: MessageDescription, id_type: str) -> list[Constant]:
-    """The ids, then the values of fields."""
-    ids = [_constant(id.name, id_type, integer(id.value), id.comment) for id in message.ids]
-    return ids + [_of_field(field, one) for field in message.fields for one in field.constants]
-
-
-def _of_field(field: FieldDescription, one: described.Constant) -> Constant:
+def _value(field: FieldDescription, one: Constant) -> tuple[str, str]:
     if field.model.type == "bool" and one.is_raw:
-        return _constant(one.name, "bool", "true" if one.value else "false", one.comment)
+        return "bool", "true" if one.value else "false"
     if isinstance(one.value, int):
-        return _constant(one.name, integer_type(field), integer(one.value), one.comment)
-    return _constant(one.name, "f64", double(one.value.numerator / one.value.denominator), one.comment)
-
-
-def _constant(name: str, kind: str, literal: str, comment: str) -> Constant:
-    upper = name.upper()
-    return Constant(upper, doc([prose(comment)], "    "), assigned(f"pub const {upper}: {kind} =", literal, ";"))
+        return integer_type(field), integer(one.value)
+    return "f64", double(one.value.numerator / one.value.denominator)

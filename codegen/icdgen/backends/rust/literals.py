@@ -1,89 +1,49 @@
-"""Data -> Rust expressions, one part a line."""
+"""Values -> Rust expressions."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Iterable
 
-from icdgen.backends.rust.text import doc, integer, prose, string
-from icdgen.describe.comments import sentence
+from icdgen.backends.literals import Brackets, Item
 
-STEP = "    "
+Expression = str | Brackets
 
 
-class Raw(str):
-    """An expression as it is."""
-
-    __slots__ = ()
-
-
-class Part(NamedTuple):
-    """A field of a struct literal. ``source``: the key of the ICD that it comes from, which may be an assumption."""
-
-    name: str
-    value: object
-    source: str = ""
+def struct(name: str, *items: Item) -> Brackets:
+    """A struct of the wire layer, one field a line."""
+    return Brackets(f"link::{name} {{ ", items, " }")
 
 
-class Struct(NamedTuple):
-    """A struct literal; ``flat``: on one line."""
-
-    name: str
-    parts: tuple[Part, ...]
-    flat: bool = False
+def flat(name: str, /, **fields: Expression | int) -> Brackets:
+    """A struct of the wire layer on one line."""
+    items = (part(key, value if isinstance(value, Brackets) else spelled(value)) for key, value in fields.items())
+    return Brackets(f"link::{name} {{ ", tuple(items), " }", True)
 
 
-class Rows(tuple[object, ...]):
+def part(name: str, value: Expression, why: str = "") -> Item:
+    """A field of a struct, with the reason for what is assumed."""
+    return Item(value, f"{name}: ", (why,) if why else ())
+
+
+def rows(values: Iterable[Expression]) -> Brackets:
     """A reference to an array, one element a line."""
-
-    __slots__ = ()
-
-
-def flat(name: str, /, **parts: object) -> Struct:
-    """A struct literal on one line."""
-    return Struct(name, tuple(Part(key, value) for key, value in parts.items()), True)
+    return Brackets("&[", tuple(map(Item, values)), "]")
 
 
-def literal(value: object, why: Callable[[str], str | None], indent: str = "", optional: bool = False) -> str:
-    """The expression. ``why``: the reason for what is assumed. ``optional``: the value is one of an `Option`."""
+def flat_rows(values: Iterable[Expression]) -> Brackets:
+    """A reference to an array, on one line."""
+    return Brackets("&[", tuple(map(Item, values)), "]", True)
+
+
+def some(value: Expression | int | None) -> Expression:
+    """The value as one of an `Option`."""
     if value is None:
         return "None"
-    text = _literal(value, why, indent)
-    return f"Some({text})" if optional else text
+    return value.within("Some(", ")") if isinstance(value, Brackets) else f"Some({spelled(value)})"
 
 
-def _literal(value: object, why: Callable[[str], str | None], indent: str) -> str:
-    if isinstance(value, Optional):
-        return literal(value.value, why, indent, True)
-    if isinstance(value, Raw):
-        return str(value)
+def spelled(value: bool | int | str) -> str:
+    """A truth value, a number, or an expression as it is."""
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, int):
-        return integer(value)
-    if isinstance(value, str):
-        return string(value)
-    if isinstance(value, bytes):
-        return f"&[{', '.join(map(str, value))}]"
-    if isinstance(value, Rows):
-        rows = "".join(f"{indent}{STEP}{_literal(one, why, indent + STEP)},\n" for one in value)
-        return f"&[\n{rows}{indent}]" if rows else "&[]"
-    if isinstance(value, tuple) and not isinstance(value, Struct):
-        return f"({', '.join(_literal(one, why, indent) for one in value)})"
-    assert isinstance(value, Struct), value
-    if value.flat:
-        inner = ", ".join(f"{part.name}: {_literal(part.value, why, indent)}" for part in value.parts)
-        return f"{value.name} {{ {inner} }}"
-    lines = []
-    for part in value.parts:
-        reason = why(part.source) if part.source else None
-        if reason:
-            lines.append(doc([f"Assumed. {prose(sentence(reason))}"], indent + STEP, "//"))
-        lines.append(f"{indent}{STEP}{part.name}: {_literal(part.value, why, indent + STEP)},")
-    return f"{value.name} {{\n" + "\n".join(lines) + f"\n{indent}}}"
-
-
-class Optional(NamedTuple):
-    """A value that may be absent."""
-
-    value: object
+    return f"{value:_}" if isinstance(value, int) else value

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from functools import lru_cache
 
 from icdgen.backends.lines import STEP, bracketed
+from icdgen.describe.comments import Comment
 
 WIDTH = 100
 
@@ -51,6 +52,11 @@ def doc(paragraphs: Iterable[str], indent: str = "", mark: str = "///") -> str:
         else:
             lines += [start + line for line in _wrapped(paragraph, WIDTH - len(start))]
     return "\n".join(lines)
+
+
+def described(comment: Comment, indent: str = "") -> str:
+    """The comment of a part."""
+    return doc(map(prose, comment.paragraphs), indent)
 
 
 def _wrapped(paragraph: str, width: int) -> list[str]:

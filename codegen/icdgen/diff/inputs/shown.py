@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError
 from icdgen.icd import model, source
 from icdgen.icd.formula import Scale
-from icdgen.icd.located import Map, Seq
+from icdgen.icd.located import Map, Seq, plain
 from icdgen.icd.units import STANDARD, Unit
-from icdgen.icd.wire_ids import DEFAULT_BITS
+from icdgen.show import machine
 
 if TYPE_CHECKING:
     from jsonschema_rs import ValidationError
 
+Thing = TypeVar("Thing")
 _MOST = 64_000_000  # bytes
 
 
@@ -103,8 +105,6 @@ def _placed(value: Any, place: Place) -> Any:
 def _check(tree: object, name: str) -> None:
     import jsonschema_rs
 
-    from icdgen.show import machine
-
     validator = jsonschema_rs.validator_for(json.loads(machine.SCHEMA.read_text(encoding="utf-8")))
     errors = list(validator.iter_errors(tree))
     if errors:
@@ -131,14 +131,14 @@ class _Reader:
     """One node, after those that it includes."""
 
     def __init__(self, before: list[model.Node]) -> None:
-        self.before = {node.name: node for node in before}
+        self.before = before
         self.enums: dict[str, model.Enum] = {}
         self.units: dict[str, Unit] = dict(STANDARD)
         self.errata: dict[str, model.Erratum] = {}
 
     def node(self, item: Map) -> model.Node:
         get = item.get
-        for node in self.included(item["includes"]):
+        for node in model.closure(self.before, item["includes"]):
             self.enums.update((enum.name, enum) for enum in node.enums)
             self.units.update((unit.symbol, unit) for unit in node.units)
         units = tuple(Unit(u["symbol"], u["identifier"], u["quantity"], u.get("summary", "")) for u in get("units", ()))
@@ -147,64 +147,60 @@ class _Reader:
         enums = tuple(self.enum(enum, item["name"]) for enum in item["enums"])
         self.enums.update((enum.name, enum) for enum in enums)
         return model.Node(
-            name=item["name"], title=item["title"], summary=get("summary", ""), byte_order=item["byte_order"],
-            bit_order=item["bit_order"], messages=tuple(self.message(m, item["name"]) for m in item["messages"]),
-            enums=enums, node_type=get("node_type"), interface_version=get("interface_version"),
-            document=tuple(get("document", {}).items()), includes=tuple(item["includes"]),
-            vocabulary=tuple(get("vocabulary", ())), units=units, protocol=_plain(get("protocol", {})),
-            loggable=tuple(
-                model.Loggable(r["bit"], r["id"], r.get("name", ""), self.about(r), r) for r in item["loggable"]
-            ),
-            missing=tuple(model.Missing(m["kind"], m["id"], m["name"], m["why"]) for m in get("missing", ())),
-            errata=tuple(self.errata.values()), digest=get("digest", ""), file=item.place.file,
-            id_bits=get("id_bits", DEFAULT_BITS), source=item,
-        )  # fmt: skip
-
-    def included(self, names: list[str]) -> list[model.Node]:
-        wanted, queue = set(), list(names)
-        while queue:
-            name = queue.pop()
-            if name in self.before and name not in wanted:
-                wanted.add(name)
-                queue += self.before[name].includes
-        return [node for name, node in self.before.items() if name in wanted]
+            **{"summary": "", **_as_it_is(model.Node, item)},
+            messages=tuple(self.message(m, item["name"]) for m in item["messages"]),
+            enums=enums,
+            document=tuple(get("document", {}).items()),
+            includes=tuple(item["includes"]),
+            vocabulary=tuple(get("vocabulary", ())),
+            units=units,
+            protocol=plain(get("protocol", {})),
+            loggable=tuple(self.row(model.Loggable, row) for row in item["loggable"]),
+            missing=tuple(model.Missing(**_as_it_is(model.Missing, one)) for one in get("missing", ())),
+            errata=tuple(self.errata.values()),
+            file=item.place.file,
+            source=item,
+        )
 
     def about(self, item: Map) -> tuple[model.Erratum, ...]:
         return tuple(self.errata[id] for key in ("errata", "notes") for id in item.get(key, ()) if id in self.errata)
 
+    def row(self, kind: Callable[..., Thing], item: Map, **more: object) -> Thing:
+        """What has attributes that are shown as they are, and errata; ``more`` are the others."""
+        return kind(**_as_it_is(kind, item), errata=self.about(item), source=item, **more)
+
     def enum(self, item: Map, node: str) -> model.Enum:
-        get = item.get
-        members = tuple(
-            model.Member(m["value"], m["name"], m.get("identifier"), m.get("summary", ""), self.about(m), m)
-            for m in item["members"]
-        )
-        return model.Enum(
-            item["name"], members, get("identifier"), get("summary", ""), get("table"), node, self.about(item), item
-        )
+        members = tuple(self.row(model.Member, member) for member in item["members"])
+        return self.row(model.Enum, item, members=members, node=node)
 
     def message(self, item: Map, node: str) -> model.Message:
-        get = item.get
-        return model.Message(
-            name=item["name"], kind=item["kind"], length=item["length"],
-            fields=tuple(self.field(field) for field in item["fields"]), id=get("id"), set_id=get("set_id"),
-            get_id=get("get_id"), identifier=get("identifier"), group=get("group", ""), table=get("table"),
-            page=get("page"), summary=get("summary", ""), acknowledge=get("acknowledge", True) is True,
-            expects_reset=get("acknowledge") == "reset", hazard=get("hazard", ""),
-            contains=tuple(model.Part(part["message"], part["offset"]) for part in get("contains", ())), node=node,
-            errata=self.about(item), source=item,
-        )  # fmt: skip
+        return self.row(
+            model.Message,
+            item,
+            fields=tuple(self.field(field) for field in item["fields"]),
+            acknowledge=item.get("acknowledge", True) is True,
+            expects_reset=item.get("acknowledge") == "reset",
+            contains=tuple(model.Part(part["message"], part["offset"]) for part in item.get("contains", ())),
+            node=node,
+        )
 
     def field(self, item: Map) -> model.Field:
-        get = item.get
-        return model.Field(
-            name=item["name"], at=item["offset"], bits=item["bits"], type=item["type"], identifier=get("identifier"),
-            enum=self.enums.get(get("enum", "")), unit=self.units.get(get("unit", "")), formula=get("formula", ""),
+        limits = {key: Fraction(value) for key, value in item.get("limits", {}).items()}
+        return self.row(
+            model.Field,
+            item,
+            at=item["offset"],
+            enum=self.enums.get(item.get("enum", "")),
+            unit=self.units.get(item.get("unit", "")),
+            formula=item.get("formula", ""),
             scale=_scale(item),
-            const=get("const"), special=tuple(model.Special(s["value"], s["meaning"]) for s in get("special", ())),
-            limits=model.Limits(**{key: Fraction(value) for key, value in item["limits"].items()})
-            if "limits" in item else None,
-            summary=get("summary", ""), errata=self.about(item), source=item,
-        )  # fmt: skip
+            special=tuple(model.Special(**_as_it_is(model.Special, one)) for one in item.get("special", ())),
+            limits=model.Limits(**limits) if "limits" in item else None,
+        )
+
+
+def _as_it_is(kind: object, item: Map) -> dict[str, Any]:
+    return {name: item[name] for name in machine.as_they_are(kind) if name in item}
 
 
 def _scale(item: Map) -> Scale | None:
@@ -219,13 +215,11 @@ def _scale(item: Map) -> Scale | None:
 def _erratum(item: Map) -> model.Erratum:
     is_note = "what" in item
     return model.Erratum(
-        item["id"], item["title"], item["what" if is_note else "why"], item["evidence"], item.get("confidence", ""),
-        tuple(item.get("tables", ())), tuple(item.get("printed", {}).items()), tuple(item.get("held", {}).items()),
-        item.get("changes", False), is_note,
-    )  # fmt: skip
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    return [_plain(item) for item in value] if isinstance(value, list) else value
+        **{"confidence": "", **_as_it_is(model.Erratum, item)},
+        why=item["what" if is_note else "why"],
+        tables=tuple(item.get("tables", ())),
+        printed=tuple(item.get("printed", {}).items()),
+        held=tuple(item.get("held", {}).items()),
+        changes=item.get("changes", False),
+        is_note=is_note,
+    )

@@ -41,7 +41,7 @@ class Side:
         """The place as a user knows it."""
         if place is None or not place.file:
             return None
-        return place._replace(file=self.name(place.file))
+        return place if not self.folder else place._replace(file=self.name(place.file))
 
     def erratum(self, key: str) -> Place | None:
         """Where the entry of an overlay stands that has this id."""

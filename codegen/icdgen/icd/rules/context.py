@@ -14,9 +14,19 @@ if TYPE_CHECKING:
     from icdgen.icd.identifiers import Language
 
 # Keys of a field that only few fields have.
-RARE = ("enum", "unit", "formula", "formula_for", "const", "special", "min", "max", "above", "below", "bitfields")
+RARE = ("enum", "unit", "formula", "formula_for", "const", "special", "min", "max", "above", "below", "bitfields",
+    "byte_order", "bit_order",
+)  # fmt: skip
 
 Row = tuple[Field, Message, Node]
+
+
+def section_of(node: Node, *path: str) -> Map | None:
+    """A section of the node's own protocol."""
+    found: object = node.source
+    for key in ("protocol", *path):
+        found = found.get(key) if isinstance(found, Map) else None
+    return found if isinstance(found, Map) else None
 
 
 def mappings(items: object) -> Iterator[Map]:
@@ -58,6 +68,11 @@ class Context:
             found = (*(n for n in self.icd.nodes if by_name.get(n.name) is n), node)
             self._scopes[id(node)] = found
         return found
+
+    def sections(self, *path: str) -> Iterator[Map]:
+        """The sections of that path, of each node that has one of its own."""
+        found = (section_of(node, *path) for node in self.icd.nodes)
+        return (section for section in found if section is not None)
 
     def messages_of(self, node: Node) -> list[Message]:
         """All messages that the node speaks."""

@@ -30,19 +30,17 @@ def sections(node: Node) -> Iterator[Map]:
 
 @rule("ICD090")
 def i2c_addresses(ctx: Context) -> Iterator[Fault]:
-    for node in ctx.icd.nodes:
-        protocol = node.source.get("protocol")
-        i2c = protocol.get("i2c") if isinstance(protocol, Map) else None
-        if isinstance(i2c, Map):
-            for key, bit in (("write", 0), ("read", 1)):
-                if isinstance(i2c.get(key), Map):
-                    yield from _forms_agree(i2c[key], key, bit)
-            write, read = (i2c.get(key) for key in ("write", "read"))
-            if isinstance(write, Map) and isinstance(read, Map):
-                one, other = write.get("address_8bit"), read.get("address_8bit")
-                if _is_byte(one) and _is_byte(other) and not one & 1 and other != one | 1:
-                    message = f"the read address {_hex(other)} does not follow the write address {_hex(one)}"
-                    yield Fault(read, read.at("address_8bit"), message, f"the read address is {_hex(one | 1)}")
+    for i2c in ctx.sections("i2c"):
+        write, read = (i2c.get(key) for key in ("write", "read"))
+        if isinstance(write, Map):
+            yield from _forms_agree(write, "write", 0)
+        if isinstance(read, Map):
+            yield from _forms_agree(read, "read", 1)
+        if isinstance(write, Map) and isinstance(read, Map):
+            one, other = write.get("address_8bit"), read.get("address_8bit")
+            if _is_byte(one) and _is_byte(other) and not one & 1 and other != one | 1:
+                message = f"the read address {_hex(other)} does not follow the write address {_hex(one)}"
+                yield Fault(read, read.at("address_8bit"), message, f"the read address is {_hex(one | 1)}")
 
 
 def _forms_agree(address: Map, key: str, bit: int) -> Iterator[Fault]:

@@ -7,15 +7,14 @@ from math import ceil
 
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message, Node
-from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.context import Context, mappings, section_of
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.ids import KEYS
-from icdgen.icd.rules.protocol_sizes import numbers, section_of
+from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, listing, quote
 
 BYTE = 255
-TIME_BITS = 32  # of a packed time, at most
 TIME_PARTS = ("year", "month", "day", "hour", "minute", "second")
 ROLES = ("type", "channel", "source", "destination")  # parts of a CAN identifier
 
@@ -79,11 +78,18 @@ def _extended(ctx: Context, node: Node, can: Map) -> Iterator[Message]:
 def numbers_fit(ctx: Context) -> Iterator[Fault]:
     seen: set[tuple[int, str, int]] = set()
     for node in ctx.icd.nodes:
-        for fault in (*_on_can(ctx, node), *_log_id(node), *_codes(node), *_checksums(node), *_counter(node)):
+        for fault in _on_can(ctx, node):
             key = (id(fault.owner), fault.message, fault.place.line)
             if key not in seen:
                 seen.add(key)
                 yield fault
+    for errors in ctx.sections("errors"):
+        yield from _codes(errors)
+    for name in ("crc8", "crc16"):
+        for crc in ctx.sections(name):
+            yield from _checksum(crc)
+    for files in ctx.sections("file_transfer"):
+        yield from _counter(files)
 
 
 def _on_can(ctx: Context, node: Node) -> Iterator[Fault]:
@@ -113,58 +119,38 @@ def _fits(owner: Map, key: str, bits: int | None, what: str) -> Iterator[Fault]:
         yield Fault(owner, owner.at(key), message, f"correct `{key}`, or `bits` of the identifier")
 
 
-def _log_id(node: Node) -> Iterator[Fault]:
-    log = section_of(node, "unsolicited_log")
-    if log is not None:
-        yield from _byte(log, "id", "the id of an unsolicited log")
-
-
-def _codes(node: Node) -> Iterator[Fault]:
-    errors = section_of(node, "errors")
-    if errors is None:
-        return
+def _codes(errors: Map) -> Iterator[Fault]:
     roles: dict[int, str] = {}
     for role in ("none", "unknown_id", "length", "parameter", "checksum"):
-        yield from _byte(errors, role, "an error code")
         code = errors.get(role)
         if isinstance(code, int) and code in roles:
-            yield Fault(
-                errors, errors.at(role), f"{code} means both `{roles[code]}` and `{role}`", "each has its own code"
-            )
+            message = f"{code} means both `{roles[code]}` and `{role}`"
+            yield Fault(errors, errors.at(role), message, "each has its own code")
         elif isinstance(code, int):
             roles[code] = role
 
 
-def _byte(owner: Map, key: str, what: str) -> Iterator[Fault]:
-    value = owner.get(key)
-    if isinstance(value, int) and value > BYTE:
-        yield Fault(owner, owner.at(key), f"{what} is a byte: 0 to {BYTE}, not {value}", f"correct `{key}`")
-
-
-def _checksums(node: Node) -> Iterator[Fault]:
-    for name in ("crc8", "crc16"):
-        crc = section_of(node, name)
-        width = crc.get("width") if crc is not None else None
-        if crc is None or not isinstance(width, int):
+def _checksum(crc: Map) -> Iterator[Fault]:
+    width = crc.get("width")
+    if not isinstance(width, int) or width < 1:
+        return  # the schema's business
+    for key in ("polynomial", "init", "xor_out", "empty", "check"):
+        value = crc.get(key)
+        if isinstance(value, int) and value >= 1 << width:
+            yield Fault(crc, crc.at(key), f"`{key}` does not fit {width} bits", f"correct `{key}` or `width`")
+    for direction in ("telecommand", "telemetry"):
+        form = crc.get(direction)
+        if not isinstance(form, Map):
             continue
-        for key in ("polynomial", "init", "xor_out", "empty", "check"):
-            value = crc.get(key)
-            if isinstance(value, int) and value >= 1 << width:
-                yield Fault(crc, crc.at(key), f"`{key}` does not fit {width} bits", f"correct `{key}` or `width`")
-        for direction in ("telecommand", "telemetry"):
-            form = crc.get(direction)
-            if not isinstance(form, Map):
-                continue
-            extra = form.get("extra_bytes")
-            if isinstance(extra, int) and extra * 8 < width:
-                message = f"a CRC of {width} bits does not fit {count(extra, 'byte')}"
-                yield Fault(form, form.at("extra_bytes"), message, "correct `extra_bytes` or `width`")
+        extra = form.get("extra_bytes")
+        if isinstance(extra, int) and extra * 8 < width:
+            message = f"a CRC of {width} bits does not fit {count(extra, 'byte')}"
+            yield Fault(form, form.at("extra_bytes"), message, "correct `extra_bytes` or `width`")
 
 
-def _counter(node: Node) -> Iterator[Fault]:
-    files = section_of(node, "file_transfer")
-    found = numbers(files, "packet_counter_bytes", "block_packets") if files is not None else None
-    if files is None or found is None:
+def _counter(files: Map) -> Iterator[Fault]:
+    found = numbers(files, "packet_counter_bytes", "block_packets")
+    if found is None:
         return
     first = files.get("first_packet", 0)
     size, packets = found
@@ -177,10 +163,9 @@ def _counter(node: Node) -> Iterator[Fault]:
 
 @rule("ICD101")
 def identifier_is_whole(ctx: Context) -> Iterator[Fault]:
-    for node in ctx.icd.nodes:
-        can = section_of(node, "can")
-        parts = can.get("identifier") if can is not None else None
-        if can is None or not isinstance(parts, Seq) or not {"message_types", "telecommand", "telemetry"} & set(can):
+    for can in ctx.sections("can"):
+        parts = can.get("identifier")
+        if not isinstance(parts, Seq) or not {"message_types", "telecommand", "telemetry"} & set(can):
             continue
         roles: set[str] = set()
         for row in mappings(parts):
@@ -198,14 +183,9 @@ def identifier_is_whole(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD102")
 def times_are_whole(ctx: Context) -> Iterator[Fault]:
-    for node in ctx.icd.nodes:
-        time = section_of(node, "msdos_time")
-        if time is None or not isinstance(time.get("parts"), Seq):
+    for time in ctx.sections("msdos_time"):
+        if not isinstance(time.get("parts"), Seq):
             continue
-        bits = time.get("bits")
-        if isinstance(bits, int) and bits > TIME_BITS:
-            message = f"a packed time of {bits} bits: up to {TIME_BITS} can be generated"
-            yield Fault(time, time.at("bits"), message, "correct `bits`, or leave the section out")
         named: set[str] = set()
         for row in mappings(time["parts"]):
             name = str(row.get("name"))

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import CAN_DATA_BYTES, TELECOMMAND, TELEMETRY, Node
-from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.context import Context, mappings, section_of
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.ids import KEYS
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.protocol_limits import in_force
-from icdgen.icd.rules.protocol_sizes import numbers, section_of
+from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count, line_of, listing, quote
 
@@ -61,10 +61,9 @@ def _overlap(one: Map, other: Map) -> Iterator[Fault]:
 
 @rule("ICD104")
 def message_types_differ(ctx: Context) -> Iterator[Fault]:
-    for node in ctx.icd.nodes:
-        types = section_of(node, "can", "message_types")
+    for types in ctx.sections("can", "message_types"):
         seen: dict[tuple[str, object], Map] = {}
-        for row in mappings(types.get("values") if types is not None else None):
+        for row in mappings(types.get("values")):
             for key in ("value", "name"):
                 value = row.get(key)
                 first = seen.setdefault((key, value), row) if isinstance(value, int | str) else row
@@ -76,10 +75,9 @@ def message_types_differ(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD105")
 def acknowledge_is_whole(ctx: Context) -> Iterator[Fault]:
-    for node in ctx.icd.nodes:
-        section = section_of(node, "uart", "acknowledge")
-        rows = section.get("data") if section is not None else None
-        if section is None or not isinstance(rows, Seq):
+    for section in ctx.sections("uart", "acknowledge"):
+        rows = section.get("data")
+        if not isinstance(rows, Seq):
             continue
         roles: set[object] = set()
         for row in mappings(rows):

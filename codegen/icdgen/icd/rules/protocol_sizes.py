@@ -6,21 +6,13 @@ from collections.abc import Iterator
 
 from icdgen.icd.located import Map, Seq
 from icdgen.icd.model import Node
-from icdgen.icd.rules.context import Context, mappings
+from icdgen.icd.rules.context import Context, mappings, section_of
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.protocol import sections
 from icdgen.icd.rules.rule import rule
 from icdgen.icd.rules.wording import count as counted
 
 CAN_IDENTIFIER_BITS = 29  # of an extended CAN frame
-
-
-def section_of(node: Node, *path: str) -> Map | None:
-    """A section of the node's own protocol."""
-    found: object = node.source
-    for key in ("protocol", *path):
-        found = found.get(key) if isinstance(found, Map) else None
-    return found if isinstance(found, Map) else None
 
 
 def numbers(section: Map, *keys: str) -> tuple[int, ...] | None:
@@ -31,10 +23,7 @@ def numbers(section: Map, *keys: str) -> tuple[int, ...] | None:
 
 @rule("ICD096")
 def markers_differ(ctx: Context) -> Iterator[Fault]:
-    for node in ctx.icd.nodes:
-        framing = section_of(node, "uart", "framing")
-        if framing is None:
-            continue
+    for framing in ctx.sections("uart", "framing"):
         seen: dict[int, str] = {}
         escape = framing.get("escape")
         for key in ("start_of_message", "end_of_message", "escaped_data"):
@@ -52,21 +41,19 @@ def markers_differ(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD097")
 def sizes_agree(ctx: Context) -> Iterator[Fault]:
-    for node in ctx.icd.nodes:
-        can = section_of(node, "can")
-        if can is not None:
-            yield from _identifier(can)
-        extended = section_of(node, "can", "extended")
-        if can is not None and extended is not None:
+    for can in ctx.sections("can"):
+        yield from _identifier(can)
+        extended = can.get("extended")
+        if isinstance(extended, Map):
             yield from _product(extended, "max_bytes", "max_packets", "data_bytes")
             yield from _packets_left(can, extended)
-        files = section_of(node, "file_transfer")
-        if files is not None:
-            yield from _product(files, "block_bytes", "block_packets", "packet_bytes")
-            hole_map = files.get("hole_map")
-            if isinstance(hole_map, Map):
-                yield from _product(hole_map, "bytes", "messages", "message_bytes")
-                yield from _hole_map(files, hole_map)
+    for files in ctx.sections("file_transfer"):
+        yield from _product(files, "block_bytes", "block_packets", "packet_bytes")
+        hole_map = files.get("hole_map")
+        if isinstance(hole_map, Map):
+            yield from _product(hole_map, "bytes", "messages", "message_bytes")
+            yield from _hole_map(files, hole_map)
+    for node in ctx.icd.nodes:
         yield from _log_mask(ctx, node)
 
 

@@ -10,9 +10,9 @@ from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol import can, i2c, uart
 from icdgen.protocol import logs as log_files
-from icdgen.protocol.facts import CAN, I2C, UART, Facts
-
-Requests = Iterator[tuple[str, dict[str, Any]]]
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import CAN, I2C, UART
+from icdgen.vectors.wire import Requests
 
 SETTINGS = {"reply_timeout": 100, "retries": 2, "poll_interval": 10, "poll_timeout": 50}
 OURS = 0x42

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from random import Random
 from typing import Any
 
 from icdgen.protocol import files as reference
 from icdgen.protocol.facts import Facts
-
-Requests = Iterator[tuple[str, dict[str, Any]]]
+from icdgen.vectors.wire import Requests
 
 
 def requests(known: Facts, source: Random) -> Requests:

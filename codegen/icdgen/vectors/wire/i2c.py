@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from random import Random
-from typing import Any
 
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.i2c import telecommand
-
-Requests = Iterator[tuple[str, dict[str, Any]]]
+from icdgen.vectors.wire import Requests
 
 
 def requests(known: Facts, source: Random) -> Requests:

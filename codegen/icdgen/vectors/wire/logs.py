@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from random import Random
-from typing import Any
 
 from icdgen.protocol import logs as log_files
 from icdgen.protocol.facts import Facts
-
-Requests = Iterator[tuple[str, dict[str, Any]]]
+from icdgen.vectors.wire import Requests
 
 
 def masks(known: Facts) -> list[bytes]:

@@ -8,7 +8,8 @@ from typing import Any
 from icdgen import codec
 from icdgen.protocol import crc, files
 from icdgen.protocol.client import TELECOMMAND, Request
-from icdgen.protocol.facts import UART, Facts, Step
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import UART, Step
 
 
 class FileNode:
@@ -105,7 +106,7 @@ class FileNode:
             return self._packet(position)
         name, step = self.steps[id]
         busy, self.polls = int(self.polls > 0), max(0, self.polls - 1)
-        return self._frame(step, getattr(self, "_" + name.replace(".", "_"))(busy) if "." in name else {})
+        return self._frame(step, self._values_of(name, busy))
 
     def _frame(self, step: Step, values: dict[str, Any]) -> bytes:
         raw = {f.name: bytes(f.bits // 8) if f.type == "bytes" else 0 for f in step.message.fields}
@@ -116,9 +117,17 @@ class FileNode:
         assert self.known.crc16
         return crc.compute(self.known.crc16, data)
 
-    def _list_information(self, busy: int) -> dict[str, Any]:
-        if busy:
-            return {"busy": 1}
+    def _values_of(self, step: str, busy: int) -> dict[str, Any]:
+        """What the frame of a step tells, by role."""
+        if step == "list.information":
+            return {"busy": 1} if busy else self._listed()
+        if step == "download.ready":
+            return {} if busy else {"ready": 1, "checksum": self._sum(self.block), "length": len(self.block)}
+        if step == "upload.checksum":
+            return {"checksum": self._sum(b"".join(self.uploaded[n] for n in sorted(self.uploaded)))}
+        return {"busy": busy}
+
+    def _listed(self) -> dict[str, Any]:
         if self.pointer >= len(self.files):
             return {}
         (type_, counter), content = list(self.files.items())[self.pointer]
@@ -129,21 +138,3 @@ class FileNode:
             "time": 0x51634000,
             "checksum": self._sum(content),
         }
-
-    def _download_ready(self, busy: int) -> dict[str, Any]:
-        return {} if busy else {"ready": 1, "checksum": self._sum(self.block), "length": len(self.block)}
-
-    def _upload_initiated(self, busy: int) -> dict[str, Any]:
-        return {"busy": busy}
-
-    def _upload_checksum(self, busy: int) -> dict[str, Any]:
-        return {"checksum": self._sum(b"".join(self.uploaded[n] for n in sorted(self.uploaded)))}
-
-    def _upload_finalized(self, busy: int) -> dict[str, Any]:
-        return {"busy": busy}
-
-    def _erase_progress(self, busy: int) -> dict[str, Any]:
-        return {"busy": busy}
-
-    def _format_progress(self, busy: int) -> dict[str, Any]:
-        return {"busy": busy}

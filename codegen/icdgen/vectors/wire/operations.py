@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 from icdgen import codec
-from icdgen.protocol.facts import Facts, Operation
-
-Requests = Iterator[tuple[str, dict[str, Any]]]
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import Operation
+from icdgen.vectors.wire import Requests
 
 ACKNOWLEDGED = {"event": "done", "bytes": ""}
 LARGEST = 255  # id of a program

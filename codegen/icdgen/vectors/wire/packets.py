@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from random import Random
 from typing import Any
 
 from icdgen.protocol import can
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import CAN_KINDS, CAN_WITH_DATA
-
-Requests = Iterator[tuple[str, dict[str, Any]]]
+from icdgen.vectors.wire import Requests
 
 
 def requests(known: Facts, source: Random) -> Requests:

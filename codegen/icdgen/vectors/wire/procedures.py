@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from random import Random
 from typing import Any
 
 from icdgen.protocol import transfer
-from icdgen.protocol.facts import UART, Facts
+from icdgen.protocol.facts import Facts
 from icdgen.protocol.scripts import LONGEST, procedure_of
+from icdgen.protocol.sections import UART
+from icdgen.vectors.wire import Requests
 from icdgen.vectors.wire.node import FileNode
 from icdgen.vectors.wire.operations import neighbours
-
-Requests = Iterator[tuple[str, dict[str, Any]]]
 
 STEPS = 100_000  # more than any procedure takes
 

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from random import Random
-from typing import Any
 
 from icdgen.protocol import logs as log_files
 from icdgen.protocol import uart
 from icdgen.protocol.facts import Facts, need
+from icdgen.vectors.wire import Requests
 from icdgen.vectors.wire.logs import masks
-
-Requests = Iterator[tuple[str, dict[str, Any]]]
-
 
 CHECKED = b"123456789"  # what check values of CRCs are computed over
 

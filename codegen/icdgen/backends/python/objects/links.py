@@ -7,10 +7,11 @@ from collections.abc import Mapping
 from icdgen_runtime.wire import link as types
 from icdgen_runtime.wire.link import Link
 
-from icdgen.backends.python.links import Maker
+from icdgen.backends.python.links import call
 from icdgen.backends.python.literals import Call, Noted, Verbatim
 from icdgen.backends.python.objects.messages import ModelMessages
 from icdgen.describe import describe
+from icdgen.describe.links import LinkDescription
 from icdgen.icd.model import Icd
 from icdgen.protocol.facts import Facts
 
@@ -22,7 +23,7 @@ def link_of(icd: Icd, known: Facts) -> Link:
         "TELECOMMANDS": ModelMessages(node, "telecommand", known.telecommands, description),
         "TELEMETRY": ModelMessages(node, "telemetry", known.telemetry, description),
     }
-    made = _object(Maker(icd, known).link(), names)
+    made = _object(call(LinkDescription(description, known)), names)
     assert isinstance(made, Link)
     return made
 

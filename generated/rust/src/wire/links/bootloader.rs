@@ -2,12 +2,7 @@
 
 //! The link of node `bootloader`.
 
-#[rustfmt::skip]
-use crate::wire::link::{
-    Acknowledge, Can, CanPart, CanTypes, CrcForm, DownloadForm, ErasureForm, Extended, Files, Form,
-    Framing, HoleMapForm, Ids, IndexForm, Link, ListForm, MapMessage, OperationForm, PerBus, Piece,
-    Polled, Reason, Role, Settings, Span, Step, TimeForm, TimePart, UploadForm,
-};
+use crate::wire::link;
 
 /// Bytes that buffers need for the longest message of either direction, with its id and checksum.
 pub const LONGEST: usize = 28;
@@ -23,7 +18,7 @@ pub const LONGEST: usize = 28;
 ///
 /// Assumed (`message Run Selected Program`, `acknowledge`): As for Reset.
 #[rustfmt::skip]
-pub static LINK: Link = Link {
+pub static LINK: link::Link = link::Link {
     node: "bootloader",
     nodes: &[
         "bootloader",
@@ -34,74 +29,74 @@ pub static LINK: Link = Link {
     longest: 23,
     longest_data: 22,
     little: true,
-    telecommand_ids: Ids { first: 0, last: 127 },
-    telemetry_ids: Ids { first: 128, last: 255 },
+    telecommand_ids: link::Ids { first: 0, last: 127 },
+    telemetry_ids: link::Ids { first: 128, last: 255 },
     telecommands: &[
-        Form { id: 1, length: 1, acknowledged: false, repeatable: false },
-        Form { id: 2, length: 6, acknowledged: true, repeatable: true },
-        Form { id: 3, length: 1, acknowledged: true, repeatable: true },
-        Form { id: 4, length: 0, acknowledged: true, repeatable: false },
-        Form { id: 5, length: 0, acknowledged: true, repeatable: false },
-        Form { id: 6, length: 0, acknowledged: true, repeatable: false },
-        Form { id: 7, length: 0, acknowledged: true, repeatable: false },
-        Form { id: 8, length: 2, acknowledged: true, repeatable: true },
-        Form { id: 9, length: 2, acknowledged: true, repeatable: true },
-        Form { id: 33, length: 1, acknowledged: true, repeatable: false },
-        Form { id: 100, length: 1, acknowledged: true, repeatable: false },
-        Form { id: 101, length: 0, acknowledged: false, repeatable: false },
-        Form { id: 102, length: 1, acknowledged: true, repeatable: false },
-        Form { id: 103, length: 2, acknowledged: true, repeatable: false },
-        Form { id: 108, length: 3, acknowledged: true, repeatable: false },
-        Form { id: 112, length: 8, acknowledged: true, repeatable: false },
-        Form { id: 113, length: 0, acknowledged: true, repeatable: false },
-        Form { id: 114, length: 2, acknowledged: true, repeatable: false },
-        Form { id: 115, length: 22, acknowledged: false, repeatable: false },
-        Form { id: 116, length: 7, acknowledged: true, repeatable: false },
-        Form { id: 117, length: 0, acknowledged: true, repeatable: false },
-        Form { id: 118, length: 0, acknowledged: true, repeatable: false },
-        Form { id: 119, length: 2, acknowledged: true, repeatable: false },
-        Form { id: 120, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 121, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 122, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 123, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 124, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 125, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 126, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 127, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 1, length: 1, acknowledged: false, repeatable: false },
+        link::Form { id: 2, length: 6, acknowledged: true, repeatable: true },
+        link::Form { id: 3, length: 1, acknowledged: true, repeatable: true },
+        link::Form { id: 4, length: 0, acknowledged: true, repeatable: false },
+        link::Form { id: 5, length: 0, acknowledged: true, repeatable: false },
+        link::Form { id: 6, length: 0, acknowledged: true, repeatable: false },
+        link::Form { id: 7, length: 0, acknowledged: true, repeatable: false },
+        link::Form { id: 8, length: 2, acknowledged: true, repeatable: true },
+        link::Form { id: 9, length: 2, acknowledged: true, repeatable: true },
+        link::Form { id: 33, length: 1, acknowledged: true, repeatable: false },
+        link::Form { id: 100, length: 1, acknowledged: true, repeatable: false },
+        link::Form { id: 101, length: 0, acknowledged: false, repeatable: false },
+        link::Form { id: 102, length: 1, acknowledged: true, repeatable: false },
+        link::Form { id: 103, length: 2, acknowledged: true, repeatable: false },
+        link::Form { id: 108, length: 3, acknowledged: true, repeatable: false },
+        link::Form { id: 112, length: 8, acknowledged: true, repeatable: false },
+        link::Form { id: 113, length: 0, acknowledged: true, repeatable: false },
+        link::Form { id: 114, length: 2, acknowledged: true, repeatable: false },
+        link::Form { id: 115, length: 22, acknowledged: false, repeatable: false },
+        link::Form { id: 116, length: 7, acknowledged: true, repeatable: false },
+        link::Form { id: 117, length: 0, acknowledged: true, repeatable: false },
+        link::Form { id: 118, length: 0, acknowledged: true, repeatable: false },
+        link::Form { id: 119, length: 2, acknowledged: true, repeatable: false },
+        link::Form { id: 120, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 121, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 122, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 123, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 124, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 125, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 126, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 127, length: 16, acknowledged: true, repeatable: true },
     ],
     telemetry: &[
-        Form { id: 128, length: 8, acknowledged: true, repeatable: false },
-        Form { id: 129, length: 6, acknowledged: true, repeatable: false },
-        Form { id: 130, length: 2, acknowledged: true, repeatable: false },
-        Form { id: 131, length: 1, acknowledged: true, repeatable: true },
-        Form { id: 132, length: 6, acknowledged: true, repeatable: false },
-        Form { id: 134, length: 2, acknowledged: true, repeatable: true },
-        Form { id: 140, length: 6, acknowledged: true, repeatable: true },
-        Form { id: 141, length: 6, acknowledged: true, repeatable: false },
-        Form { id: 142, length: 6, acknowledged: true, repeatable: false },
-        Form { id: 143, length: 6, acknowledged: true, repeatable: false },
-        Form { id: 144, length: 6, acknowledged: true, repeatable: false },
-        Form { id: 145, length: 2, acknowledged: true, repeatable: true },
-        Form { id: 232, length: 8, acknowledged: true, repeatable: false },
-        Form { id: 233, length: 1, acknowledged: true, repeatable: false },
-        Form { id: 234, length: 1, acknowledged: true, repeatable: false },
-        Form { id: 240, length: 4, acknowledged: true, repeatable: false },
-        Form { id: 241, length: 22, acknowledged: true, repeatable: false },
-        Form { id: 242, length: 5, acknowledged: true, repeatable: false },
-        Form { id: 243, length: 12, acknowledged: true, repeatable: false },
-        Form { id: 244, length: 1, acknowledged: true, repeatable: false },
-        Form { id: 245, length: 1, acknowledged: true, repeatable: false },
-        Form { id: 246, length: 2, acknowledged: true, repeatable: false },
-        Form { id: 247, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 248, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 249, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 250, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 251, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 252, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 253, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 254, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 128, length: 8, acknowledged: true, repeatable: false },
+        link::Form { id: 129, length: 6, acknowledged: true, repeatable: false },
+        link::Form { id: 130, length: 2, acknowledged: true, repeatable: false },
+        link::Form { id: 131, length: 1, acknowledged: true, repeatable: true },
+        link::Form { id: 132, length: 6, acknowledged: true, repeatable: false },
+        link::Form { id: 134, length: 2, acknowledged: true, repeatable: true },
+        link::Form { id: 140, length: 6, acknowledged: true, repeatable: true },
+        link::Form { id: 141, length: 6, acknowledged: true, repeatable: false },
+        link::Form { id: 142, length: 6, acknowledged: true, repeatable: false },
+        link::Form { id: 143, length: 6, acknowledged: true, repeatable: false },
+        link::Form { id: 144, length: 6, acknowledged: true, repeatable: false },
+        link::Form { id: 145, length: 2, acknowledged: true, repeatable: true },
+        link::Form { id: 232, length: 8, acknowledged: true, repeatable: false },
+        link::Form { id: 233, length: 1, acknowledged: true, repeatable: false },
+        link::Form { id: 234, length: 1, acknowledged: true, repeatable: false },
+        link::Form { id: 240, length: 4, acknowledged: true, repeatable: false },
+        link::Form { id: 241, length: 22, acknowledged: true, repeatable: false },
+        link::Form { id: 242, length: 5, acknowledged: true, repeatable: false },
+        link::Form { id: 243, length: 12, acknowledged: true, repeatable: false },
+        link::Form { id: 244, length: 1, acknowledged: true, repeatable: false },
+        link::Form { id: 245, length: 1, acknowledged: true, repeatable: false },
+        link::Form { id: 246, length: 2, acknowledged: true, repeatable: false },
+        link::Form { id: 247, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 248, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 249, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 250, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 251, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 252, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 253, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 254, length: 16, acknowledged: true, repeatable: true },
     ],
-    client: Settings {
+    client: link::Settings {
         // Assumed. No time is given. The longest message takes 90 ms on the UART.
         reply_timeout_ms: 1_000,
         // Assumed. Nothing is said about trying again.
@@ -112,13 +107,13 @@ pub static LINK: Link = Link {
         poll_timeout_ms: 5_000,
     },
     errors: &[
-        (0, Reason::NoError),
-        (1, Reason::UnknownId),
-        (2, Reason::Length),
-        (3, Reason::Parameter),
-        (4, Reason::Checksum),
+        (0, link::Reason::NoError),
+        (1, link::Reason::UnknownId),
+        (2, link::Reason::Length),
+        (3, link::Reason::Parameter),
+        (4, link::Reason::Checksum),
     ],
-    framing: Some(Framing {
+    framing: Some(link::Framing {
         escape: 0x1f,
         start: 0x7f,
         end: 0xff,
@@ -131,27 +126,27 @@ pub static LINK: Link = Link {
     }),
     // Assumed. Two bytes are announced, the last being the error. That the first is the id of the
     // telecommand, and that no other id heads the message, stood in a figure.
-    acknowledge: Some(Acknowledge {
+    acknowledge: Some(link::Acknowledge {
         length: 2,
         id_at: 0,
         error_at: 1,
     }),
     i2c_address: Some(87),
-    polled: Some(Polled {
+    polled: Some(link::Polled {
         frame: 240,
-        id: &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }],
-        processed: &[Piece { byte: 1, shift: 0, bits: 1, at: 0 }],
-        error: &[Piece { byte: 2, shift: 0, bits: 8, at: 0 }],
-        parameter: &[Piece { byte: 3, shift: 0, bits: 8, at: 0 }],
+        id: &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }],
+        processed: &[link::Piece { byte: 1, shift: 0, bits: 1, at: 0 }],
+        error: &[link::Piece { byte: 2, shift: 0, bits: 8, at: 0 }],
+        parameter: &[link::Piece { byte: 3, shift: 0, bits: 8, at: 0 }],
     }),
-    can: Some(Can {
+    can: Some(link::Can {
         node_address: 0x01,
         data_bytes: 8,
-        kind: CanPart { bits: 5, shift: 24 },
-        id: CanPart { bits: 8, shift: 16 },
-        source: CanPart { bits: 8, shift: 8 },
-        destination: CanPart { bits: 8, shift: 0 },
-        types: CanTypes {
+        kind: link::CanPart { bits: 5, shift: 24 },
+        id: link::CanPart { bits: 8, shift: 16 },
+        source: link::CanPart { bits: 8, shift: 8 },
+        destination: link::CanPart { bits: 8, shift: 0 },
+        types: link::CanTypes {
             telecommand: Some(1),
             acknowledge: Some(2),
             refusal: Some(3),
@@ -159,7 +154,7 @@ pub static LINK: Link = Link {
             reply: Some(5),
             request_refusal: Some(6),
         },
-        extended: Some(Extended {
+        extended: Some(link::Extended {
             data_bytes: 7,
             left_at: 7,
             left_in_last: 0,
@@ -170,7 +165,7 @@ pub static LINK: Link = Link {
             fill: 0x00,
             // Assumed. No time-out between packets is given.
             packet_timeout_ms: 1_000,
-            types: CanTypes {
+            types: link::CanTypes {
                 telecommand: Some(7),
                 acknowledge: None,
                 refusal: None,
@@ -181,7 +176,7 @@ pub static LINK: Link = Link {
         }),
     }),
     checksum: None,
-    crc16: Some(CrcForm {
+    crc16: Some(link::CrcForm {
         width: 16,
         polynomial: 0x1021,
         init: 0x0000,
@@ -193,25 +188,25 @@ pub static LINK: Link = Link {
     mask: None,
     log_file: None,
     log_message: None,
-    time: Some(TimeForm {
-        year: TimePart { at: 25, bits: 7, factor: 1, offset: 1_980 },
-        month: TimePart { at: 21, bits: 4, factor: 1, offset: 0 },
-        day: TimePart { at: 16, bits: 5, factor: 1, offset: 0 },
-        hour: TimePart { at: 11, bits: 5, factor: 1, offset: 0 },
-        minute: TimePart { at: 5, bits: 6, factor: 1, offset: 0 },
-        second: TimePart { at: 0, bits: 5, factor: 2, offset: 0 },
+    time: Some(link::TimeForm {
+        year: link::TimePart { at: 25, bits: 7, factor: 1, offset: 1_980 },
+        month: link::TimePart { at: 21, bits: 4, factor: 1, offset: 0 },
+        day: link::TimePart { at: 16, bits: 5, factor: 1, offset: 0 },
+        hour: link::TimePart { at: 11, bits: 5, factor: 1, offset: 0 },
+        minute: link::TimePart { at: 5, bits: 6, factor: 1, offset: 0 },
+        second: link::TimePart { at: 0, bits: 5, factor: 2, offset: 0 },
     }),
-    index: Some(IndexForm {
+    index: Some(link::IndexForm {
         entry_bytes: 37,
         file_type: Some(15),
-        kind: Span { at: 0, bytes: 1 },
-        counter: Span { at: 1, bytes: 1 },
-        checksum: Span { at: 2, bytes: 2 },
-        size: Span { at: 4, bytes: 4 },
-        time: Span { at: 8, bytes: 4 },
-        meta: Span { at: 12, bytes: 25 },
+        kind: link::Span { at: 0, bytes: 1 },
+        counter: link::Span { at: 1, bytes: 1 },
+        checksum: link::Span { at: 2, bytes: 2 },
+        size: link::Span { at: 4, bytes: 4 },
+        time: link::Span { at: 8, bytes: 4 },
+        meta: link::Span { at: 12, bytes: 25 },
     }),
-    files: Some(Files {
+    files: Some(link::Files {
         packet_bytes: 20,
         counter_bytes: 2,
         // Assumed. Where the count begins is not said. Bit 0 of the hole map is the first packet.
@@ -220,7 +215,7 @@ pub static LINK: Link = Link {
         fill: 0xff,
         block_packets: 1_024,
         block_bytes: 20_480,
-        packet_ids: PerBus {
+        packet_ids: link::PerBus {
             uart: Some(119),
             // Assumed. That the reads are headed by the id of the frame with the packet's format is
             // not said.
@@ -229,7 +224,7 @@ pub static LINK: Link = Link {
             // on I2C.
             can: Some(241),
         },
-        hole_map: Some(HoleMapForm {
+        hole_map: Some(link::HoleMapForm {
             bytes: 128,
             message_bytes: 16,
             msb0: false,
@@ -238,39 +233,39 @@ pub static LINK: Link = Link {
             // received, nothing is sent for them; from the node they are ignored.
             beyond_end: true,
             messages: &[
-                MapMessage { set_id: 120, get_id: 247, length: 16, piece: Span { at: 0, bytes: 16 } },
-                MapMessage { set_id: 121, get_id: 248, length: 16, piece: Span { at: 0, bytes: 16 } },
-                MapMessage { set_id: 122, get_id: 249, length: 16, piece: Span { at: 0, bytes: 16 } },
-                MapMessage { set_id: 123, get_id: 250, length: 16, piece: Span { at: 0, bytes: 16 } },
-                MapMessage { set_id: 124, get_id: 251, length: 16, piece: Span { at: 0, bytes: 16 } },
-                MapMessage { set_id: 125, get_id: 252, length: 16, piece: Span { at: 0, bytes: 16 } },
-                MapMessage { set_id: 126, get_id: 253, length: 16, piece: Span { at: 0, bytes: 16 } },
-                MapMessage { set_id: 127, get_id: 254, length: 16, piece: Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 120, get_id: 247, length: 16, piece: link::Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 121, get_id: 248, length: 16, piece: link::Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 122, get_id: 249, length: 16, piece: link::Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 123, get_id: 250, length: 16, piece: link::Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 124, get_id: 251, length: 16, piece: link::Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 125, get_id: 252, length: 16, piece: link::Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 126, get_id: 253, length: 16, piece: link::Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 127, get_id: 254, length: 16, piece: link::Span { at: 0, bytes: 16 } },
             ],
         }),
-        list: Some(ListForm {
-            reset: Step {
+        list: Some(link::ListForm {
+            reset: link::Step {
                 id: 118,
                 fresh: &[],
                 places: &[],
                 payload: None,
             },
-            advance: Step {
+            advance: link::Step {
                 id: 113,
                 fresh: &[],
                 places: &[],
                 payload: None,
             },
-            information: Step {
+            information: link::Step {
                 id: 243,
                 fresh: &[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
                 places: &[
-                    (Role::Busy, &[Piece { byte: 0, shift: 4, bits: 1, at: 0 }]),
-                    (Role::Type, &[Piece { byte: 0, shift: 0, bits: 4, at: 0 }]),
-                    (Role::Counter, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
-                    (Role::Size, &[Piece { byte: 2, shift: 0, bits: 8, at: 0 }, Piece { byte: 3, shift: 0, bits: 8, at: 8 }, Piece { byte: 4, shift: 0, bits: 8, at: 16 }, Piece { byte: 5, shift: 0, bits: 8, at: 24 }]),
-                    (Role::Time, &[Piece { byte: 6, shift: 0, bits: 8, at: 0 }, Piece { byte: 7, shift: 0, bits: 8, at: 8 }, Piece { byte: 8, shift: 0, bits: 8, at: 16 }, Piece { byte: 9, shift: 0, bits: 8, at: 24 }]),
-                    (Role::Checksum, &[Piece { byte: 10, shift: 0, bits: 8, at: 0 }, Piece { byte: 11, shift: 0, bits: 8, at: 8 }]),
+                    (link::Role::Busy, &[link::Piece { byte: 0, shift: 4, bits: 1, at: 0 }]),
+                    (link::Role::Type, &[link::Piece { byte: 0, shift: 0, bits: 4, at: 0 }]),
+                    (link::Role::Counter, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::Size, &[link::Piece { byte: 2, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 3, shift: 0, bits: 8, at: 8 }, link::Piece { byte: 4, shift: 0, bits: 8, at: 16 }, link::Piece { byte: 5, shift: 0, bits: 8, at: 24 }]),
+                    (link::Role::Time, &[link::Piece { byte: 6, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 7, shift: 0, bits: 8, at: 8 }, link::Piece { byte: 8, shift: 0, bits: 8, at: 16 }, link::Piece { byte: 9, shift: 0, bits: 8, at: 24 }]),
+                    (link::Role::Checksum, &[link::Piece { byte: 10, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 11, shift: 0, bits: 8, at: 8 }]),
                 ],
                 payload: None,
             },
@@ -279,35 +274,35 @@ pub static LINK: Link = Link {
             // Assumed. No time is given. The checksum of a large file has to be computed meanwhile.
             timeout_ms: 10_000,
         }),
-        download: Some(DownloadForm {
-            load: Step {
+        download: Some(link::DownloadForm {
+            load: link::Step {
                 id: 112,
                 fresh: &[0, 0, 0, 0, 0, 0, 0, 0],
                 places: &[
-                    (Role::Type, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (Role::Counter, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
-                    (Role::Offset, &[Piece { byte: 2, shift: 0, bits: 8, at: 0 }, Piece { byte: 3, shift: 0, bits: 8, at: 8 }, Piece { byte: 4, shift: 0, bits: 8, at: 16 }, Piece { byte: 5, shift: 0, bits: 8, at: 24 }]),
-                    (Role::Length, &[Piece { byte: 6, shift: 0, bits: 8, at: 0 }, Piece { byte: 7, shift: 0, bits: 8, at: 8 }]),
+                    (link::Role::Type, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::Counter, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::Offset, &[link::Piece { byte: 2, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 3, shift: 0, bits: 8, at: 8 }, link::Piece { byte: 4, shift: 0, bits: 8, at: 16 }, link::Piece { byte: 5, shift: 0, bits: 8, at: 24 }]),
+                    (link::Role::Length, &[link::Piece { byte: 6, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 7, shift: 0, bits: 8, at: 8 }]),
                 ],
                 payload: None,
             },
-            ready: Step {
+            ready: link::Step {
                 id: 242,
                 fresh: &[0, 0, 0, 0, 0],
                 places: &[
-                    (Role::Ready, &[Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
-                    (Role::Error, &[Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
-                    (Role::Checksum, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }, Piece { byte: 2, shift: 0, bits: 8, at: 8 }]),
-                    (Role::Length, &[Piece { byte: 3, shift: 0, bits: 8, at: 0 }, Piece { byte: 4, shift: 0, bits: 8, at: 8 }]),
+                    (link::Role::Ready, &[link::Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
+                    (link::Role::Error, &[link::Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
+                    (link::Role::Checksum, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 2, shift: 0, bits: 8, at: 8 }]),
+                    (link::Role::Length, &[link::Piece { byte: 3, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 4, shift: 0, bits: 8, at: 8 }]),
                 ],
                 payload: None,
             },
-            burst: Step {
+            burst: link::Step {
                 id: 119,
                 fresh: &[0, 0],
                 places: &[
-                    (Role::Length, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (Role::IgnoreHoleMap, &[Piece { byte: 1, shift: 0, bits: 1, at: 0 }]),
+                    (link::Role::Length, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::IgnoreHoleMap, &[link::Piece { byte: 1, shift: 0, bits: 1, at: 0 }]),
                 ],
                 payload: None,
             },
@@ -329,64 +324,64 @@ pub static LINK: Link = Link {
             // Assumed. Nothing is said about giving up.
             rounds: 32,
         }),
-        upload: Some(UploadForm {
-            initiate: Step {
+        upload: Some(link::UploadForm {
+            initiate: link::Step {
                 id: 114,
                 fresh: &[0, 0],
                 places: &[
-                    (Role::Destination, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (Role::BlockSize, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::Destination, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::BlockSize, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
                 ],
                 payload: None,
             },
-            initiated: Step {
+            initiated: link::Step {
                 id: 244,
                 fresh: &[0],
                 places: &[
-                    (Role::Busy, &[Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
+                    (link::Role::Busy, &[link::Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
                 ],
                 payload: None,
             },
-            begin: Step {
+            begin: link::Step {
                 id: 117,
                 fresh: &[],
                 places: &[],
                 payload: None,
             },
-            packet: Step {
+            packet: link::Step {
                 id: 115,
                 fresh: &[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
                 places: &[
-                    (Role::Number, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }, Piece { byte: 1, shift: 0, bits: 8, at: 8 }]),
+                    (link::Role::Number, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 1, shift: 0, bits: 8, at: 8 }]),
                 ],
-                payload: Some(Span { at: 2, bytes: 20 }),
+                payload: Some(link::Span { at: 2, bytes: 20 }),
             },
-            checksum: Step {
+            checksum: link::Step {
                 id: 246,
                 fresh: &[0, 0],
                 places: &[
-                    (Role::Checksum, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }, Piece { byte: 1, shift: 0, bits: 8, at: 8 }]),
+                    (link::Role::Checksum, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 1, shift: 0, bits: 8, at: 8 }]),
                 ],
                 payload: None,
             },
             // Assumed. The procedure ends with the checksum and does not name the telecommand that
             // commits the block.
-            finalize: Step {
+            finalize: link::Step {
                 id: 116,
                 fresh: &[0, 0, 0, 0, 0, 0, 0],
                 places: &[
-                    (Role::Destination, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (Role::Offset, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }, Piece { byte: 2, shift: 0, bits: 8, at: 8 }, Piece { byte: 3, shift: 0, bits: 8, at: 16 }, Piece { byte: 4, shift: 0, bits: 8, at: 24 }]),
-                    (Role::Length, &[Piece { byte: 5, shift: 0, bits: 8, at: 0 }, Piece { byte: 6, shift: 0, bits: 8, at: 8 }]),
+                    (link::Role::Destination, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::Offset, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 2, shift: 0, bits: 8, at: 8 }, link::Piece { byte: 3, shift: 0, bits: 8, at: 16 }, link::Piece { byte: 4, shift: 0, bits: 8, at: 24 }]),
+                    (link::Role::Length, &[link::Piece { byte: 5, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 6, shift: 0, bits: 8, at: 8 }]),
                 ],
                 payload: None,
             },
-            finalized: Step {
+            finalized: link::Step {
                 id: 245,
                 fresh: &[0],
                 places: &[
-                    (Role::Busy, &[Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
-                    (Role::Error, &[Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
+                    (link::Role::Busy, &[link::Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
+                    (link::Role::Error, &[link::Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
                 ],
                 payload: None,
             },
@@ -402,32 +397,24 @@ pub static LINK: Link = Link {
             // Assumed. Nothing is said about giving up.
             rounds: 32,
             destination_bytes: Some(524_288),
-            destinations: &[
-                3,
-                4,
-                5,
-                6,
-                7,
-                8,
-                9,
-            ],
+            destinations: &[3, 4, 5, 6, 7, 8, 9],
         }),
-        erase: Some(ErasureForm {
-            request: Step {
+        erase: Some(link::ErasureForm {
+            request: link::Step {
                 id: 108,
                 fresh: &[0, 0, 0],
                 places: &[
-                    (Role::Type, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (Role::Counter, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
-                    (Role::All, &[Piece { byte: 2, shift: 0, bits: 1, at: 0 }]),
+                    (link::Role::Type, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::Counter, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::All, &[link::Piece { byte: 2, shift: 0, bits: 1, at: 0 }]),
                 ],
                 payload: None,
             },
-            progress: Step {
+            progress: link::Step {
                 id: 234,
                 fresh: &[0],
                 places: &[
-                    (Role::Busy, &[Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
+                    (link::Role::Busy, &[link::Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
                 ],
                 payload: None,
             },
@@ -436,18 +423,18 @@ pub static LINK: Link = Link {
             // Assumed. No time is given.
             timeout_ms: 60_000,
         }),
-        format: Some(ErasureForm {
-            request: Step {
+        format: Some(link::ErasureForm {
+            request: link::Step {
                 id: 33,
                 fresh: &[90],
                 places: &[],
                 payload: None,
             },
-            progress: Step {
+            progress: link::Step {
                 id: 234,
                 fresh: &[0],
                 places: &[
-                    (Role::Busy, &[Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
+                    (link::Role::Busy, &[link::Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
                 ],
                 payload: None,
             },
@@ -457,21 +444,21 @@ pub static LINK: Link = Link {
             timeout_ms: 60_000,
         }),
     }),
-    program_copy: Some(OperationForm {
-        request: Step {
+    program_copy: Some(link::OperationForm {
+        request: link::Step {
             id: 103,
             fresh: &[0, 0],
             places: &[
-                (Role::Program, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+                (link::Role::Program, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
             ],
             payload: None,
         },
-        progress: Step {
+        progress: link::Step {
             id: 233,
             fresh: &[0],
             places: &[
-                (Role::Busy, &[Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
-                (Role::Error, &[Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
+                (link::Role::Busy, &[link::Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
+                (link::Role::Error, &[link::Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
             ],
             payload: None,
         },
@@ -482,33 +469,25 @@ pub static LINK: Link = Link {
         timeout_ms: 10_000,
         // Assumed. A copy is described from external flash only. What the other programs of the
         // enumeration would do is not said.
-        programs: &[
-            3,
-            4,
-            5,
-            6,
-            7,
-            8,
-            9,
-        ],
+        programs: &[3, 4, 5, 6, 7, 8, 9],
     }),
-    program_information: Some(OperationForm {
-        request: Step {
+    program_information: Some(link::OperationForm {
+        request: link::Step {
             id: 102,
             fresh: &[0],
             places: &[
-                (Role::Program, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+                (link::Role::Program, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
             ],
             payload: None,
         },
-        progress: Step {
+        progress: link::Step {
             id: 232,
             fresh: &[0, 0, 0, 0, 0, 0, 0, 0],
             places: &[
-                (Role::Program, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                (Role::Busy, &[Piece { byte: 1, shift: 0, bits: 1, at: 0 }]),
-                (Role::Size, &[Piece { byte: 2, shift: 0, bits: 8, at: 0 }, Piece { byte: 3, shift: 0, bits: 8, at: 8 }, Piece { byte: 4, shift: 0, bits: 8, at: 16 }, Piece { byte: 5, shift: 0, bits: 8, at: 24 }]),
-                (Role::Checksum, &[Piece { byte: 6, shift: 0, bits: 8, at: 0 }, Piece { byte: 7, shift: 0, bits: 8, at: 8 }]),
+                (link::Role::Program, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+                (link::Role::Busy, &[link::Piece { byte: 1, shift: 0, bits: 1, at: 0 }]),
+                (link::Role::Size, &[link::Piece { byte: 2, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 3, shift: 0, bits: 8, at: 8 }, link::Piece { byte: 4, shift: 0, bits: 8, at: 16 }, link::Piece { byte: 5, shift: 0, bits: 8, at: 24 }]),
+                (link::Role::Checksum, &[link::Piece { byte: 6, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 7, shift: 0, bits: 8, at: 8 }]),
             ],
             payload: None,
         },
@@ -517,12 +496,12 @@ pub static LINK: Link = Link {
         timeout_ms: 2_000,
         programs: &[],
     }),
-    identification: Some(Step {
+    identification: Some(link::Step {
         id: 128,
         fresh: &[0, 0, 0, 0, 0, 0, 0, 0],
         places: &[
-            (Role::NodeType, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-            (Role::InterfaceVersion, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
+            (link::Role::NodeType, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+            (link::Role::InterfaceVersion, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
         ],
         payload: None,
     }),

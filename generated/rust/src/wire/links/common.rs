@@ -2,12 +2,7 @@
 
 //! The link of node `common`.
 
-#[rustfmt::skip]
-use crate::wire::link::{
-    Acknowledge, Can, CanPart, CanTypes, CrcForm, DownloadForm, ErasureForm, Extended, Files, Form,
-    Framing, HoleMapForm, Ids, IndexForm, Link, ListForm, MapMessage, PerBus, Piece, Polled, Reason,
-    Role, Settings, Span, Step, TimeForm, TimePart,
-};
+use crate::wire::link;
 
 /// Bytes that buffers need for the longest message of either direction, with its id and checksum.
 pub const LONGEST: usize = 28;
@@ -33,7 +28,7 @@ pub const LONGEST: usize = 28;
 /// Assumed (`message Reset`, `acknowledge`): Whether the acknowledge comes before the restart is
 /// not said. None is waited for, and one that comes is accepted.
 #[rustfmt::skip]
-pub static LINK: Link = Link {
+pub static LINK: link::Link = link::Link {
     node: "common",
     nodes: &[
         "common",
@@ -43,66 +38,66 @@ pub static LINK: Link = Link {
     longest: 23,
     longest_data: 22,
     little: true,
-    telecommand_ids: Ids { first: 0, last: 127 },
-    telemetry_ids: Ids { first: 128, last: 255 },
+    telecommand_ids: link::Ids { first: 0, last: 127 },
+    telemetry_ids: link::Ids { first: 128, last: 255 },
     telecommands: &[
-        Form { id: 1, length: 1, acknowledged: false, repeatable: false },
-        Form { id: 2, length: 6, acknowledged: true, repeatable: true },
-        Form { id: 3, length: 1, acknowledged: true, repeatable: true },
-        Form { id: 4, length: 0, acknowledged: true, repeatable: false },
-        Form { id: 5, length: 0, acknowledged: true, repeatable: false },
-        Form { id: 6, length: 0, acknowledged: true, repeatable: false },
-        Form { id: 8, length: 2, acknowledged: true, repeatable: true },
-        Form { id: 9, length: 2, acknowledged: true, repeatable: true },
-        Form { id: 33, length: 1, acknowledged: true, repeatable: false },
-        Form { id: 108, length: 3, acknowledged: true, repeatable: false },
-        Form { id: 112, length: 8, acknowledged: true, repeatable: false },
-        Form { id: 113, length: 0, acknowledged: true, repeatable: false },
-        Form { id: 114, length: 2, acknowledged: true, repeatable: false },
-        Form { id: 115, length: 22, acknowledged: false, repeatable: false },
-        Form { id: 116, length: 7, acknowledged: true, repeatable: false },
-        Form { id: 117, length: 0, acknowledged: true, repeatable: false },
-        Form { id: 118, length: 0, acknowledged: true, repeatable: false },
-        Form { id: 119, length: 2, acknowledged: true, repeatable: false },
-        Form { id: 120, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 121, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 122, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 123, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 124, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 125, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 126, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 127, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 1, length: 1, acknowledged: false, repeatable: false },
+        link::Form { id: 2, length: 6, acknowledged: true, repeatable: true },
+        link::Form { id: 3, length: 1, acknowledged: true, repeatable: true },
+        link::Form { id: 4, length: 0, acknowledged: true, repeatable: false },
+        link::Form { id: 5, length: 0, acknowledged: true, repeatable: false },
+        link::Form { id: 6, length: 0, acknowledged: true, repeatable: false },
+        link::Form { id: 8, length: 2, acknowledged: true, repeatable: true },
+        link::Form { id: 9, length: 2, acknowledged: true, repeatable: true },
+        link::Form { id: 33, length: 1, acknowledged: true, repeatable: false },
+        link::Form { id: 108, length: 3, acknowledged: true, repeatable: false },
+        link::Form { id: 112, length: 8, acknowledged: true, repeatable: false },
+        link::Form { id: 113, length: 0, acknowledged: true, repeatable: false },
+        link::Form { id: 114, length: 2, acknowledged: true, repeatable: false },
+        link::Form { id: 115, length: 22, acknowledged: false, repeatable: false },
+        link::Form { id: 116, length: 7, acknowledged: true, repeatable: false },
+        link::Form { id: 117, length: 0, acknowledged: true, repeatable: false },
+        link::Form { id: 118, length: 0, acknowledged: true, repeatable: false },
+        link::Form { id: 119, length: 2, acknowledged: true, repeatable: false },
+        link::Form { id: 120, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 121, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 122, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 123, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 124, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 125, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 126, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 127, length: 16, acknowledged: true, repeatable: true },
     ],
     telemetry: &[
-        Form { id: 128, length: 8, acknowledged: true, repeatable: false },
-        Form { id: 129, length: 6, acknowledged: true, repeatable: false },
-        Form { id: 130, length: 2, acknowledged: true, repeatable: false },
-        Form { id: 131, length: 1, acknowledged: true, repeatable: true },
-        Form { id: 134, length: 2, acknowledged: true, repeatable: true },
-        Form { id: 140, length: 6, acknowledged: true, repeatable: true },
-        Form { id: 141, length: 6, acknowledged: true, repeatable: false },
-        Form { id: 142, length: 6, acknowledged: true, repeatable: false },
-        Form { id: 143, length: 6, acknowledged: true, repeatable: false },
-        Form { id: 144, length: 6, acknowledged: true, repeatable: false },
-        Form { id: 145, length: 2, acknowledged: true, repeatable: true },
-        Form { id: 234, length: 1, acknowledged: true, repeatable: false },
-        Form { id: 240, length: 4, acknowledged: true, repeatable: false },
-        Form { id: 241, length: 22, acknowledged: true, repeatable: false },
-        Form { id: 242, length: 5, acknowledged: true, repeatable: false },
-        Form { id: 243, length: 12, acknowledged: true, repeatable: false },
-        Form { id: 244, length: 1, acknowledged: true, repeatable: false },
-        Form { id: 245, length: 1, acknowledged: true, repeatable: false },
-        Form { id: 246, length: 2, acknowledged: true, repeatable: false },
-        Form { id: 247, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 248, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 249, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 250, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 251, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 252, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 253, length: 16, acknowledged: true, repeatable: true },
-        Form { id: 254, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 128, length: 8, acknowledged: true, repeatable: false },
+        link::Form { id: 129, length: 6, acknowledged: true, repeatable: false },
+        link::Form { id: 130, length: 2, acknowledged: true, repeatable: false },
+        link::Form { id: 131, length: 1, acknowledged: true, repeatable: true },
+        link::Form { id: 134, length: 2, acknowledged: true, repeatable: true },
+        link::Form { id: 140, length: 6, acknowledged: true, repeatable: true },
+        link::Form { id: 141, length: 6, acknowledged: true, repeatable: false },
+        link::Form { id: 142, length: 6, acknowledged: true, repeatable: false },
+        link::Form { id: 143, length: 6, acknowledged: true, repeatable: false },
+        link::Form { id: 144, length: 6, acknowledged: true, repeatable: false },
+        link::Form { id: 145, length: 2, acknowledged: true, repeatable: true },
+        link::Form { id: 234, length: 1, acknowledged: true, repeatable: false },
+        link::Form { id: 240, length: 4, acknowledged: true, repeatable: false },
+        link::Form { id: 241, length: 22, acknowledged: true, repeatable: false },
+        link::Form { id: 242, length: 5, acknowledged: true, repeatable: false },
+        link::Form { id: 243, length: 12, acknowledged: true, repeatable: false },
+        link::Form { id: 244, length: 1, acknowledged: true, repeatable: false },
+        link::Form { id: 245, length: 1, acknowledged: true, repeatable: false },
+        link::Form { id: 246, length: 2, acknowledged: true, repeatable: false },
+        link::Form { id: 247, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 248, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 249, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 250, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 251, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 252, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 253, length: 16, acknowledged: true, repeatable: true },
+        link::Form { id: 254, length: 16, acknowledged: true, repeatable: true },
     ],
-    client: Settings {
+    client: link::Settings {
         // Assumed. No time is given. The longest message takes 90 ms on the UART.
         reply_timeout_ms: 1_000,
         // Assumed. Nothing is said about trying again.
@@ -113,13 +108,13 @@ pub static LINK: Link = Link {
         poll_timeout_ms: 5_000,
     },
     errors: &[
-        (0, Reason::NoError),
-        (1, Reason::UnknownId),
-        (2, Reason::Length),
-        (3, Reason::Parameter),
-        (4, Reason::Checksum),
+        (0, link::Reason::NoError),
+        (1, link::Reason::UnknownId),
+        (2, link::Reason::Length),
+        (3, link::Reason::Parameter),
+        (4, link::Reason::Checksum),
     ],
-    framing: Some(Framing {
+    framing: Some(link::Framing {
         escape: 0x1f,
         start: 0x7f,
         end: 0xff,
@@ -132,27 +127,27 @@ pub static LINK: Link = Link {
     }),
     // Assumed. Two bytes are announced, the last being the error. That the first is the id of the
     // telecommand, and that no other id heads the message, stood in a figure.
-    acknowledge: Some(Acknowledge {
+    acknowledge: Some(link::Acknowledge {
         length: 2,
         id_at: 0,
         error_at: 1,
     }),
     i2c_address: Some(87),
-    polled: Some(Polled {
+    polled: Some(link::Polled {
         frame: 240,
-        id: &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }],
-        processed: &[Piece { byte: 1, shift: 0, bits: 1, at: 0 }],
-        error: &[Piece { byte: 2, shift: 0, bits: 8, at: 0 }],
-        parameter: &[Piece { byte: 3, shift: 0, bits: 8, at: 0 }],
+        id: &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }],
+        processed: &[link::Piece { byte: 1, shift: 0, bits: 1, at: 0 }],
+        error: &[link::Piece { byte: 2, shift: 0, bits: 8, at: 0 }],
+        parameter: &[link::Piece { byte: 3, shift: 0, bits: 8, at: 0 }],
     }),
-    can: Some(Can {
+    can: Some(link::Can {
         node_address: 0x01,
         data_bytes: 8,
-        kind: CanPart { bits: 5, shift: 24 },
-        id: CanPart { bits: 8, shift: 16 },
-        source: CanPart { bits: 8, shift: 8 },
-        destination: CanPart { bits: 8, shift: 0 },
-        types: CanTypes {
+        kind: link::CanPart { bits: 5, shift: 24 },
+        id: link::CanPart { bits: 8, shift: 16 },
+        source: link::CanPart { bits: 8, shift: 8 },
+        destination: link::CanPart { bits: 8, shift: 0 },
+        types: link::CanTypes {
             telecommand: Some(1),
             acknowledge: Some(2),
             refusal: Some(3),
@@ -160,7 +155,7 @@ pub static LINK: Link = Link {
             reply: Some(5),
             request_refusal: Some(6),
         },
-        extended: Some(Extended {
+        extended: Some(link::Extended {
             data_bytes: 7,
             left_at: 7,
             left_in_last: 0,
@@ -171,7 +166,7 @@ pub static LINK: Link = Link {
             fill: 0x00,
             // Assumed. No time-out between packets is given.
             packet_timeout_ms: 1_000,
-            types: CanTypes {
+            types: link::CanTypes {
                 telecommand: Some(7),
                 acknowledge: None,
                 refusal: None,
@@ -182,7 +177,7 @@ pub static LINK: Link = Link {
         }),
     }),
     checksum: None,
-    crc16: Some(CrcForm {
+    crc16: Some(link::CrcForm {
         width: 16,
         polynomial: 0x1021,
         init: 0x0000,
@@ -194,25 +189,25 @@ pub static LINK: Link = Link {
     mask: None,
     log_file: None,
     log_message: None,
-    time: Some(TimeForm {
-        year: TimePart { at: 25, bits: 7, factor: 1, offset: 1_980 },
-        month: TimePart { at: 21, bits: 4, factor: 1, offset: 0 },
-        day: TimePart { at: 16, bits: 5, factor: 1, offset: 0 },
-        hour: TimePart { at: 11, bits: 5, factor: 1, offset: 0 },
-        minute: TimePart { at: 5, bits: 6, factor: 1, offset: 0 },
-        second: TimePart { at: 0, bits: 5, factor: 2, offset: 0 },
+    time: Some(link::TimeForm {
+        year: link::TimePart { at: 25, bits: 7, factor: 1, offset: 1_980 },
+        month: link::TimePart { at: 21, bits: 4, factor: 1, offset: 0 },
+        day: link::TimePart { at: 16, bits: 5, factor: 1, offset: 0 },
+        hour: link::TimePart { at: 11, bits: 5, factor: 1, offset: 0 },
+        minute: link::TimePart { at: 5, bits: 6, factor: 1, offset: 0 },
+        second: link::TimePart { at: 0, bits: 5, factor: 2, offset: 0 },
     }),
-    index: Some(IndexForm {
+    index: Some(link::IndexForm {
         entry_bytes: 37,
         file_type: Some(15),
-        kind: Span { at: 0, bytes: 1 },
-        counter: Span { at: 1, bytes: 1 },
-        checksum: Span { at: 2, bytes: 2 },
-        size: Span { at: 4, bytes: 4 },
-        time: Span { at: 8, bytes: 4 },
-        meta: Span { at: 12, bytes: 25 },
+        kind: link::Span { at: 0, bytes: 1 },
+        counter: link::Span { at: 1, bytes: 1 },
+        checksum: link::Span { at: 2, bytes: 2 },
+        size: link::Span { at: 4, bytes: 4 },
+        time: link::Span { at: 8, bytes: 4 },
+        meta: link::Span { at: 12, bytes: 25 },
     }),
-    files: Some(Files {
+    files: Some(link::Files {
         packet_bytes: 20,
         counter_bytes: 2,
         // Assumed. Where the count begins is not said. Bit 0 of the hole map is the first packet.
@@ -221,7 +216,7 @@ pub static LINK: Link = Link {
         fill: 0xff,
         block_packets: 1_024,
         block_bytes: 20_480,
-        packet_ids: PerBus {
+        packet_ids: link::PerBus {
             uart: Some(119),
             // Assumed. That the reads are headed by the id of the frame with the packet's format is
             // not said.
@@ -230,7 +225,7 @@ pub static LINK: Link = Link {
             // on I2C.
             can: Some(241),
         },
-        hole_map: Some(HoleMapForm {
+        hole_map: Some(link::HoleMapForm {
             bytes: 128,
             message_bytes: 16,
             msb0: false,
@@ -239,39 +234,39 @@ pub static LINK: Link = Link {
             // received, nothing is sent for them; from the node they are ignored.
             beyond_end: true,
             messages: &[
-                MapMessage { set_id: 120, get_id: 247, length: 16, piece: Span { at: 0, bytes: 16 } },
-                MapMessage { set_id: 121, get_id: 248, length: 16, piece: Span { at: 0, bytes: 16 } },
-                MapMessage { set_id: 122, get_id: 249, length: 16, piece: Span { at: 0, bytes: 16 } },
-                MapMessage { set_id: 123, get_id: 250, length: 16, piece: Span { at: 0, bytes: 16 } },
-                MapMessage { set_id: 124, get_id: 251, length: 16, piece: Span { at: 0, bytes: 16 } },
-                MapMessage { set_id: 125, get_id: 252, length: 16, piece: Span { at: 0, bytes: 16 } },
-                MapMessage { set_id: 126, get_id: 253, length: 16, piece: Span { at: 0, bytes: 16 } },
-                MapMessage { set_id: 127, get_id: 254, length: 16, piece: Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 120, get_id: 247, length: 16, piece: link::Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 121, get_id: 248, length: 16, piece: link::Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 122, get_id: 249, length: 16, piece: link::Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 123, get_id: 250, length: 16, piece: link::Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 124, get_id: 251, length: 16, piece: link::Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 125, get_id: 252, length: 16, piece: link::Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 126, get_id: 253, length: 16, piece: link::Span { at: 0, bytes: 16 } },
+                link::MapMessage { set_id: 127, get_id: 254, length: 16, piece: link::Span { at: 0, bytes: 16 } },
             ],
         }),
-        list: Some(ListForm {
-            reset: Step {
+        list: Some(link::ListForm {
+            reset: link::Step {
                 id: 118,
                 fresh: &[],
                 places: &[],
                 payload: None,
             },
-            advance: Step {
+            advance: link::Step {
                 id: 113,
                 fresh: &[],
                 places: &[],
                 payload: None,
             },
-            information: Step {
+            information: link::Step {
                 id: 243,
                 fresh: &[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
                 places: &[
-                    (Role::Busy, &[Piece { byte: 0, shift: 4, bits: 1, at: 0 }]),
-                    (Role::Type, &[Piece { byte: 0, shift: 0, bits: 4, at: 0 }]),
-                    (Role::Counter, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
-                    (Role::Size, &[Piece { byte: 2, shift: 0, bits: 8, at: 0 }, Piece { byte: 3, shift: 0, bits: 8, at: 8 }, Piece { byte: 4, shift: 0, bits: 8, at: 16 }, Piece { byte: 5, shift: 0, bits: 8, at: 24 }]),
-                    (Role::Time, &[Piece { byte: 6, shift: 0, bits: 8, at: 0 }, Piece { byte: 7, shift: 0, bits: 8, at: 8 }, Piece { byte: 8, shift: 0, bits: 8, at: 16 }, Piece { byte: 9, shift: 0, bits: 8, at: 24 }]),
-                    (Role::Checksum, &[Piece { byte: 10, shift: 0, bits: 8, at: 0 }, Piece { byte: 11, shift: 0, bits: 8, at: 8 }]),
+                    (link::Role::Busy, &[link::Piece { byte: 0, shift: 4, bits: 1, at: 0 }]),
+                    (link::Role::Type, &[link::Piece { byte: 0, shift: 0, bits: 4, at: 0 }]),
+                    (link::Role::Counter, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::Size, &[link::Piece { byte: 2, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 3, shift: 0, bits: 8, at: 8 }, link::Piece { byte: 4, shift: 0, bits: 8, at: 16 }, link::Piece { byte: 5, shift: 0, bits: 8, at: 24 }]),
+                    (link::Role::Time, &[link::Piece { byte: 6, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 7, shift: 0, bits: 8, at: 8 }, link::Piece { byte: 8, shift: 0, bits: 8, at: 16 }, link::Piece { byte: 9, shift: 0, bits: 8, at: 24 }]),
+                    (link::Role::Checksum, &[link::Piece { byte: 10, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 11, shift: 0, bits: 8, at: 8 }]),
                 ],
                 payload: None,
             },
@@ -280,35 +275,35 @@ pub static LINK: Link = Link {
             // Assumed. No time is given. The checksum of a large file has to be computed meanwhile.
             timeout_ms: 10_000,
         }),
-        download: Some(DownloadForm {
-            load: Step {
+        download: Some(link::DownloadForm {
+            load: link::Step {
                 id: 112,
                 fresh: &[0, 0, 0, 0, 0, 0, 0, 0],
                 places: &[
-                    (Role::Type, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (Role::Counter, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
-                    (Role::Offset, &[Piece { byte: 2, shift: 0, bits: 8, at: 0 }, Piece { byte: 3, shift: 0, bits: 8, at: 8 }, Piece { byte: 4, shift: 0, bits: 8, at: 16 }, Piece { byte: 5, shift: 0, bits: 8, at: 24 }]),
-                    (Role::Length, &[Piece { byte: 6, shift: 0, bits: 8, at: 0 }, Piece { byte: 7, shift: 0, bits: 8, at: 8 }]),
+                    (link::Role::Type, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::Counter, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::Offset, &[link::Piece { byte: 2, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 3, shift: 0, bits: 8, at: 8 }, link::Piece { byte: 4, shift: 0, bits: 8, at: 16 }, link::Piece { byte: 5, shift: 0, bits: 8, at: 24 }]),
+                    (link::Role::Length, &[link::Piece { byte: 6, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 7, shift: 0, bits: 8, at: 8 }]),
                 ],
                 payload: None,
             },
-            ready: Step {
+            ready: link::Step {
                 id: 242,
                 fresh: &[0, 0, 0, 0, 0],
                 places: &[
-                    (Role::Ready, &[Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
-                    (Role::Error, &[Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
-                    (Role::Checksum, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }, Piece { byte: 2, shift: 0, bits: 8, at: 8 }]),
-                    (Role::Length, &[Piece { byte: 3, shift: 0, bits: 8, at: 0 }, Piece { byte: 4, shift: 0, bits: 8, at: 8 }]),
+                    (link::Role::Ready, &[link::Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
+                    (link::Role::Error, &[link::Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
+                    (link::Role::Checksum, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 2, shift: 0, bits: 8, at: 8 }]),
+                    (link::Role::Length, &[link::Piece { byte: 3, shift: 0, bits: 8, at: 0 }, link::Piece { byte: 4, shift: 0, bits: 8, at: 8 }]),
                 ],
                 payload: None,
             },
-            burst: Step {
+            burst: link::Step {
                 id: 119,
                 fresh: &[0, 0],
                 places: &[
-                    (Role::Length, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (Role::IgnoreHoleMap, &[Piece { byte: 1, shift: 0, bits: 1, at: 0 }]),
+                    (link::Role::Length, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::IgnoreHoleMap, &[link::Piece { byte: 1, shift: 0, bits: 1, at: 0 }]),
                 ],
                 payload: None,
             },
@@ -331,22 +326,22 @@ pub static LINK: Link = Link {
             rounds: 32,
         }),
         upload: None,
-        erase: Some(ErasureForm {
-            request: Step {
+        erase: Some(link::ErasureForm {
+            request: link::Step {
                 id: 108,
                 fresh: &[0, 0, 0],
                 places: &[
-                    (Role::Type, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-                    (Role::Counter, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
-                    (Role::All, &[Piece { byte: 2, shift: 0, bits: 1, at: 0 }]),
+                    (link::Role::Type, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::Counter, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
+                    (link::Role::All, &[link::Piece { byte: 2, shift: 0, bits: 1, at: 0 }]),
                 ],
                 payload: None,
             },
-            progress: Step {
+            progress: link::Step {
                 id: 234,
                 fresh: &[0],
                 places: &[
-                    (Role::Busy, &[Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
+                    (link::Role::Busy, &[link::Piece { byte: 0, shift: 1, bits: 1, at: 0 }]),
                 ],
                 payload: None,
             },
@@ -355,18 +350,18 @@ pub static LINK: Link = Link {
             // Assumed. No time is given.
             timeout_ms: 60_000,
         }),
-        format: Some(ErasureForm {
-            request: Step {
+        format: Some(link::ErasureForm {
+            request: link::Step {
                 id: 33,
                 fresh: &[90],
                 places: &[],
                 payload: None,
             },
-            progress: Step {
+            progress: link::Step {
                 id: 234,
                 fresh: &[0],
                 places: &[
-                    (Role::Busy, &[Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
+                    (link::Role::Busy, &[link::Piece { byte: 0, shift: 0, bits: 1, at: 0 }]),
                 ],
                 payload: None,
             },
@@ -378,12 +373,12 @@ pub static LINK: Link = Link {
     }),
     program_copy: None,
     program_information: None,
-    identification: Some(Step {
+    identification: Some(link::Step {
         id: 128,
         fresh: &[0, 0, 0, 0, 0, 0, 0, 0],
         places: &[
-            (Role::NodeType, &[Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
-            (Role::InterfaceVersion, &[Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
+            (link::Role::NodeType, &[link::Piece { byte: 0, shift: 0, bits: 8, at: 0 }]),
+            (link::Role::InterfaceVersion, &[link::Piece { byte: 1, shift: 0, bits: 8, at: 0 }]),
         ],
         payload: None,
     }),

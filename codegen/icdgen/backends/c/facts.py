@@ -1,0 +1,72 @@
+"""Declared facts of the protocol -> values of an initialiser."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from icdgen.protocol.declared import Fact, Kind
+from icdgen.protocol.sections import (
+    BUSES,
+    Acknowledge,
+    Can,
+    Checksum,
+    Crc,
+    Download,
+    Erasure,
+    Extended,
+    Files,
+    Framing,
+    HoleMap,
+    Index,
+    Listing,
+    LogFile,
+    LogMask,
+    LogMessage,
+    Operation,
+    Settings,
+    Upload,
+)
+
+MOST_SIGNED = 0x7FFF_FFFF
+TYPES: dict[type, str] = {
+    Settings: "icd_client_settings_t", Framing: "icd_framing_t", Acknowledge: "icd_acknowledge_t", Crc: "icd_crc_form_t",
+    Checksum: "icd_checksum_form_t", Can: "icd_can_form_t", Extended: "icd_can_extended_t", LogMask: "icd_log_mask_form_t",
+    LogFile: "icd_log_file_form_t", LogMessage: "icd_log_message_form_t", Index: "icd_index_form_t",
+    HoleMap: "icd_hole_map_form_t", Files: "icd_files_form_t", Listing: "icd_list_form_t", Download: "icd_download_form_t",
+    Upload: "icd_upload_form_t", Erasure: "icd_erase_form_t", Operation: "icd_operation_form_t",
+}  # fmt: skip
+
+
+def is_told_apart(fact: Fact) -> bool:
+    """Whether a member of its own says if an optional fact is known: neither -1 nor 0 can stand for unknown."""
+    return fact.is_optional and fact.least == 0 and fact.holds > MOST_SIGNED
+
+
+def boolean(value: bool) -> str:
+    return "true" if value else "false"
+
+
+def or_none(value: int | None) -> str:
+    """-1 for what there is not."""
+    return "-1" if value is None else str(value)
+
+
+def spelled(fact: Fact, value: Any) -> str:
+    """The value, before which stands whether it is known if the fact `is_told_apart`."""
+    if is_told_apart(fact):
+        return f"{boolean(value is not None)}, {_known(fact, value or 0)}"
+    if fact.is_optional and fact.least == 0:
+        return or_none(value)
+    return _known(fact, value or 0)
+
+
+def _known(fact: Fact, value: Any) -> str:
+    if fact.kind is Kind.FLAG:
+        return boolean(value)
+    if fact.kind is Kind.BUSES:
+        return f"{sum(1 << BUSES.index(bus) for bus in value or ())}u"
+    if fact.kind is Kind.SPAN:
+        return f"{{{value[0]}u, {value[1]}u}}"
+    if fact.kind is Kind.OCTET:
+        return f"{value:#04x}u"
+    return f"{value:#x}u" if fact.kind is Kind.CODE else f"{value}u"

@@ -1,0 +1,291 @@
+"""The link of a node: its protocol facts as tables of the wire layer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from icdgen.backends.c.facts import TYPES, boolean, or_none, spelled
+from icdgen.backends.c.text import comment, plain
+from icdgen.backends.lines import STEP, in_rows
+from icdgen.describe.links import CAN_PARTS, INDEX_PARTS, Assumptions, LinkDescription, SentMessage, StepDescription
+from icdgen.protocol.declared import Kind, facts_of
+from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Crc, Step
+
+_MOST_ID, _MOST_LENGTH = 0xFF, 0xFFFF
+_MOST_PACKETS = 256
+
+
+class Table(NamedTuple):
+    """A constant of the link."""
+
+    comment: str
+    type: str
+    name: str
+    rows: Sequence[str]
+
+
+class Row(NamedTuple):
+    """A value of an initialiser, and what it is."""
+
+    value: str
+    text: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.value}, /* {self.text} */" if self.text else f"{self.value},"
+
+
+def sizes(link: LinkDescription) -> list[tuple[str, int, str]]:
+    """Sizes of buffers: name, bytes, what it is."""
+    known = link.facts
+    rows = [("LONGEST", known.longest, "Bytes of the longest message of either direction, with id and checksum.")]
+    slot = 1 + link.joined_bytes if known.can else 0
+    if known.can:
+        rows.append(("CAN_SLOT_BYTES", slot, "Bytes that joining CAN packets takes for each sender at once."))
+    rows.append(("CLIENT_BYTES", known.longest_telecommand + max(slot, known.longest), "Bytes of a client's buffer."))
+    if known.log_file and known.mask:
+        most = max(known.mask.size + link.log_entry_bytes, known.log_file.header_bytes)
+        rows.append(("LOG_BYTES", most, "Bytes of a log reader's buffer."))
+    if known.files:
+        packets = known.packets_of(known.files.block_bytes)
+        rows.append(("BLOCK_BYTES", packets * known.files.packet_bytes, "Bytes of the largest block of a file."))
+        rows.append(("BLOCK_BITMAP_BYTES", -(-packets // 8), "Bytes of a bit for each packet of such a block."))
+    return rows
+
+
+def tables(link: LinkDescription) -> list[Table]:
+    """The tables of a node, in the order in which they are declared."""
+    return _Tables(link).all()
+
+
+class _Tables:
+    """Each method gives the expression that leads to the table that it declares."""
+
+    def __init__(self, link: LinkDescription) -> None:
+        self.link, self.known, self.assumed = link, link.facts, Assumptions(link.facts)
+        self.tables: list[Table] = []
+
+    def all(self) -> list[Table]:
+        """Those of the parts, then the link itself."""
+        link, known = self.link, self.known
+        telecommands, telemetry = _short(link.telecommands), _short(link.telemetry)
+        codes = link.error_codes
+        rows = [
+            Row(self.array("nodes", "char *const", (f'"{name}"' for name in known.owners))),
+            Row(f"{len(known.owners)}u", "how many"),
+            Row(boolean(known.little), "byte order: little"),
+            Row(boolean(known.node.bit_order == "msb0"), "bit 0 is the most significant one"),
+            Row(f"{known.telemetry_ids.first}u, {known.telemetry_ids.last}u", "ids of telemetry"),
+            Row(self.array("telecommands", "icd_message_t", map(self.telecommand, telecommands))),
+            Row(self.array("telemetry", "icd_message_t", (_message(one, "0u") for one in telemetry))),
+            Row(f"{len(telecommands)}u, {len(telemetry)}u", "how many"),
+            Row(
+                f"{known.longest_telecommand}u, {known.longest_reply}u, {known.longest}u",
+                "longest telecommand, reply, any",
+            ),
+            Row(f"{known.longest_data}u", "longest without id and checksum"),
+            Row(or_none(known.node.node_type), "node type"),
+            Row(or_none(known.node.interface_version), "interface version"),
+            Row(f"{{{self.values('client', known.client)}}}"),
+            Row(
+                self.array(
+                    "errors", "icd_error_code_t", (f"{{ICD_REASON_{key.upper()}, {code}u}}" for key, code in codes)
+                )
+            ),
+            Row(f"{len(codes)}u, {known.errors.get('none', 0)}u", "how many; no error"),
+            Row(self.part("framing", known.framing, "uart.framing")),
+            Row(self.part("acknowledge", known.acknowledge, "uart.acknowledge")),
+            Row(or_none(known.i2c_address), "I2C address"),
+            Row(self.named_step("polled", link.polled)),
+            Row(self.can()),
+            Row(self.checksum()),
+            Row(self.crc16()),
+            Row(self.log_mask()),
+            Row(self.part("log_file", known.log_file, "telemetry_log")),
+            Row(self.part("log_message", known.mask and known.log_message, "unsolicited_log")),
+            Row(self.time()),
+            Row(self.index()),
+            Row(self.hole_map()),
+            Row(self.files()),
+            *(Row(self.procedure(name), name) for name in PROCEDURES),
+            Row(self.part("program_copy", known.program_copy, "program_copy"), "program copy"),
+            Row(
+                self.part("program_information", known.program_information, "program_information"),
+                "program information",
+            ),
+            Row(self.named_step("identification", link.identification), "identification"),
+        ]
+        others = (f"{key}: {why}" for section, key, why in self.assumed.others() if not section.startswith("message "))
+        self.add("link", "icd_link_t", rows, map(plain, others))
+        return self.tables
+
+    def add(self, name: str, type: str, rows: Iterable[str | Row], assumed: Iterable[str] = ()) -> str:
+        """Declares a table; above it stands what is assumed in it."""
+        about = " ".join(f"Assumed {text}" for text in assumed)
+        self.tables.append(Table(comment([about], STEP) if about else "", type, name, list(map(str, rows))))
+        return f"&{name}"
+
+    def array(self, name: str, type: str, rows: Iterable[str | Row]) -> str:
+        """Declares an array, NULL if it is empty."""
+        found = [row if isinstance(row, Row) else Row(row) for row in rows]
+        return self.add(f"{name}[]", type, found).strip("&[]") if found else "NULL"
+
+    def numbers(self, name: str, type: str, numbers: Iterable[str], count: int) -> str:
+        """Declares an array of numbers, ``count`` a line; NULL if it is empty."""
+        rows = in_rows(numbers, count)
+        return self.add(f"{name}[]", type, rows).strip("&[]") if rows else "NULL"
+
+    def part(self, name: str, part: object, section: str, *made: Row) -> str:
+        """The table of a part: its facts, then the rows that code ``made``. NULL if there is no such part."""
+        if part is None:
+            return "NULL"
+        assumed = (plain(f"{key}: {why}") for key, why in self.assumed.of_section(section))
+        return self.add(name, TYPES[type(part)], [*self.facts(name, part), *made], assumed)
+
+    def facts(self, name: str, part: object) -> list[Row]:
+        """A row for each declared fact."""
+        rows = []
+        for fact in facts_of(part):
+            value, text = getattr(part, fact.name), fact.name
+            if isinstance(value, Step):
+                step = self.step(f"{name}_{fact.name}", self.link.step(value))
+                rows.append(Row(f"{{{step}}}", plain(value.message.name)))
+            elif fact.kind is Kind.ALLOWED:
+                allowed = self.numbers(f"{name}_{fact.name}", "uint8_t", (f"{number}u" for number in value), 16)
+                rows.append(Row(f"{allowed}, {len(value)}u", text))
+            else:
+                rows.append(Row(spelled(fact, value), f"{text} in ms" if fact.kind is Kind.TIME else text))
+        return rows
+
+    def values(self, name: str, part: object) -> str:
+        """The facts of a part as one row."""
+        return ", ".join(row.value for row in self.facts(name, part))
+
+    def step(self, name: str, step: StepDescription) -> str:
+        """The initialiser of a step without its braces; its places and its fresh frame are tables of their own."""
+        rows = [
+            Row(f"{{ICD_ROLE_{role.upper()}, {field.model.at}u, {field.model.bits}u}}", plain(field.model.name))
+            for role, field in step.places
+        ]
+        places = self.array(f"{name}_places", "icd_place_t", rows)
+        fresh = "NULL"
+        if any(step.fresh):
+            fresh = self.numbers(f"{name}_fresh", "uint8_t", (f"{byte:#04x}u" for byte in step.fresh), 16)
+        ids = f"{or_none(step.message.telecommand_id)}, {or_none(step.message.telemetry_id)}"
+        return f"{ids}, {step.message.length}u, {len(rows)}u, {places}, {fresh}"
+
+    def named_step(self, name: str, step: StepDescription | None) -> str:
+        """A step by itself."""
+        return self.add(name, "icd_step_t", [Row(self.step(name, step))]) if step else "NULL"
+
+    def telecommand(self, one: SentMessage) -> Row:
+        """The row of a telecommand, with what is assumed of it."""
+        message = one.message
+        flags = ["ICD_ACKNOWLEDGED"] if message.acknowledge else []
+        flags += ["ICD_EXPECTS_RESET"] if message.expects_reset else []
+        flags += ["ICD_SETTING"] if one.is_setting else []
+        row = _message(one, " | ".join(flags) or "0u")
+        why = self.assumed.why(f"message {message.name}", "acknowledge")
+        about = comment([f"Assumed acknowledge: {plain(why)}"], STEP * 2).lstrip().replace("/**", "/*", 1)
+        return row._replace(value=f"{about}\n{STEP * 2}{row.value}") if why else row
+
+    def can(self) -> str:
+        can = self.link.can
+        form = can and can.extended
+        if can is None or (form and self.link.joined_bytes > _MOST_PACKETS * form.data_bytes):
+            return "NULL"
+        types, extended_types = (
+            ", ".join(str(known.get(kind, -1)) for kind in CAN_KINDS) for known in (can.types, can.extended_types)
+        )
+        return self.part(
+            "can",
+            can,
+            "can",
+            *(
+                Row(f"{{{can.parts[role].bits}u, {can.parts[role].shift}u}}", f"{role}: bits, shift")
+                for role in CAN_PARTS
+            ),
+            Row(f"{{{types}}}", "types"),
+            Row(f"{{{extended_types}}}", "types of messages of several packets"),
+            Row(self.part("can_extended", form, "can.extended"), "messages of several packets"),
+        )
+
+    def crc(self, name: str, one: Crc) -> str:
+        """The initialiser of a CRC without its braces; the table for whole bytes is one of its own."""
+        table = "NULL"
+        if one.width <= 16:
+            entries = (f"{value:#0{2 + -(-one.width // 4)}x}u" for value in crc_table(one))
+            table = self.numbers(f"{name}_table", "uint16_t", entries, 8)
+        return f"{self.values(name, one)}, {table}"
+
+    def checksum(self) -> str:
+        one = self.known.checksum
+        return self.part("checksum", one, "crc8", Row(f"{{{self.crc('crc8', one.crc)}}}", "CRC")) if one else "NULL"
+
+    def crc16(self) -> str:
+        one = self.known.crc16
+        return self.add("crc16", TYPES[Crc], [Row(self.crc("crc16", one))]) if one else "NULL"
+
+    def log_mask(self) -> str:
+        mask = self.known.mask
+        if mask is None:
+            return "NULL"
+        rows = []
+        for bit in range(mask.size * 8):
+            one = mask.bits.get(bit)
+            id, length = (one.id, one.length) if one else (None, mask.slot_bytes)
+            text = f"bit {bit}" + (f": {plain(one.name)}" if one and one.name else "")
+            rows.append(Row(f"{{{or_none(id)}, {length}u}}", text))
+        return self.part("log_mask", mask, "log_mask", Row(self.array("log_bits", "icd_log_bit_t", rows)))
+
+    def time(self) -> str:
+        rows = [Row(f"{{{one.at}u, {one.bits}u, {one.factor}u, {one.offset}u}}", name) for name, one in self.link.time]
+        return self.add("packed_time", "icd_time_form_t", rows) if rows else "NULL"
+
+    def index(self) -> str:
+        form = self.link.index
+        fields = [(name, form.fields[name]) for name in INDEX_PARTS] if form else []
+        rows = (Row(f"{{{one.at}u, {one.bytes}u}}", name) for name, one in fields)
+        return self.part("index_entry", form, "index_file", *rows)
+
+    def hole_map(self) -> str:
+        rows = []
+        for field in self.link.map_pieces:
+            message = field.message.model
+            ids = f"{or_none(message.telecommand_id)}, {or_none(message.telemetry_id)}"
+            rows.append(Row(f"{{{ids}, {message.length}u, {field.model.at // 8}u}}", plain(message.name)))
+        messages = self.array("hole_maps", "icd_hole_map_message_t", rows)
+        made = Row(f"{len(rows)}u, {messages}", "messages")
+        return self.part("hole_map", self.known.hole_map, "file_transfer.hole_map", made)
+
+    def files(self) -> str:
+        one = self.known.files
+        ids = ", ".join(or_none(one.packet_ids.get(bus)) for bus in BUSES) if one else ""
+        return self.part("files", one, "file_transfer", Row(f"{{{ids}}}", "ids of download packets"))
+
+    def procedure(self, name: str) -> str:
+        """A procedure of file transfer."""
+        files = self.known.files
+        return self.part(name, files and files.procedures.get(name), f"file_transfer.{name}")
+
+
+def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:
+    """Messages that can be told by an id of one byte."""
+    return [one for one in messages if one.id <= _MOST_ID and one.message.length <= _MOST_LENGTH]
+
+
+def _message(one: SentMessage, flags: str) -> Row:
+    return Row(f"{{{one.id}u, {flags}, {one.message.length}u}}", plain(one.message.name))
+
+
+def crc_table(one: Crc) -> list[int]:
+    """What each byte, first bit on top, makes of a register of zeros."""
+    top, mask = 1 << one.width - 1, (1 << one.width) - 1
+    table = []
+    for byte in range(256):
+        register = 0
+        for position in reversed(range(8)):
+            out = bool(register & top) != bool(byte >> position & 1)
+            register = register << 1 & mask ^ (one.polynomial if out else 0)
+        table.append(register)
+    return table

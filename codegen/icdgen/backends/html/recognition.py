@@ -1,0 +1,52 @@
+"""What pages need to know to recognise any frame: all messages with their ids, and how each node talks."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from icdgen.backends.html import wire
+from icdgen.backends.html.relations import Relations
+from icdgen.icd import wire_ids
+from icdgen.icd.model import Message, Node
+from icdgen.protocol import facts
+
+
+def index(relations: Relations) -> dict[str, Any]:
+    """``messages`` as name, page, length and owner; ``speakers`` with the number of the message of each id."""
+    messages = [message for node in relations.icd.nodes for message in node.messages]
+    numbers = {(message.node, message.name): number for number, message in enumerate(messages)}
+    return {
+        "messages": [[m.name, relations.links.message(m), m.length, m.node] for m in messages],
+        "speakers": [_speaker(relations, node, numbers) for node in relations.icd.nodes],
+    }
+
+
+def script(relations: Relations) -> str:
+    """The index as a script, since a page opened from a folder may not fetch anything else."""
+    return f'"use strict";\nglobalThis.icdgenFrameIndex = {json.dumps(index(relations), separators=(",", ":"))};\n'
+
+
+def _speaker(relations: Relations, node: Node, numbers: dict[tuple[str, str], int]) -> dict[str, Any]:
+    known = facts.of(relations.icd, node)
+
+    def ids(messages: dict[int, Message]) -> dict[str, int]:
+        return {str(id): numbers[one.node, one.name] for id, one in messages.items()}
+
+    found: dict[str, Any] = {
+        "node": node.name,
+        "title": node.title,
+        "telecommands": ids(known.telecommands),
+        "telemetry": ids(known.telemetry),
+        "id_bytes": wire_ids.size(node.id_bits),
+        "errors": {str(code): key.replace("_", " ") for key, code in known.errors.items()},
+    }
+    found |= wire.framing_facts(known)
+    if known.checksum and known.checksum.crc.width == 8:
+        found["crc"] = wire.crc_facts(known)
+    if known.can:
+        found["can"] = wire.can_facts(known.can)
+    if known.acknowledge:
+        form = known.acknowledge
+        found["acknowledge"] = [form.length, form.id_at, form.error_at]
+    return found

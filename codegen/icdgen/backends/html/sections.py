@@ -1,0 +1,80 @@
+"""The sections of a message: the messages that it repeats, or of a long one shares that fit on a screen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from icdgen.backends.html.relations import Relations
+from icdgen.icd.model import Message
+
+_LONG = 16  # fields of a message that is shown in sections; four flags count as one field
+_SHARE = 10  # fields of a section that is no message of its own
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """Bytes ``first`` to before ``end``; ``keys``: numbers of the fields, from 1; ``url``: the message that it repeats."""
+
+    title: str
+    first: int
+    end: int
+    keys: list[int] = field(default_factory=list)
+    url: str = ""
+    open: bool = True
+
+    @property
+    def about(self) -> str:
+        """``bytes 0 to 5, 3 fields``"""
+        span = f"byte {self.first}" if self.end - self.first < 2 else f"bytes {self.first} to {self.end - 1}"
+        return f"{span}, {len(self.keys)} field{'' if len(self.keys) == 1 else 's'}"
+
+
+def bands(relations: Relations, message: Message) -> list[Section]:
+    """The messages that it repeats, and what is between them; none if it repeats none, or not in whole bytes one after another."""
+    parts = sorted(relations.contains.get((message.node, message.name), []), key=lambda part: part.at)
+    found: list[Section] = []
+    end = 0
+    for part in parts:
+        first = part.at // 8
+        if part.at % 8 or first < end or first + part.length > message.length:
+            return []
+        found += _between(message, end, first)
+        end = first + part.length
+        found.append(Section(part.place.text, first, end, _keys(message, first, end), part.place.url))
+    return _folded(message, found + _between(message, end, message.length)) if parts else []
+
+
+def shares(message: Message) -> list[Section]:
+    """The fields in their order, in sections where there are many."""
+    keys = list(range(1, len(message.fields) + 1))
+    if not _is_long(message):
+        return [Section("Fields", 0, message.length, keys)]
+    count = -(-len(keys) // _SHARE)
+    size = -(-len(keys) // count)
+    found = []
+    for start in range(0, len(keys), size):
+        some = keys[start : start + size]
+        fields = [message.fields[key - 1] for key in some]
+        first, end = min(one.at for one in fields) // 8, -(-max(one.at + one.bits for one in fields) // 8)
+        found.append(Section(f"Fields {some[0]} to {some[-1]}", first, end, some))
+    return _folded(message, found)
+
+
+def _folded(message: Message, found: list[Section]) -> list[Section]:
+    """Of a long message only the first section is open."""
+    if not _is_long(message):
+        return found
+    return [Section(s.title, s.first, s.end, s.keys, s.url, open=s is found[0]) for s in found]
+
+
+def _is_long(message: Message) -> bool:
+    return sum(1 if one.type != "bool" else 0.25 for one in message.fields) > _LONG
+
+
+def _between(message: Message, first: int, end: int) -> list[Section]:
+    title = f"Bytes {first} to {end - 1}" if end - first > 1 else f"Byte {first}"
+    return [Section(title, first, end, _keys(message, first, end))] if end > first else []
+
+
+def _keys(message: Message, first: int, end: int) -> list[int]:
+    return [key for key, one in enumerate(message.fields, 1) if 8 * first <= one.at < 8 * end]

@@ -1,0 +1,265 @@
+"""The link of a node: its protocol facts as the constant ``LINK`` of its module; and what the wire layer needs for all nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import NamedTuple
+
+from icdgen.backends.literals import Brackets, Item, written
+from icdgen.backends.rust.facts import member_name, type_name, value_of
+from icdgen.backends.rust.literals import Expression, flat, flat_rows, part, rows, some, spelled, struct
+from icdgen.backends.rust.text import doc, integer, prose, string
+from icdgen.describe import FieldDescription
+from icdgen.describe.comments import sentence
+from icdgen.describe.links import (
+    CAN_PARTS,
+    INDEX_PARTS,
+    Assumptions,
+    LinkDescription,
+    SentMessage,
+    StepDescription,
+)
+from icdgen.naming import camel
+from icdgen.protocol.declared import facts_of
+from icdgen.protocol.sections import BUSES, CAN_KINDS, PROCEDURES, Direction, Step
+
+_REASONS = {
+    "none": "NoError",
+    "unknown_id": "UnknownId",
+    "length": "Length",
+    "parameter": "Parameter",
+    "checksum": "Checksum",
+}
+_RENAMED = {"type": "kind", "channel": "id"}  # `type` is a keyword
+_ONLY_POLLED = frozenset({"id", "processed", "parameter"})  # roles that no procedure asks for
+_NUMBER_BITS = 32  # of what the wire layer handles
+
+
+class LinkValues(NamedTuple):
+    """What the template of a node's link is given."""
+
+    node: str
+    doc: str
+    literal: str
+    longest: str
+
+
+class Sizes(NamedTuple):
+    """What the buffers of the procedures hold, for every node."""
+
+    step: int
+    map: int
+    packets: int
+
+
+def sizes(links: Collection[LinkDescription]) -> Sizes:
+    """The most that any node needs."""
+    known = [link.facts for link in links]
+    return Sizes(
+        max((link.longest_step for link in links), default=1),
+        max((one.hole_map.bytes for one in known if one.hole_map), default=1),
+        max((one.files.block_packets for one in known if one.files), default=1),
+    )
+
+
+def values(link: LinkDescription) -> LinkValues:
+    """The link of a node."""
+    known, link_literal = link.facts, _Literal(link)
+    text = written(link_literal.link(), _note)
+    about = [f"The protocol of node `{known.node.name}`. What the manual leaves open is marked as assumed."]
+    for section, key, why in link_literal.assumed.others():
+        about.append(f"Assumed (`{section}`, `{key}`): {prose(sentence(why))}")
+    return LinkValues(known.node.name, doc(about), text, integer(longest(link)))
+
+
+def longest(link: LinkDescription) -> int:
+    """What every buffer of the wire layer needs: the longest message, all packets of one on CAN, an entry of a log."""
+    log = link.facts.log_file
+    header = log.header_bytes if log and link.facts.mask else 0
+    return max(link.facts.longest, link.joined_bytes, link.log_entry_bytes, header)
+
+
+def _note(why: str, indent: str) -> str:
+    return doc([f"Assumed. {prose(sentence(why))}"], indent, "//")
+
+
+class _Literal:
+    """The expression of one node's link."""
+
+    def __init__(self, link: LinkDescription) -> None:
+        self.description, self.facts, self.assumed = link, link.facts, Assumptions(link.facts)
+
+    def link(self) -> Brackets:
+        known, link = self.facts, self.description
+        codes = (f"({integer(code)}, link::Reason::{_REASONS[key]})" for key, code in link.error_codes)
+        return struct(
+            "Link",
+            part("node", string(known.node.name)),
+            part("nodes", rows(map(string, known.owners))),
+            part("node_type", some(known.node.node_type)),
+            part("interface_version", some(known.node.interface_version)),
+            part("longest", integer(known.longest)),
+            part("longest_data", integer(known.longest_data)),
+            part("little", spelled(known.little)),
+            part("telecommand_ids", _ids(known.telecommand_ids)),
+            part("telemetry_ids", _ids(known.telemetry_ids)),
+            part("telecommands", rows(map(_form, link.telecommands))),
+            part("telemetry", rows(map(_form, link.telemetry))),
+            part("client", self.struct(known.client, "client") or ""),
+            part("errors", rows(codes)),
+            part("framing", some(self.struct(known.framing, "uart.framing"))),
+            part(
+                "acknowledge",
+                some(self.struct(known.acknowledge, "uart.acknowledge")),
+                self.assumed.why("uart.acknowledge", "data"),
+            ),
+            part("i2c_address", some(known.i2c_address)),
+            part("polled", some(_polled(link.polled))),
+            part("can", some(self.can())),
+            part("checksum", some(self.checksum())),
+            part("crc16", some(self.struct(known.crc16, "crc16"))),
+            part("mask", some(self.mask())),
+            part("log_file", some(self.struct(known.log_file, "telemetry_log"))),
+            part(
+                "log_message",
+                some(self.struct(known.log_message, "unsolicited_log")),
+                self.assumed.why("unsolicited_log", "framed"),
+            ),
+            part("time", some(self.time())),
+            part("index", some(self.index())),
+            part("files", some(self.files())),
+            part("program_copy", some(self.struct(known.program_copy, "program_copy"))),
+            part("program_information", some(self.struct(known.program_information, "program_information"))),
+            part("identification", some(_step(link.identification, "telemetry"))),
+            part("boot_ms", some(known.boot_ms)),
+        )
+
+    def struct(self, one: object, section: str, *made: Item) -> Brackets | None:
+        """The facts of a part, and what code ``made`` beside them."""
+        if one is None:
+            return None
+        items = []
+        for fact in facts_of(one):
+            value = getattr(one, fact.name)
+            step = _step(self.description.step(value), fact.direction) if isinstance(value, Step) else None
+            items.append(part(member_name(fact), step or value_of(fact, one), self.assumed.why_fact(section, fact)))
+        return struct(type_name(type(one)), *items, *made)
+
+    def can(self) -> Brackets | None:
+        can = self.description.can
+        if can is None:
+            return None
+        parts = (
+            part(_RENAMED.get(role, role), flat("CanPart", bits=can.parts[role].bits, shift=can.parts[role].shift))
+            for role in CAN_PARTS
+        )
+        extended = self.struct(can.extended, "can.extended", part("types", _can_types(can.extended_types)))
+        return self.struct(can, "can", *parts, part("types", _can_types(can.types)), part("extended", some(extended)))
+
+    def checksum(self) -> Brackets | None:
+        form = self.facts.checksum
+        return self.struct(form, "crc8", part("crc", self.struct(form.crc, "crc8") or "")) if form else None
+
+    def mask(self) -> Brackets | None:
+        mask = self.facts.mask
+        if mask is None:
+            return None
+        bits = (
+            flat("LogBit", bit=bit, id=one.id, length=one.length, name=string(one.name or ""))
+            for bit, one in sorted(mask.bits.items())
+            if one.id is not None
+        )
+        return self.struct(mask, "log_mask", part("bits", rows(bits), self.assumed.why("log_mask", "unassigned_bits")))
+
+    def time(self) -> Brackets | None:
+        parts = [
+            part(name, flat("TimePart", at=one.at, bits=one.bits, factor=one.factor, offset=one.offset))
+            for name, one in self.description.time
+        ]
+        return struct("TimeForm", *parts) if parts else None
+
+    def index(self) -> Brackets | None:
+        form = self.description.index
+        fields = [(name, form.fields[name]) for name in INDEX_PARTS] if form else []
+        spans = (part(_RENAMED.get(name, name), flat("Span", at=one.at, bytes=one.bytes)) for name, one in fields)
+        return self.struct(form, "index_file", *spans)
+
+    def files(self) -> Brackets | None:
+        """File transfer, with the procedures that the ICD describes completely."""
+        form = self.facts.files
+        if form is None:
+            return None
+        ids = (
+            part(bus, some(form.packet_ids.get(bus)), self.assumed.why("file_transfer.download", bus)) for bus in BUSES
+        )
+        return self.struct(
+            form,
+            "file_transfer",
+            part("packet_ids", struct("PerBus", *ids)),
+            part("hole_map", some(self.hole_map())),
+            *(part(name, some(self.struct(form.procedures.get(name), f"file_transfer.{name}"))) for name in PROCEDURES),
+        )
+
+    def hole_map(self) -> Brackets | None:
+        messages = []
+        for field in self.description.map_pieces:
+            one = field.message.model
+            if one.telecommand_id is None or one.telemetry_id is None:
+                return None
+            ids = {"set_id": one.telecommand_id, "get_id": one.telemetry_id}
+            messages.append(flat("MapMessage", **ids, length=one.length, piece=_span(field)))
+        return self.struct(self.facts.hole_map, "file_transfer.hole_map", part("messages", rows(messages)))
+
+
+def _ids(ids: Direction) -> Brackets:
+    return flat("Ids", first=ids.first, last=ids.last)
+
+
+def _form(one: SentMessage) -> Brackets:
+    message = one.message
+    return flat("Form", id=one.id, length=message.length, acknowledged=message.acknowledge, repeatable=one.is_setting)
+
+
+def _can_types(types: dict[str, int]) -> Brackets:
+    return struct("CanTypes", *(part(name, some(types.get(name))) for name in CAN_KINDS))
+
+
+def _span(field: FieldDescription) -> Brackets:
+    """Where bytes stand."""
+    return flat("Span", at=field.model.at // 8, bytes=field.model.bits // 8)
+
+
+def _place(field: FieldDescription) -> Expression:
+    """Where a number stands."""
+    return flat_rows(flat("Piece", **one._asdict()) for one in field.pieces)
+
+
+def _polled(step: StepDescription | None) -> Brackets | None:
+    if step is None:
+        return None
+    return struct(
+        "Polled",
+        part("frame", integer(step.message.ids[0])),
+        *(part(one.role, _place(one.field)) for one in step.places),
+    )
+
+
+def _step(step: StepDescription | None, direction: str) -> Brackets | None:
+    """A message in a procedure; None if the node does not have it in that direction."""
+    id = step and (step.message.telecommand_id if direction == "telecommand" else step.message.telemetry_id)
+    if step is None or id is None:
+        return None
+    places, payload = [], None
+    for role, field in step.places:
+        if field.model.type == "bytes":
+            payload = _span(field)
+        elif role not in _ONLY_POLLED and field.model.bits <= _NUMBER_BITS:
+            name = Item(f"link::Role::{camel(tuple(role.split('_')))}")
+            places.append(Brackets("(", (name, Item(_place(field))), ")", True))
+    return struct(
+        "Step",
+        part("id", integer(id)),
+        part("fresh", flat_rows(map(str, step.fresh))),
+        part("places", rows(places)),
+        part("payload", some(payload)),
+    )

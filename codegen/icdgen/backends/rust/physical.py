@@ -1,0 +1,26 @@
+"""Getters of physical values."""
+
+from __future__ import annotations
+
+from icdgen.backends.rust.text import whole_double
+from icdgen.describe import FieldDescription
+
+
+def physical(field: FieldDescription) -> str:
+    """The physical value of a field with a scale.
+
+    In doubles where every step is exact in them, else through 128-bit integers of the support module.
+    """
+    assert field.steps is not None
+    if field.storage.bits > 32 or not field.steps.exact_in_doubles:
+        return f"{field.name.upper()}.physical(self.{field.name})"
+    p, c, q = field.steps.terms
+    raw = f"f64::from(self.{field.name})"
+    value = raw if abs(p) == 1 else f"{raw} * {whole_double(abs(p))}"
+    if p < 0:
+        value = f"{whole_double(c)} - {value}"  # so that a zero comes out positive, whatever the signs
+    elif c:
+        value = f"{value} {'+' if c > 0 else '-'} {whole_double(abs(c))}"
+    if q == 1:
+        return value
+    return f"{value if value == raw else f'({value})'} / {whole_double(q)}"

@@ -1,0 +1,21 @@
+#include "port.h"
+#include "sirocco.h"
+
+int main(int argc, char **argv)
+{
+    static icd_client_t client;
+    static uint8_t buffer[SIROCCO_CLIENT_BYTES], frame[SIROCCO_LONGEST];
+    sirocco_fan_state_t state;
+    icd_event_t end;
+    const int port = port_open("127.0.0.1", argc > 1 ? argv[1] : "4000");
+    icd_client_init(&client, sirocco_link(), ICD_BUS_UART, buffer, sizeof buffer);
+
+    ICD_REQUEST(&client, port_now(), SIROCCO_FAN_STATE);
+    end = port_ask(port, &client, frame, sizeof frame); /* sends, waits, asks again */
+    if (sirocco_fan_state_decode(&state, frame, end.length) != ICD_OK) {
+        return fprintf(stderr, "no reply\n"), 1;
+    }
+    printf("%.1f rpm, %.0f mA, bearing %.2f C\n", sirocco_fan_state_speed_rpm(&state),
+           sirocco_fan_state_current_ma(&state), sirocco_fan_state_bearing_temperature_c(&state));
+    return 0;
+}

@@ -1,0 +1,266 @@
+"use strict";
+/*
+ * What a frame is: node, message and direction are found, framing, ids and checksums come off, as `icdgen decode` does it.
+ *
+ * A reading is `{ what, message, node, title, url, id, data, checked, remarks }`, `what` being telecommand, telemetry, request,
+ * acknowledge, refusal, or configuration where nothing tells the direction.
+ */
+const icdgenRecognize = ((frames, pasted, stream, packets) => {
+  const OF_CAN = { telecommand: "telecommand", acknowledge: "acknowledge", refusal: "refusal", request: "request", reply: "telemetry", request_refusal: "refusal" };
+  const SENT = ["telecommand", "acknowledge", "refusal"];
+
+  /** Several messages are equally likely: `readings`. */
+  class Ambiguous extends Error {
+    constructor(text, readings) {
+      super(text);
+      this.readings = readings;
+    }
+  }
+
+  /** The readings of what was pasted. Throws an Error, or Ambiguous. */
+  function recognize(index, text) {
+    const lines = text.split(/\r\n|\r|\n/).filter((line) => line.trim());
+    const apart = lineByLine(index, lines);
+    if (apart.length && apart.every((one) => one.id !== null)) return apart;
+    try {
+      return readings(index, pasted.read(text));
+    } catch (error) {
+      if (apart.length) return apart;
+      throw error;
+    }
+  }
+
+  function lineByLine(index, lines) {
+    if (lines.length < 2) return [];
+    try {
+      const found = lines.map((line) => pasted.read(line));
+      if (found.some((one) => one.packets || one.form)) return [];
+      return found.flatMap((one) => readings(index, one));
+    } catch {
+      return [];
+    }
+  }
+
+  function readings(index, given) {
+    const talking = index.speakers;
+    let found;
+    if (given.packets && talking.some((speaker) => speaker.can)) {
+      found = onCan(index, talking.filter((speaker) => speaker.can), given.packets);
+    } else {
+      const data = given.packets ? Uint8Array.from(given.packets.flatMap((one) => [...one.data])) : given.data;
+      found = framed(index, talking, data);
+      if (!found.length) found = [bare(index, talking, data)];
+    }
+    return given.form ? found.map((one) => noted(one, `read as ${given.form}`)) : found;
+  }
+
+  // UART
+
+  function framed(index, talking, data) {
+    const forms = new Map(talking.filter((one) => one.framing).map((one) => [JSON.stringify([one.framing, one.plain_id, one.ignores_other]), one]));
+    for (const [form, first] of forms) {
+      const [escape, start] = first.framing;
+      const begins = (at) => data[at] === escape && data[at + 1] === start;
+      if (!data.some((_, at) => begins(at))) continue;
+      const { events, lost } = stream.decode(first, data);
+      const bodies = events.filter((one) => one.event === "message").map((one) => one.message);
+      if (!bodies.length) {
+        if (begins(0)) throw new Error(broken(events));
+        continue;
+      }
+      const same = talking.filter((one) => JSON.stringify([one.framing, one.plain_id, one.ignores_other]) === form);
+      const [found, wrong] = [[], []];
+      for (const body of bodies) {
+        try {
+          found.push(ofBody(index, same, body));
+        } catch (error) {
+          wrong.push(error);
+        }
+      }
+      if (!found.length) throw wrong[0];
+      const around = lost ? [`${lost} byte${lost === 1 ? "" : "s"} around the frame belong to none`] : [];
+      const errors = events.filter((one) => one.event !== "message").map((one) => `the stream has an error: ${one.event}`);
+      const left = wrong.map((error) => `another frame of the stream is left out: ${error.message}`);
+      return [noted(found[0], ...left, ...around, ...errors), ...found.slice(1)];
+    }
+    return [];
+  }
+
+  function broken(events) {
+    if (events.some((one) => one.event === "protocol error")) return "the framing is broken: the escape byte is followed by neither itself nor an end of message";
+    return events.length ? "the framing is empty" : "the framing begins, but the end of the message is missing";
+  }
+
+  function ofBody(index, talking, body) {
+    const found = byId(index, talking, body);
+    if (!found.length) throw whyNone(index, talking, body);
+    const one = decided(found, `a frame with id ${body[0]}`);
+    return { ...one, remarks: [`framing with id ${body[0]} removed`, ...one.remarks] };
+  }
+
+  // Without framing
+
+  function bare(index, talking, data) {
+    if (!data.length) throw new Error("there are no bytes");
+    const withId = byId(index, talking, data);
+    const plain = byLength(index, talking, data);
+    if (withId.length) {
+      const one = decided(withId, `${data.length} bytes that begin with the id ${withId[0].id}`);
+      const others = plain.filter((other) => other.key !== one.key);
+      return noted(one, `id ${one.id} removed`, ...(others.length ? [`without an id in front it could be ${named(others)}`] : []));
+    }
+    if (plain.length) return noted({ ...decided(plain, `${data.length} bytes without an id`), id: null }, "found by its length alone");
+    throw whyNone(index, talking, data);
+  }
+
+  function byId(index, talking, body) {
+    return eachOnce(talking.flatMap((speaker) => [...ofSpeaker(index, speaker, body)]));
+  }
+
+  function byLength(index, talking, data) {
+    const found = [];
+    for (const speaker of talking) {
+      for (const [what, ids] of directions(speaker)) {
+        for (const [id, number] of Object.entries(ids)) {
+          const read = withChecksum(index, speaker, what, Number(id), number, data);
+          if (read) found.push(read);
+        }
+      }
+    }
+    return eachOnce(found);
+  }
+
+  const directions = (speaker) => [["telecommand", speaker.telecommands], ["telemetry", speaker.telemetry]];
+
+  function* ofSpeaker(index, speaker, body) {
+    const apart = takenApart(speaker, body);
+    if (!apart) return;
+    const [id, data] = apart;
+    for (const [what, ids] of directions(speaker)) {
+      if (ids[id] === undefined) continue;
+      const read = withChecksum(index, speaker, what, id, ids[id], data);
+      if (read) yield read;
+      if (what === "telemetry" && !data.length && lengthOf(index, ids[id])) yield reading(index, speaker, "request", ids[id], id);
+    }
+    const [size, idAt, errorAt] = speaker.acknowledge ?? [];
+    if (body.length === size && speaker.telemetry[id] === undefined && speaker.telecommands[body[idAt]] !== undefined) {
+      const error = body[errorAt];
+      const told = `error ${error}${speaker.errors[error] ? ` (${speaker.errors[error]})` : ""}`;
+      yield noted(reading(index, speaker, "acknowledge", speaker.telecommands[body[idAt]], body[idAt]), told);
+    }
+  }
+
+  /** The id that bytes begin with, and the rest; null if there are too few. */
+  function takenApart(speaker, body) {
+    const size = speaker.id_bytes;
+    return body.length < size ? null : [body.slice(0, size).reduce((id, byte) => id * 256 + byte, 0), body.slice(size)];
+  }
+
+  const lengthOf = (index, number) => index.messages[number][2];
+
+  function reading(index, speaker, what, number, id, data = new Uint8Array(), remarks = [], checked = false) {
+    const [message, url, , owner] = index.messages[number];
+    return { what, message, node: speaker.node, title: speaker.title, url, id, data, checked, remarks, owner, key: `${what} ${url}` };
+  }
+
+  /** The message, if the bytes are as many as it has, or the right checksum follows them. */
+  function withChecksum(index, speaker, what, id, number, data) {
+    const length = lengthOf(index, number);
+    if (data.length === length) return reading(index, speaker, what, number, id, data);
+    const right = checksum(speaker, length, id, data);
+    if (right === undefined || right !== data[length]) return null;
+    return reading(index, speaker, what, number, id, data.slice(0, length), ["CRC is right"], true);
+  }
+
+  /** The byte that must follow the data of the message; undefined if there is none, or no room for it. */
+  function checksum(speaker, length, id, data) {
+    if (!speaker.crc || data.length !== length + 1) return undefined;
+    return frames.checksum(speaker.crc, id, data.slice(0, length));
+  }
+
+  // CAN
+
+  function onCan(index, able, given) {
+    if (!given.every((one) => one.extended)) throw new Error("a packet has an 11-bit identifier, those of the ICD have 29 bits");
+    const found = able.map((speaker) => {
+      const ids = (kind) => (SENT.includes(kind) ? speaker.telecommands : speaker.telemetry);
+      const joined = packets.join(speaker, given, (kind, id) => index.messages[ids(kind)[id]]?.[2]);
+      const known = joined.messages.filter(({ kind, id, data }) => {
+        const number = ids(kind)[id];
+        return number !== undefined && (!["telecommand", "reply"].includes(kind) || data.length === lengthOf(index, number));
+      });
+      const read = known.map(({ kind, id, source, destination, data }) =>
+        reading(index, speaker, OF_CAN[kind], ids(kind)[id], id, data, [`CAN, from address ${source} to ${destination}`]),
+      );
+      return { speaker, joined, read };
+    });
+    const most = Math.max(...found.map((one) => one.read.length));
+    if (!most) throw whyNoCan(index, found[0], given);
+    const complete = found.filter((one) => one.read.length === most);
+    const chosen = Array.from({ length: most }, (_, at) => {
+      const same = new Map(complete.map((one) => [one.read[at].key, one.read[at]]));
+      for (const one of complete) if (one.speaker.node === one.read[at].owner) same.set(one.read[at].key, one.read[at]);
+      return decided([...same.values()], `a CAN message with id ${complete[0].read[at].id}`);
+    });
+    const { messages, open, odd } = complete[0].joined;
+    const left = messages.length + open.length + odd - most;
+    return left ? [noted(chosen[0], `${left} of the CAN messages are left out: no message, or not complete`), ...chosen.slice(1)] : chosen;
+  }
+
+  function whyNoCan(index, { speaker, joined }, given) {
+    const [waiting] = joined.open;
+    if (waiting && !joined.messages.length) {
+      return new Error(`${waiting.count - waiting.pieces.size} of ${waiting.count} packets of the message with id ${waiting.id} are missing`);
+    }
+    const [told] = joined.messages;
+    if (told) return whyNone(index, [speaker], Uint8Array.from([told.id, ...told.data]));
+    return new Error(`the packet with identifier 0x${given[0].id.toString(16).toUpperCase().padStart(8, "0")} is none of ${speaker.title}`);
+  }
+
+  // Choosing
+
+  /** The most likely one: a right checksum is no accident, and who sends more than an acknowledge rarely looks like one. */
+  function decided(found, of) {
+    let likely = found.filter((one) => one.checked);
+    if (!likely.length) likely = found.filter((one) => one.what !== "acknowledge");
+    if (!likely.length) likely = found;
+    if (likely.length > 1) throw new Ambiguous(`${of} can be several messages`, likely);
+    const others = found.filter((one) => one.key !== likely[0].key);
+    return others.length ? noted(likely[0], `it can also be ${named(others)}`) : likely[0];
+  }
+
+  /** Of the same reading by several nodes the one with a checksum, else that of the node that declares the message. */
+  function eachOnce(found) {
+    const best = new Map();
+    const rank = (one) => 2 * Number(one.checked) + Number(one.node === one.owner);
+    for (const one of found) if (!best.has(one.key) || rank(one) > rank(best.get(one.key))) best.set(one.key, one);
+    return [...best.values()];
+  }
+
+  function whyNone(index, talking, body) {
+    const apart = talking.map((speaker) => [speaker, takenApart(speaker, body)]).filter(([, both]) => both);
+    const known = new Map(
+      apart.flatMap(([speaker, [id, data]]) =>
+        directions(speaker).filter(([, ids]) => ids[id] !== undefined).map(([what, ids]) => [`${what} ${ids[id]}`, { speaker, number: ids[id], id, data }]),
+      ),
+    );
+    if (!apart.length) return new Error("bytes are missing: not even the id is complete");
+    if (!known.size) {
+      const ids = new Set(apart.map(([, [id]]) => `${id} (0x${id.toString(16).toUpperCase().padStart(2, "0")})`));
+      return new Error(`no message has the id ${[...ids].join(" or ")}`);
+    }
+    for (const { speaker, number, id, data } of known.values()) {
+      const right = checksum(speaker, lengthOf(index, number), id, data);
+      if (right !== undefined) return new Error(`${index.messages[number][0]}: as CRC ${frames.hex([right])} would be right, not ${frames.hex(data.slice(-1))}`);
+    }
+    const told = [...known.values()].map(({ number }) => `${index.messages[number][0]} has ${lengthOf(index, number)} bytes`);
+    const [{ id, data }] = known.values();
+    return new Error(`${told.join(" or ")}, ${data.length} given after the id ${id}`);
+  }
+
+  const noted = (one, ...remarks) => ({ ...one, remarks: [...one.remarks, ...remarks] });
+  const named = (found) => found.slice(0, 3).map((one) => one.message).join(", or ") + (found.length > 3 ? `, or one of ${found.length - 3} others` : "");
+
+  return { recognize, Ambiguous };
+})(...(typeof icdgenFrames === "undefined" ? ["frames", "pasted", "stream", "packets"].map((name) => require(`./${name}.js`)) : [icdgenFrames, icdgenPasted, icdgenStream, icdgenPackets]));
+if (typeof module !== "undefined") module.exports = icdgenRecognize;

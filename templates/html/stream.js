@@ -1,0 +1,54 @@
+"use strict";
+/* A stream of bytes with framing -> the messages in it, and what went wrong. */
+const icdgenStream = (() => {
+  /** `{ events: [{ event, message }], lost }`: `lost` bytes belong to no message. `framing` is escape, start, end and escaped. */
+  function decode(speaker, bytes) {
+    const [escape, start, end, doubled] = speaker.framing;
+    const events = [];
+    let buffer = [];
+    let inside = false;
+    let escaped = false;
+    let run = 0; // bytes since the last decision
+    let lost = 0;
+
+    function begin() {
+      lost += run - 2;
+      [run, inside, escaped, buffer] = [2, true, false, []];
+    }
+
+    function outside(again) {
+      lost += run - Number(again);
+      [run, inside, escaped, buffer] = [Number(again), false, again, []];
+    }
+
+    for (const byte of bytes) {
+      run += 1;
+      if (!inside) {
+        if (escaped && byte === start) begin();
+        else outside(byte === escape);
+      } else if (!escaped) {
+        if (byte === escape && (buffer.length || !speaker.plain_id)) escaped = true;
+        else buffer.push(byte);
+      } else {
+        escaped = false;
+        if (byte === start) {
+          events.push({ event: "unexpected start" });
+          begin();
+        } else if (byte === end) {
+          events.push(buffer.length ? { event: "message", message: Uint8Array.from(buffer) } : { event: "empty" });
+          if (buffer.length) run = 0;
+          outside(false);
+        } else if (byte === doubled) {
+          buffer.push(escape);
+        } else if (!speaker.ignores_other) {
+          events.push({ event: "protocol error" });
+          outside(byte === escape);
+        }
+      }
+    }
+    return { events, lost: lost + run };
+  }
+
+  return { decode };
+})();
+if (typeof module !== "undefined") module.exports = icdgenStream;

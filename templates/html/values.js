@@ -1,0 +1,93 @@
+"use strict";
+/* Raw values as text, text as raw values, and what there is to say about a value. */
+const icdgenValues = ((codec, frames) => {
+  function parseRaw(field, text) {
+    const word = text.trim();
+    if (field.type === "bytes") return frames.parseHex(word);
+    if (!/^[-\u2212]?(?:0[xX][0-9A-Fa-f]+|[0-9]+)$/.test(word)) throw new Error(`${field.name} takes an integer, decimal or 0x`);
+    const negative = /^[-\u2212]/.test(word);
+    const size = BigInt(negative ? word.slice(1) : word);
+    return negative ? -size : size;
+  }
+
+  function parsePhysical(field, text) {
+    const word = text.trim().replace("\u2212", "-").toLowerCase();
+    const named = { nan: NaN, inf: Infinity, infinity: Infinity, "-inf": -Infinity, "-infinity": -Infinity }[word];
+    const number = named ?? (/^[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[-+]?[0-9]+)?$/.test(word) ? Number(word) : undefined);
+    if (number === undefined) throw new Error(`${field.name} takes a number`);
+    return field.type === "float" ? codec.floatBits(field, number) : codec.rawFromPhysical(field, number);
+  }
+
+  function rawText(field, value) {
+    if (field.type === "bytes") return frames.hex(value);
+    if (field.type === "float") return `0x${value.toString(16).toUpperCase().padStart(field.bits / 4, "0")}`;
+    return String(value);
+  }
+
+  /** The physical value of a field that has one. */
+  function physicalText(field, value) {
+    return field.type === "float" ? floatText(field, value) : decimal(...codec.exact(field, value));
+  }
+
+  /** What people want to see of a value: its name, its physical value with unit, or the raw one. */
+  function shortText(field, value, enums) {
+    if (field.type === "enum") return memberName(enums[field.enum], value) ?? `${value}?`;
+    if (field.type === "float" || field.scale) return `${physicalText(field, value)}${field.unit ? ` ${field.unit}` : ""}`;
+    return `${rawText(field, value)}${field.unit ? ` ${field.unit}` : ""}`;
+  }
+
+  /** The name of a value; undefined for what is no member. */
+  function memberName(members, value) {
+    return members.find(([one]) => BigInt(one) === value)?.[1];
+  }
+
+  /** The exact decimal, if it ends soon enough, else the nearest double. */
+  function decimal(numerator, denominator) {
+    let places = 0;
+    for (; places < 24 && (10n ** BigInt(places)) % denominator !== 0n; places += 1);
+    if ((10n ** BigInt(places)) % denominator !== 0n) return String(codec.nearestDouble(numerator, denominator));
+    const scaled = (numerator * 10n ** BigInt(places)) / denominator;
+    const digits = String(scaled < 0n ? -scaled : scaled).padStart(places + 1, "0");
+    const text = places ? `${digits.slice(0, -places)}.${digits.slice(-places)}` : digits;
+    return scaled < 0n ? `-${text}` : text;
+  }
+
+  function floatText(field, value) {
+    const number = codec.floatValue(field, value);
+    if (field.bits === 64 || !Number.isFinite(number)) return Object.is(number, -0) ? "-0" : String(number);
+    for (let digits = 1; digits < 10; digits += 1) {
+      const text = number.toPrecision(digits);
+      if (Object.is(Math.fround(Number(text)), number)) return Object.is(number, -0) ? "-0" : String(Number(text));
+    }
+    return String(number);
+  }
+
+  /** What there is to say about a value, as `{ text, wrong }`: its special meaning, or that the message may not hold it. */
+  function remark(field, value, enums) {
+    const special = field.special?.find(([one]) => BigInt(one) === value);
+    if (special) return { text: special[1], wrong: false };
+    if (field.const !== undefined && BigInt(field.const) !== value) return { text: `must be ${field.const}`, wrong: true };
+    if (field.type === "enum" && memberName(enums[field.enum], value) === undefined) return { text: "no such member", wrong: true };
+    return { text: isOutside(field, value) ? "outside the limits" : "", wrong: isOutside(field, value) };
+  }
+
+  function isOutside(field, value) {
+    if (!field.limits || field.type === "bytes") return false;
+    const than = ([n, d]) => beyond(field, value, BigInt(n), BigInt(d));
+    const { min, max, above, below } = field.limits;
+    return Boolean((min && than(min) < 0) || (max && than(max) > 0) || (above && than(above) <= 0) || (below && than(below) >= 0));
+  }
+
+  /** -1, 0 or 1: the value is less than, equal to or greater than n / d. */
+  function beyond(field, value, n, d) {
+    if (field.type === "float") {
+      const [number, bound] = [codec.floatValue(field, value), codec.nearestDouble(n, d)];
+      return number < bound ? -1 : number > bound ? 1 : 0;
+    }
+    const [numerator, denominator] = codec.exact(field, value) ?? [value, 1n];
+    const difference = numerator * d - n * denominator;
+    return difference < 0n ? -1 : difference > 0n ? 1 : 0;
+  }
+
+  return { parseRaw, parsePhysical, rawText, physicalText, shortText, remark };
+})(icdgenCodec, icdgenFrames);

@@ -1,0 +1,186 @@
+"""Requests about messages: their values, their constants, their enumerations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from icdgen.protocol.request_keys import Refusal, hex_bytes, octets, text
+from tests.conformance.front.program import Facts, Reply, items, text_of
+
+if TYPE_CHECKING:
+    from tests.conformance.front import Front
+
+    Request = dict[str, Any]
+    Field = dict[str, Any]
+
+MOST_VALUES = 65536
+KINDS = ("telecommand", "telemetry", "configuration")
+LIMITS = ("min", "max", "above", "below")
+
+
+def decode(front: Front, request: Request) -> dict[str, Any]:
+    frame, names = octets(request), request.get("names", False)
+    if type(names) is not bool:
+        raise Refusal("request", detail="`names` is neither true nor false")
+    route, message = _message(front, request)
+    reply = front.ask("decode", *route, frame.hex())
+    if message is None:
+        raise Refusal("dispatcher", detail="decodes a message that does not exist")
+    return _described(message["fields"], reply, names)
+
+
+def encode(front: Front, request: Request) -> dict[str, Any]:
+    raw, physical = request.get("raw", {}), request.get("physical", {})
+    if not isinstance(raw, dict) or not isinstance(physical, dict):
+        raise Refusal("request", detail="`raw` or `physical` is no object")
+    route, fields = _known(front, request)
+    scaled = {field["name"]: field["scaled"] for field in fields}
+    for name in (*(name for name in raw if name not in scaled), *(name for name in physical if not scaled.get(name))):
+        raise Refusal("unknown-field", field=name)
+    values = []
+    for field in fields:
+        name = field["name"]
+        if name in physical:
+            values.append(f"p{int.from_bytes(_sized(physical[name], 8), 'big')}")
+        elif name in raw:
+            values.append(f"r{_raw(field, raw[name])}")
+        else:
+            raise Refusal("missing-field", field=name)
+    return _described(fields, _asked(front, fields, "encode", *route, *values))
+
+
+def constants(front: Front, request: Request) -> dict[str, Any]:
+    route, fields = _known(front, request)
+    reply = front.ask("constants", *route)
+    rows = _named(fields, reply)
+    limits = {name: {key: _double(row[key]) for key in LIMITS if key in row} for name, _, row in rows}
+    return {
+        "name": text_of(reply.facts["name"]),
+        "ids": [int(id) for id in items(reply.facts["ids"])],
+        "length": int(reply.facts["length"]),
+        "default": {name: _shown(field, row["raw"]) for name, field, row in rows},
+        "special": {name: [int(one) for one in items(row["special"])] for name, _, row in rows if row.get("special")},
+        "limits": {name: some for name, some in limits.items() if some},
+    }
+
+
+def enum(front: Front, request: Request) -> dict[str, Any]:
+    text(request, "node")
+    name, value = text(request, "enum"), _integer(request.get("value"))
+    node = front.node(request)
+    enums = front.plan["nodes"][node]["enums"]
+    if name not in enums:
+        raise Refusal("unknown-enum")
+    return {"name": text_of(front.ask("enum", node, enums.index(name), value).facts.get("name"))}
+
+
+def node(front: Front, request: Request) -> dict[str, Any]:
+    facts = front.ask("node", front.node(request)).facts
+    return {key: int(facts[key]) if key in facts else None for key in ("node_type", "interface_version")}
+
+
+def sweep(front: Front, request: Request) -> dict[str, Any]:
+    name, values = text(request, "field"), request.get("values")
+    if "values" not in request:
+        first, last = _integer(request.get("from")), _integer(request.get("to"))
+        values = range(first, min(last, first + MOST_VALUES) + 1)
+    elif not isinstance(values, list):
+        raise Refusal("request", detail="`values` is no list")
+    if len(values) > MOST_VALUES or any(type(value) is not int for value in values):
+        raise Refusal("request", detail="these are too many values, or not integers")
+    route, fields = _known(front, request)
+    place = next((place for place, field in enumerate(fields) if field["name"] == name and field["scaled"]), None)
+    if place is None:
+        raise Refusal("unknown-field", field=name)
+    found = items(_asked(front, fields, "sweep", *route, place, *values).facts.get("values", ""))
+    return {
+        "physical": "".join(map(_double, found[::2])),
+        "failures": sum(back != str(value) for back, value in zip(found[1::2], values, strict=True)),
+    }
+
+
+OPS: dict[str, Callable[[Front, Request], dict[str, Any]]] = {
+    op.__name__: op for op in (decode, encode, constants, enum, node, sweep)
+}
+
+
+def _message(front: Front, request: Request) -> tuple[tuple[int, int, int], dict[str, Any] | None]:
+    text(request, "node")
+    kind, id = text(request, "kind"), _integer(request.get("id"))
+    if kind not in KINDS:
+        raise Refusal("request", detail="there is no such kind")
+    return front.route(front.node(request), kind, id)
+
+
+def _known(front: Front, request: Request) -> tuple[tuple[int, int, int], list[Field]]:
+    """The route to a message and its fields; where the ICD has none, what the program says of that id."""
+    route, message = _message(front, request)
+    if message is None:
+        front.ask("decode", *route, "")
+        raise Refusal("dispatcher", detail="decodes a message that does not exist")
+    return route, message["fields"]
+
+
+def _integer(value: object) -> int:
+    if type(value) is not int:
+        raise Refusal("request", detail="an integer is missing or has the wrong type")
+    return value
+
+
+def _sized(value: object, size: int) -> bytes:
+    found = hex_bytes(value)
+    if len(found) != size:
+        raise Refusal("request", detail=f"these are not {2 * size} hex digits")
+    return found
+
+
+def _raw(field: Field, given: object) -> int | str:
+    """A raw value of a request as the program is given it; whether it fits, the program says."""
+    if field["type"] == "float":
+        return int.from_bytes(_sized(given, field["bits"] // 8), "big")
+    if field["type"] == "bytes":
+        return hex_bytes(given).hex()
+    return int(given) if field["type"] == "bool" and type(given) is bool else _integer(given)
+
+
+def _shown(field: Field, value: str) -> object:
+    """A raw value as it stands in an answer."""
+    if field["type"] == "bytes":
+        return value
+    if field["type"] == "float":
+        return f"{int(value):0{field['bits'] // 4}x}"
+    return {"0": False, "1": True}.get(value, value) if field["type"] == "bool" else int(value)
+
+
+def _double(bits: str) -> str:
+    return f"{int(bits):016x}"
+
+
+def _asked(front: Front, fields: list[Field], *words: object) -> Reply:
+    """What the program answers; it may tell the field that it refuses by its name or by its place."""
+    try:
+        return front.ask(*words)
+    except Refusal as refusal:
+        place = refusal.answer.pop("at", None)
+        if place is not None:
+            refusal.answer["field"] = fields[place]["name"]
+        raise
+
+
+def _named(fields: list[Field], reply: Reply) -> list[tuple[str, Field, Facts]]:
+    """What the rows say of the fields, by name: that of the ICD, if the language does not have it."""
+    rows = reply.of("field")
+    return [(text_of(row.get("field")) or one["name"], one, row) for one, row in zip(fields, rows, strict=True)]
+
+
+def _described(fields: list[Field], reply: Reply, names: bool = False) -> dict[str, Any]:
+    rows = _named(fields, reply)
+    answer = {
+        "raw": {name: _shown(field, row["raw"]) for name, field, row in rows},
+        "physical": {name: _double(row["physical"]) for name, _, row in rows if "physical" in row},
+        "bytes": reply.facts["bytes"],
+    }
+    if names:
+        answer["names"] = {name: text_of(row.get("name")) for name, field, row in rows if field["type"] == "enum"}
+    return answer

@@ -1,0 +1,47 @@
+"""What the front knows of the ICDs, as JSON: names and types, by index."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from icdgen.describe import describe
+from icdgen.icd.model import Icd, Message, Node
+from icdgen.protocol import facts
+
+
+def plan(icd: Icd) -> dict[str, Any]:
+    """The plan of a set of ICDs. Nodes, and the messages and enumerations of each, stand in the order of the description."""
+    description = describe(icd)
+    every = [message for node in description.nodes for message in node.messages]
+    places = {(one.model.node, one.model.name): place for place, one in enumerate(every)}
+    return {
+        "messages": [_message(one.model) for one in every],
+        "nodes": [
+            {
+                "name": node.name,
+                "id_bits": node.id_bits,
+                "speaks": [places[one.model.node, one.model.name] for one in node.spoken],
+                "enums": [enum.model.name for enum in node.enums],
+                "link": _link(icd, node.model) if node.is_linked else None,
+            }
+            for node in description.nodes
+        ],
+    }
+
+
+def _message(message: Message) -> dict[str, Any]:
+    return {
+        "telecommand": message.telecommand_id,
+        "telemetry": message.telemetry_id,
+        "configuration": [message.set_id, message.get_id],
+        "fields": [
+            {"name": field.name, "type": field.type, "bits": field.bits, "scaled": field.scale is not None}
+            for field in message.fields
+        ],
+    }
+
+
+def _link(icd: Icd, node: Node) -> dict[str, Any]:
+    known = facts.of(icd, node)
+    framing = known.framing
+    return {"longest": known.longest, "framing": [framing.escape, framing.end] if framing else None}

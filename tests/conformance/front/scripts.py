@@ -1,0 +1,156 @@
+"""Requests that are scripts: what happens at which time, for the client and for the procedures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from icdgen.protocol.request_keys import Refusal, flag, hex_bytes, mappings, number, octets, text
+from tests.conformance.front.program import Facts, Reply
+from tests.conformance.front.wire import MOST, Answer, Asking, Request, event, typed
+
+BUSES = ("uart", "i2c", "can")
+MOST_TIMES = 1 << 20
+ABSENT = {"refused": {"code": None, "reason": None, "parameter": None}}  # what an event says where nothing is known
+
+
+def client(to: Asking, request: Request) -> Answer:
+    bus, checked, address = _bus(request), flag(request, "crc"), number(request, "address", 0, 255, 0)
+    settings = _settings(request)
+    words = [word for row in mappings(request, "script") for word in (number(row, "at"), *_row(bus, row))]
+    reply = to.ask("client", bus, int(checked), address, *settings, *words)
+    return {"steps": [_client_step(step, rows, to.link["framing"]) for step, rows in _steps(reply)]}
+
+
+def _settings(request: Request) -> list[object]:
+    """Those that are given; the others are the link's."""
+    given = request.get("settings", {})
+    if not isinstance(given, dict):
+        raise Refusal("request", detail="`settings` is no object")
+    limits = {"reply_timeout": (1, MOST), "retries": (0, 255), "poll_interval": (1, MOST), "poll_timeout": (1, MOST)}
+    return [number(given, key, *limit) if key in given else "" for key, limit in limits.items()]
+
+
+def _row(bus: str, row: Request) -> tuple[object, ...]:
+    if "telecommand" in row:
+        return "telecommand", number(row, "telecommand", 0, 255), int(flag(row, "repeat")), octets(row).hex()
+    if "telemetry" in row:
+        return "telemetry", number(row, "telemetry", 0, 255)
+    if "receive" in row:
+        return _received(bus, row["receive"])
+    return ("cancel",) if flag(row, "cancel") else ("tick",)
+
+
+def _received(bus: str, given: object) -> tuple[object, ...]:
+    if bus == "can":
+        if not isinstance(given, dict):
+            raise Refusal("request", detail="`receive` is no packet")
+        return "packet", number(given, "id", 0, (1 << 29) - 1), octets(given).hex()
+    if bus == "i2c":
+        return ("failed",) if given is None else ("transferred", hex_bytes(given).hex())
+    return "received", hex_bytes(given).hex()
+
+
+def _client_step(step: Facts, rows: list[tuple[str, Facts]], framing: list[int] | None) -> Answer:
+    found: Answer = {"deadline": None, **typed(step), "out": [], "events": []}
+    stream = b""
+    for kind, row in rows:
+        if kind == "stream":
+            stream += bytes.fromhex(row["bytes"])
+        elif kind in ("frame", "transfer"):
+            found["out"].append(typed(row))
+        elif kind in ("until", "error"):
+            found |= typed(row)
+        else:
+            found["events"].append(ABSENT.get(kind, {}) | event(kind, row))
+    if framing:
+        found["out"] += _messages(stream, *framing)
+    return found
+
+
+def _messages(stream: bytes, escape: int, end: int) -> Iterator[str]:
+    """The messages of what goes out on a UART, which is nothing else."""
+    start, escaped = 0, False
+    for at, byte in enumerate(stream):
+        if escaped and byte == end:
+            yield stream[start : at + 1].hex()
+            start = at + 1
+        escaped = byte == escape and not escaped
+    if start < len(stream):
+        yield stream[start:].hex()
+
+
+def file(to: Asking, request: Request) -> Answer:
+    what, start = _procedure(request)
+    words = [word for row in mappings(request, "script") for word in (number(row, "at"), *_outcome(row.get("event")))]
+    reply = to.ask("file", what, *start, *words)
+    answer: Answer = {"steps": [_file_step(step) for step in reply.of("step")], **typed(reply.facts)}
+    if what == "download":
+        answer["blocks"] = [typed(row) for row in reply.of("block")]
+    elif what == "list":
+        answer["entries"] = [typed(row) for row in reply.of("entry")]
+    elif what == "program_information":
+        answer = {"size": None, "checksum": None, **answer}
+    return answer
+
+
+def _procedure(request: Request) -> tuple[str, list[object]]:
+    """Its name, and what it is begun with."""
+    what = text(request, "do")
+    block = number(request, "block", 1) if "block" in request else ""
+    if what in ("list", "format"):
+        return what, []
+    if what in ("program_copy", "program_information"):
+        return what, [number(request, "program", 0, 255)]
+    if what == "upload":
+        times, destination = number(request, "times", 1, MOST_TIMES, 1), number(request, "destination", 0, 255)
+        return what, [destination, block, (octets(request) * times).hex()]
+    if what not in ("erase", "download"):
+        raise Refusal("request", detail="there is no such procedure")
+    entry = [number(request, "type", 0, 255), number(request, "counter", 0, 255)]
+    if what == "erase":
+        return what, [*entry, int(flag(request, "all"))]
+    return what, [_bus(request), *entry, number(request, "size") if "size" in request else "", block]
+
+
+def _outcome(given: object) -> tuple[object, ...]:
+    if given is None:
+        return ("nothing",)
+    if not isinstance(given, dict):
+        raise Refusal("request", detail="`event` is no object")
+    name = text(given, "event")
+    if name == "done":
+        return name, octets(given).hex()
+    if name == "packet":
+        return name, number(given, "number", 0, 65535), octets(given).hex()
+    if name in ("refused", "timeout"):
+        return (name,)
+    raise Refusal("request", detail="there is no such event")
+
+
+def _file_step(step: Facts) -> Answer:
+    found = {"deadline": None, "result": None, **typed(step)}
+    asked: Answer = {key: found.pop(key) for key in ("telecommand", "telemetry", "bytes", "repeat") if key in found}
+    if "repeat" in asked:
+        asked["repeat"] = bool(asked["repeat"])
+    return {**found, "request": asked or None}
+
+
+def _bus(request: Request) -> str:
+    bus = text(request, "bus")
+    if bus not in BUSES:
+        raise Refusal("request", detail="there is no such bus")
+    return bus
+
+
+def _steps(reply: Reply) -> list[tuple[Facts, list[tuple[str, Facts]]]]:
+    """What each step says, and the rows that follow it."""
+    found: list[tuple[Facts, list[tuple[str, Facts]]]] = []
+    for kind, row in reply.rows:
+        if kind == "step":
+            found.append((row, []))
+        else:
+            found[-1][1].append((kind, row))
+    return found
+
+
+OPS: dict[str, Callable[[Asking, Request], Answer]] = {"client": client, "file": file}

@@ -1,0 +1,191 @@
+"""Requests about how messages travel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from icdgen.protocol.request_keys import Refusal, flag, hex_bytes, mappings, number, octets, rows, text
+from icdgen.protocol.sections import CAN_KINDS
+from tests.conformance.front.program import Facts, Reply, items
+
+Request = dict[str, Any]
+Answer = dict[str, Any]
+
+CAN_BYTES = 8  # of a classic CAN frame
+MOST = (1 << 32) - 1
+DATE = ("year", "month", "day", "hour", "minute", "second")
+ENTRY = ("type", "counter", "checksum", "size", "time")
+TEXTS = {"bytes", "mask", "meta", "write", "kind", "reason", "result", "error"}
+
+
+class Asking(NamedTuple):
+    """How the program is asked about a link, and what is known of that."""
+
+    ask: Callable[..., Reply]
+    link: dict[str, Any]
+
+
+def typed(facts: Facts) -> Answer:
+    """What a row says, as JSON: hex and words as text, the others as numbers, null where a number is missing."""
+    return {key: value if key in TEXTS else int(value) if value else None for key, value in facts.items()}
+
+
+def event(kind: str, facts: Facts) -> Answer:
+    return {"event": kind, **typed(facts)}
+
+
+def crc8(to: Asking, request: Request) -> Answer:
+    return typed(to.ask("crc8", octets(request).hex()).facts)
+
+
+def crc16(to: Asking, request: Request) -> Answer:
+    return typed(to.ask("crc16", octets(request).hex()).facts)
+
+
+def uart_encode(to: Asking, request: Request) -> Answer:
+    return typed(to.ask("uart_encode", octets(request).hex()).facts)
+
+
+def uart_decode(to: Asking, request: Request) -> Answer:
+    reply = to.ask("uart_events", to.link["longest"], octets(request).hex())
+    return {"frames": [row["bytes"] for row in reply.of("message")]}
+
+
+def uart_events(to: Asking, request: Request) -> Answer:
+    longest = to.link["longest"]
+    limit, chunks = number(request, "limit", 1, longest, longest), rows(request, "chunks")
+    reply = to.ask("uart_events", limit, *(hex_bytes(chunk).hex() for chunk in chunks))
+    return {"events": [event(*row) for row in reply.rows], **typed(reply.facts)}
+
+
+def can_split(to: Asking, request: Request) -> Answer:
+    kind, data = text(request, "kind"), octets(request).hex()
+    if kind not in CAN_KINDS:
+        raise Refusal("request", detail="there is no such kind")
+    ids = [number(request, key, 0, 255) for key in ("id", "source", "destination")]
+    return {"packets": [typed(row) for row in to.ask("can_split", kind, *ids, data).of("packet")]}
+
+
+def can_join(to: Asking, request: Request) -> Answer:
+    address = number(request, "address", 0, 255) if "address" in request else ""
+    senders = number(request, "senders", 1, 16, 4)
+    end = number(request, "end") if "end" in request else ""
+    packets: list[object] = []
+    for row in mappings(request, "packets"):
+        data = octets(row)
+        if len(data) > CAN_BYTES:
+            raise Refusal("request", detail="a packet has too many bytes")
+        packets += (number(row, "at", default=0), number(row, "id", 0, (1 << 29) - 1), data.hex())
+    return {"events": [event(*row) for row in to.ask("can_join", address, senders, end, *packets).rows]}
+
+
+def i2c_request(to: Asking, request: Request) -> Answer:
+    kind, id, checked = text(request, "kind"), number(request, "id", 0, 255), flag(request, "crc")
+    if kind == "telemetry":
+        return {"write": bytes([id]).hex(), **typed(to.ask("i2c_read", id, int(checked)).facts)}
+    if kind != "telecommand":
+        raise Refusal("request", detail="there is no such kind")
+    return {**typed(to.ask("i2c_write", id, int(checked), octets(request).hex()).facts), "read": 0}
+
+
+def i2c_reply(to: Asking, request: Request) -> Answer:
+    id, data, checked = number(request, "id", 0, 255), octets(request), flag(request, "crc")
+    return typed(to.ask("i2c_reply", id, int(checked), data.hex()).facts)
+
+
+def log_decode(to: Asking, request: Request) -> Answer:
+    """Whole, byte by byte and in pieces of seven bytes it must be the same."""
+    data = octets(request)
+    replies = [
+        to.ask("log_decode", *(data[at : at + size].hex() for at in range(0, len(data), size)))
+        for size in (len(data) or 1, 1, 7)
+    ]
+    reply = replies[0]
+    if replies.count(reply) != len(replies):
+        raise Refusal("pieces", detail="it depends on how the file was cut")
+    entries: list[Answer] = []
+    for kind, row in reply.rows:
+        if kind == "entry":
+            entries.append({**typed(row), "frames": []})
+        else:
+            entries[-1]["frames"].append(typed(row))
+    return {"mask": None, **typed(reply.facts), "entries": entries}
+
+
+def log_encode(to: Asking, request: Request) -> Answer:
+    words: list[object] = []
+    for entry in mappings(request, "entries"):
+        frames = _hex_rows(entry, "frames")
+        words += (number(entry, "seconds"), number(entry, "milliseconds", 0, 65535), len(frames), *frames)
+    return _joined(to.ask("log_encode", octets(request, "mask").hex(), *words))
+
+
+def log_message_decode(to: Asking, request: Request) -> Answer:
+    reply = to.ask("log_message_decode", octets(request).hex())
+    return {**typed(reply.facts), "frames": [typed(row) for row in reply.of("frame")]}
+
+
+def log_message_encode(to: Asking, request: Request) -> Answer:
+    frames = _hex_rows(request, "frames")
+    return typed(to.ask("log_message_encode", octets(request, "mask").hex(), len(frames), *frames).facts)
+
+
+def dos_time(to: Asking, request: Request) -> Answer:
+    if "value" in request:
+        facts = typed(to.ask("dos_time_unpack", number(request, "value")).facts)
+        return {**facts, "valid": bool(facts["valid"])}
+    return typed(to.ask("dos_time_pack", *(number(request, key, 0, 9999) for key in DATE)).facts)
+
+
+def hole_map(to: Asking, request: Request) -> Answer:
+    packets = number(request, "packets")
+    if "bytes" in request:
+        return _map(to.ask("hole_map_missing", packets, octets(request).hex()))
+    received = rows(request, "received")
+    if any(type(one) is not int for one in received):
+        raise Refusal("request", detail="`received` holds numbers")
+    numbers = (one if 0 <= one <= MOST else MOST for one in received)  # which no block has
+    return _map(to.ask("hole_map", packets, *numbers))
+
+
+def _map(reply: Reply) -> Answer:
+    found: Answer = {"missing": [int(one) for one in items(reply.facts["missing"])]}
+    if "bytes" in reply.facts:
+        found |= {"bytes": reply.facts["bytes"], "messages": items(reply.facts["messages"])}
+    return found
+
+
+def index_decode(to: Asking, request: Request) -> Answer:
+    reply = to.ask("index_decode", octets(request).hex())
+    return {**typed(reply.facts), "entries": [typed(row) for row in reply.of("entry")]}
+
+
+def index_encode(to: Asking, request: Request) -> Answer:
+    words: list[object] = []
+    for row in mappings(request, "entries"):
+        words += (*(number(row, key) for key in ENTRY), octets(row, "meta").hex())
+    return _joined(to.ask("index_encode", *words))
+
+
+def identify(to: Asking, request: Request) -> Answer:
+    facts = typed(to.ask("identify", octets(request).hex()).facts)
+    return {**facts, "matches": bool(facts["matches"])}
+
+
+def _joined(reply: Reply) -> Answer:
+    """Bytes that may come in pieces."""
+    return {"bytes": "".join(items(reply.facts["bytes"]))}
+
+
+def _hex_rows(request: Request, key: str) -> list[str]:
+    return [hex_bytes(row).hex() for row in rows(request, key)]
+
+
+OPS: dict[str, Callable[[Asking, Request], Answer]] = {
+    op.__name__: op
+    for op in (
+        crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
+        log_encode, log_message_decode, log_message_encode, dos_time, hole_map, index_decode, index_encode, identify,
+    )
+}  # fmt: skip

@@ -1,0 +1,341 @@
+/* Messages: values in, values out. */
+
+#include "testee.h"
+#include "testee_line.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- members of structs ------------------------------------------------------------------------------------------- */
+
+static uint64_t member_bits(const testee_field_t *field, const void *value)
+{
+    const char *at = (const char *)value + field->offset;
+    uint8_t one;
+    uint16_t two;
+    uint32_t four;
+    uint64_t eight;
+    bool flag;
+    if (field->type == TESTEE_BOOL) {
+        memcpy(&flag, at, sizeof flag);
+        return flag ? 1u : 0u;
+    }
+    switch (field->size) {
+    case 1:
+        memcpy(&one, at, 1);
+        return one;
+    case 2:
+        memcpy(&two, at, 2);
+        return two;
+    case 4:
+        memcpy(&four, at, 4);
+        return four;
+    default:
+        memcpy(&eight, at, 8);
+        return eight;
+    }
+}
+
+static void set_member(const testee_field_t *field, void *value, uint64_t bits)
+{
+    char *at = (char *)value + field->offset;
+    const uint8_t one = (uint8_t)bits;
+    const uint16_t two = (uint16_t)bits;
+    const uint32_t four = (uint32_t)bits;
+    const bool flag = bits != 0u;
+    if (field->type == TESTEE_BOOL) {
+        memcpy(at, &flag, sizeof flag);
+        return;
+    }
+    switch (field->size) {
+    case 1:
+        memcpy(at, &one, 1);
+        break;
+    case 2:
+        memcpy(at, &two, 2);
+        break;
+    case 4:
+        memcpy(at, &four, 4);
+        break;
+    default:
+        memcpy(at, &bits, 8);
+        break;
+    }
+}
+
+static int64_t signed_of(uint64_t bits, size_t size)
+{
+    const uint64_t sign = UINT64_C(1) << (size * 8u - 1u);
+    return (bits & sign) == 0u ? (int64_t)bits : -(int64_t)(sign - 1u - (bits & (sign - 1u))) - 1;
+}
+
+static uint64_t double_bits(double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static double double_of(uint64_t bits)
+{
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* False for a number that the member's type cannot hold. */
+static bool take_number(const testee_field_t *field, void *value, const char *word)
+{
+    uint64_t most = field->type == TESTEE_BOOL ? 1u : UINT64_MAX >> (64u - field->size * 8u);
+    errno = 0;
+    if (field->type == TESTEE_SIGNED) {
+        const int64_t number = strtoll(word, NULL, 10);
+        most >>= 1;
+        set_member(field, value, (uint64_t)number);
+        return errno == 0 && number <= (int64_t)most && number >= -(int64_t)most - 1;
+    }
+    set_member(field, value, strtoull(word, NULL, 10));
+    return errno == 0 && *word != '-' && strtoull(word, NULL, 10) <= most;
+}
+
+static bool take_raw(const testee_field_t *field, void *value, const char *word)
+{
+    octets_t octets;
+    if (field->type != TESTEE_BYTES) {
+        return take_number(field, value, word);
+    }
+    octets = octets_of(word);
+    if (octets.length == field->size) {
+        memcpy((char *)value + field->offset, octets.data, octets.length);
+    }
+    return octets.length == field->size;
+}
+
+static void put_raw(const testee_field_t *field, const void *value)
+{
+    if (field->type == TESTEE_BYTES) {
+        put_octets("raw", (const char *)value + field->offset, field->size);
+    } else if (field->type == TESTEE_SIGNED) {
+        put_signed("raw", signed_of(member_bits(field, value), field->size));
+    } else {
+        put_number("raw", member_bits(field, value));
+    }
+}
+
+/* ---- messages ----------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    const testee_dispatcher_t *dispatcher;
+    const testee_message_t *message; /* NULL if the tables have none of that id */
+    uint32_t id;
+    void *any;
+    void *value;
+} subject_t;
+
+/* Finds the message that the next three words mean and makes room for a value of it. */
+static bool find(subject_t *subject)
+{
+    const testee_node_t *node = testee_nodes[next_number()];
+    const testee_dispatcher_t *dispatcher = next_number() == 0u ? node->telecommand : node->telemetry;
+    size_t i;
+    subject->id = next_number();
+    subject->message = NULL;
+    if (dispatcher == NULL) {
+        refuse("unknown-id");
+        return false;
+    }
+    for (i = 0; i < dispatcher->route_count; i++) {
+        if (dispatcher->routes[i].id == subject->id) {
+            subject->message = dispatcher->routes[i].message;
+        }
+    }
+    subject->dispatcher = dispatcher;
+    subject->any = memory(dispatcher->size);
+    subject->value = (char *)subject->any + dispatcher->offset;
+    dispatcher->select(subject->any, subject->id);
+    return true;
+}
+
+static void refuse_at(size_t place)
+{
+    refuse("range");
+    put_number("at", place);
+}
+
+static const char *misfit_of(const subject_t *subject)
+{
+    return subject->message->misfit != NULL ? subject->message->misfit(subject->value) : NULL;
+}
+
+static void put_message(const subject_t *subject)
+{
+    const testee_message_t *message = subject->message;
+    uint8_t *buffer = (uint8_t *)memory(message->length);
+    const icd_status_t status = subject->dispatcher->encode(subject->any, buffer, message->length);
+    const char *misfit = misfit_of(subject);
+    size_t i;
+    if (status != ICD_OK || misfit != NULL) {
+        refuse(status == (misfit != NULL ? ICD_ERROR_RANGE : ICD_OK) ? "range" : "encoding");
+        put_text("field", misfit);
+        return;
+    }
+    put_row("ok");
+    put_octets("bytes", buffer, message->length);
+    for (i = 0; i < message->field_count; i++) {
+        const testee_field_t *field = &message->fields[i];
+        put_row("field");
+        put_raw(field, subject->value);
+        if (field->get != NULL) {
+            put_number("physical", double_bits(field->get(subject->value)));
+        }
+        if (field->name_of != NULL) {
+            put_text("name", field->name_of(member_bits(field, subject->value)));
+        }
+    }
+}
+
+static void decode(void)
+{
+    subject_t subject;
+    octets_t frame;
+    icd_status_t status;
+    size_t expected = 0;
+    if (!find(&subject)) {
+        return;
+    }
+    frame = next_octets();
+    status = subject.dispatcher->decode(subject.any, subject.id, frame.data, frame.length);
+    if (status == ICD_ERROR_LENGTH) {
+        (void)subject.dispatcher->length(subject.id, &expected);
+        refuse_length("length", expected, frame.length);
+    } else if (status != ICD_OK) {
+        refuse_status(status);
+    } else if (subject.message == NULL) {
+        refuse("dispatcher");
+    } else {
+        put_message(&subject);
+    }
+}
+
+static void encode(void)
+{
+    subject_t subject;
+    size_t i;
+    if (!find(&subject)) {
+        return;
+    }
+    subject.message->init(subject.value);
+    for (i = 0; i < subject.message->field_count; i++) {
+        const testee_field_t *field = &subject.message->fields[i];
+        const char *word = next_word();
+        const bool fits = *word == 'p'
+            ? field->set(subject.value, double_of(strtoull(word + 1, NULL, 10))) == ICD_OK
+            : take_raw(field, subject.value, word + 1);
+        if (!fits) {
+            refuse_at(i);
+            return;
+        }
+    }
+    put_message(&subject);
+}
+
+static void constants(void)
+{
+    subject_t subject;
+    size_t expected = 0;
+    size_t i, k;
+    if (!find(&subject)) {
+        return;
+    }
+    if (subject.dispatcher->length(subject.id, &expected) != ICD_OK || expected != subject.message->length) {
+        refuse("dispatcher");
+        return;
+    }
+    subject.message->init(subject.value);
+    put_row("ok");
+    put_text("name", subject.dispatcher->name(subject.id));
+    put_number("length", subject.message->length);
+    put_list("ids");
+    for (i = 0; i < subject.message->id_count; i++) {
+        put_item(subject.message->ids[i]);
+    }
+    for (i = 0; i < subject.message->field_count; i++) {
+        const testee_field_t *field = &subject.message->fields[i];
+        put_row("field");
+        put_raw(field, subject.value);
+        put_list("special");
+        for (k = 0; k < field->special_count; k++) {
+            if (field->type == TESTEE_SIGNED) {
+                put_signed_item(field->special[k]);
+            } else {
+                put_item((uint64_t)field->special[k]);
+            }
+        }
+        for (k = 0; k < field->limit_count; k++) {
+            put_number(field->limits[k].key, double_bits(field->limits[k].value));
+        }
+    }
+}
+
+/* Raw -> physical -> raw. */
+static void sweep(void)
+{
+    subject_t subject;
+    const testee_field_t *field;
+    size_t place;
+    if (!find(&subject)) {
+        return;
+    }
+    place = next_number();
+    field = &subject.message->fields[place];
+    subject.message->init(subject.value);
+    put_row("ok");
+    put_list("values");
+    while (has_words()) {
+        double physical;
+        if (!take_raw(field, subject.value, next_word()) || misfit_of(&subject) != NULL) {
+            refuse_at(place);
+            return;
+        }
+        physical = field->get(subject.value);
+        set_member(field, subject.value, ~member_bits(field, subject.value));
+        put_item(double_bits(physical));
+        if (field->set(subject.value, physical) != ICD_OK) {
+            put_octets_item(NULL, 0);
+        } else if (field->type == TESTEE_SIGNED) {
+            put_signed_item(signed_of(member_bits(field, subject.value), field->size));
+        } else {
+            put_item(member_bits(field, subject.value));
+        }
+    }
+}
+
+static void enumeration(void)
+{
+    const testee_node_t *node = testee_nodes[next_number()];
+    testee_enum_t *name_of = node->enums[next_number()];
+    const char *word = next_word();
+    uint64_t value;
+    errno = 0;
+    value = strtoull(word, NULL, 10);
+    put_row("ok");
+    put_text("name", errno != 0 || *word == '-' ? NULL : name_of(value));
+}
+
+static void about_node(void)
+{
+    const testee_node_t *node = testee_nodes[next_number()];
+    put_row("ok");
+    if (node->node_type >= 0) {
+        put_signed("node_type", node->node_type);
+    }
+    if (node->interface_version >= 0) {
+        put_signed("interface_version", node->interface_version);
+    }
+}
+
+const testee_op_t testee_message_ops[] = {
+    {"decode", decode},    {"encode", encode},   {"constants", constants}, {"sweep", sweep},
+    {"enum", enumeration}, {"node", about_node}, {NULL, NULL},
+};

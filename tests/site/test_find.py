@@ -1,0 +1,145 @@
+"""What people type into the search, and the page that they mean: it comes first, or second."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+
+import pytest
+
+from icdgen.backends.c import CBackend
+from icdgen.backends.html.links import Links
+from icdgen.backends.python import PythonBackend
+from icdgen.backends.rust import RustBackend
+from tests.conftest import ROOT
+from tests.site.conftest import program
+
+SCRIPT = ROOT / "templates" / "html" / "find.js"
+ANGLES = "cubeacp/estimated_attitude_angles.html"
+ROLL = f"{ANGLES}#field-estimated_roll_angle"
+MODES = "cubeacp/enum-con_mode_select.html"
+
+QUERIES = {
+    # names
+    "Estimated Attitude Angles": ANGLES,
+    "estimated attitude": ANGLES,
+    "attitude angles": ANGLES,
+    "adcs state": "cubeacp/adcs_state.html",
+    "identification": "common/identification.html",
+    "reset": "common/reset.html",
+    "ConModeSelect": MODES,
+    "CubeWheel": "cubewheel/index.html",
+    "bootloader": "bootloader/index.html",
+    "wheel speed": "cubeacp/wheel_speed.html",
+    "Current Unix Time": "common/current_unix_time.html",
+    "roll angle": ROLL,
+    "angle roll estimated": ROLL,
+    # ids
+    "146": ANGLES,
+    "0x92": ANGLES,
+    "92h": ANGLES,
+    "telemetry 190": "cubeacp/adcs_state.html",
+    "id 132": "cubeacp/current_adcs_state.html",
+    "set 20": "cubeacp/adcs_configuration.html",
+    "telemetry 206": "cubeacp/adcs_configuration.html",
+    # identifiers
+    "cubeacp_estimated_attitude_angles_t": ANGLES,
+    "cubeacp_estimated_attitude_angles_decode": ANGLES,
+    "CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID": ANGLES,
+    "EstimatedAttitudeAngles": ANGLES,
+    "icd::cubeacp::EstimatedAttitudeAngles": ANGLES,
+    "estimated_roll_angle_deg": ROLL,
+    "cubeacp_estimated_attitude_angles_set_estimated_roll_angle_deg": ROLL,
+    "set_estimated_roll_angle_deg": ROLL,
+    "CUBEACP_CON_MODE_SELECT_Y_THOMSON_SPIN": f"{MODES}#member-y_thomson_spin",
+    "ConModeSelect.Y_THOMSON_SPIN": f"{MODES}#member-y_thomson_spin",
+    "YWheelSteadyState": f"{MODES}#member-y_wheel_steady_state",
+    # members
+    "thomson": f"{MODES}#member-y_thomson_spin",
+    "detumbling control": f"{MODES}#member-detumbling_control",
+    "Full-state EKF": "cubeacp/enum-estim_mode_select.html#member-full_state_ekf",
+    "MEMS gyro EKF": "cubeacp/enum-estim_mode_select.html#member-mems_gyro_ekf",
+    # units
+    "deg/s": "units.html#unit-deg_per_s",
+    "rpm": "units.html#unit-rpm",
+    "mA": "units.html#unit-ma",
+    "msdos_time": "units.html#unit-msdos_time",
+    # tables, errata
+    "table 149": "cubeacp/adcs_state.html",
+    "Table 192": "cubeacp/adcs_configuration.html",
+    "table 78": MODES,
+    "table 27": "common/identification.html",
+    "acp-066": "errata.html#ACP-066",
+    "ACP-066": "errata.html#ACP-066",
+    # protocol words
+    "baud": "cubeacp/protocol.html#lines",
+    "crc": "cubeacp/protocol.html#checksums",
+    "escape byte framing": "cubeacp/protocol.html#framing",
+    "can identifier": "cubeacp/protocol.html#identifier",
+    "error codes": "cubeacp/protocol.html#errors",
+    "timeout retries": "cubeacp/protocol.html#times",
+    "parity": "cubeacp/protocol.html#lines",
+    # misspelt
+    "estimted attitude": ANGLES,
+    "atittude angles": ANGLES,
+    "indentification": "common/identification.html",
+    "quaternon": "cubeacp/estimated_quaternion.html",
+    "thompson spin": f"{MODES}#member-y_thomson_spin",
+    "magnetometr": "cubeacp/magnetometer_configuration.html",
+    "wheelspeed": "cubeacp/wheel_speed.html",
+    "bootlaoder": "bootloader/index.html",
+    "attitudeangles": ANGLES,
+    "configuraton adcs": "cubeacp/adcs_configuration.html",
+}
+
+
+def found(site, queries: list[str]) -> list[list[str]]:
+    """The addresses that each query gives, the best first."""
+    code = f"""
+        const {{ readFileSync }} = require("node:fs");
+        const {{ finder }} = require({json.dumps(str(SCRIPT))});
+        (0, eval)(readFileSync({json.dumps(str(site / "search-index.js"))}, "utf8"));
+        const find = finder(globalThis.icdgenSearchIndex);
+        const queries = JSON.parse(readFileSync(0, "utf8"));
+        process.stdout.write(JSON.stringify(queries.map((query) => find(query).map((one) => one.url))));
+    """
+    done = subprocess.run([program("node"), "-e", code], input=json.dumps(queries), capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def test_what_is_meant_comes_first_or_second(site):
+    results = found(site, list(QUERIES))
+    wrong = [(q, r[:3]) for (q, url), r in zip(QUERIES.items(), results, strict=True) if not fits(url, r[:2])]
+    assert len(QUERIES) >= 60 and wrong == []
+
+
+def fits(url: str, best: list[str]) -> bool:
+    """Whether it is among the best; of a protocol, that of any node that talks so."""
+    return url in best or ("/protocol" in url and any(one.partition("/")[2] == url.partition("/")[2] for one in best))
+
+
+def test_what_is_nothing_finds_nothing(site):
+    assert found(site, ["", "  ", "xyzzyqwert", "!!!"]) == [[], [], [], []]
+
+
+@pytest.mark.parametrize("backend", [CBackend, PythonBackend, RustBackend])
+def test_generated_names_lead_to_what_they_were_made_from(site, shipped, backend):
+    """Types of messages, as the language declares them: each must lead to its page."""
+    names = {}
+    for one in backend().identifiers(shipped):
+        kind, _, name = one.owner.partition(" `")
+        if kind == "message":
+            names.setdefault(one.text, set()).add(name.rstrip("`"))
+    asked = sorted(name for name, owners in names.items() if len(owners) == 1)
+    assert len(asked) > 100
+    every = [m for node in shipped.nodes for m in node.messages]
+    index = {m.name: m for m in every if sum(m.name == other.name for other in every) == 1}
+    links = Links(shipped)
+    results = found(site, asked)
+    wrong = []
+    for name, urls in zip(asked, results, strict=True):
+        (owner,) = names[name]
+        if owner in index and links.message(index[owner]) not in urls[:2]:
+            wrong.append((name, owner, urls[:2]))
+    assert wrong == []

@@ -1,0 +1,116 @@
+"""The page knows what a frame is wherever the command line does, and says the same of it."""
+
+from __future__ import annotations
+
+import json
+import random
+import subprocess
+
+import pytest
+
+from icdgen.backends.html import recognition
+from icdgen.backends.html.relations import Relations
+from icdgen.errors import UserError
+from icdgen.recognize import recognize
+from icdgen.values.errors import Ambiguous
+from tests.conftest import ROOT
+from tests.recognize.ways import BARE, WHOLE
+from tests.site.conftest import program
+
+SCRIPT = ROOT / "templates" / "html" / "recognize.js"
+
+
+def on_the_page(index: dict, texts: list[str]) -> list[object]:
+    """Of each text: the readings, how many messages are as likely, or what is wrong."""
+    code = f"""
+        const {{ recognize, Ambiguous }} = require({json.dumps(str(SCRIPT))});
+        const [index, texts] = JSON.parse(require("node:fs").readFileSync(0, "utf8"));
+        const plain = (one) => [one.node, one.message, one.what, Buffer.from(one.data).toString("hex"), one.id];
+        process.stdout.write(JSON.stringify(texts.map((text) => {{
+            try {{ return recognize(index, text).map(plain); }}
+            catch (error) {{ return error instanceof Ambiguous ? "ambiguous" : {{ error: error.message }}; }}
+        }})));
+    """
+    done = subprocess.run(
+        [program("node"), "-e", code], input=json.dumps([index, texts]), capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def on_the_command_line(icd, text: str) -> object:
+    try:
+        found = recognize(icd, text)
+    except Ambiguous:
+        return "ambiguous"
+    except UserError:
+        return None
+    return [[one.speaker.node.name, one.message.name, one.what, one.data.hex(), one.id] for one in found]
+
+
+def streams(icd) -> list[str]:
+    """Random traffic, whole and damaged: framed, bare, with and without ids, as packets of CAN."""
+    source = random.Random(7)
+    messages = [m for node in icd.nodes for m in icd.messages_of(node)]
+    found = []
+    for _ in range(700):
+        message = source.choice(messages)
+        data = source.randbytes(message.length if source.random() < 0.8 else source.randrange(12))
+        id = source.choice(message.ids)
+        body = bytes([id]) + data + (source.randbytes(1) if source.random() < 0.2 else b"")
+        line = b"\x1f\x7f" + body.replace(b"\x1f", b"\x1f\x1f") + b"\x1f\xff"
+        if source.random() < 0.3:
+            line = source.randbytes(source.randrange(4)) + line + b"\x1f\x7f\x92\x1f\xff"
+        at = source.randrange(len(line))
+        damaged = line[:at] + source.randbytes(source.randrange(2)) + line[at + 1 :]
+        found += [one.hex() for one in (line, body, data, damaged) if one]
+        found.append("\n".join(one.hex(" ") for one in (body, body[:3]) if one))
+        kind = 1 if message.telecommand_id == id else 5
+        if len(data) <= 8:
+            found.append(f"can0 {kind:02X}{id:02X}0201#{data.hex()}")
+            continue
+        pieces = [data[at : at + 7].ljust(7, b"\0") for at in range(0, len(data), 7)]
+        kind = 7 if message.telecommand_id == id else 8
+        rows = [
+            f"{kind:02X}{id:02X}0201#{piece.hex()}{len(pieces) - 1 - n & 255:02x}" for n, piece in enumerate(pieces)
+        ]
+        found.append("\n".join(rows if source.random() < 0.7 else rows[1:]))
+    return found
+
+
+@pytest.fixture(scope="module")
+def index(shipped) -> dict:
+    return json.loads(json.dumps(recognition.index(Relations(shipped))))
+
+
+def test_every_way_to_paste_a_frame_leads_to_the_same_message(shipped, index):
+    texts = [*BARE.values(), *WHOLE.values()]
+    expected = [on_the_command_line(shipped, text) for text in texts]
+    assert on_the_page(index, texts) == expected
+    assert expected.count("ambiguous") == len(BARE)
+
+
+def test_random_traffic_is_what_the_command_line_says_it_is(shipped, index):
+    texts = streams(shipped)
+    shown = [one if not isinstance(one, dict) else None for one in on_the_page(index, texts)]
+    expected = [on_the_command_line(shipped, text) for text in texts]
+    different = [(t, s, e) for t, s, e in zip(texts, shown, expected, strict=True) if s != e]
+    assert different[:3] == []
+    assert min(sum(e is None for e in expected), sum(e == "ambiguous" for e in expected)) > 100
+    assert sum(isinstance(e, list) for e in expected) > 1000
+
+
+def test_what_is_wrong_is_said(index):
+    said = {
+        "1F 7F 92 2E FB": "end of the message is missing",
+        "1F 7F 92 2E 1F 02 1F FF": "followed by neither",
+        "1F 7F 92 2E FB 1F FF": "has 6 bytes, 2 given after the id 146",
+        "can0 123 [1] 00": "11-bit",
+        "can0 1F920201 [1] 00": "is none of",
+        "2exb01": "not hexadecimal",
+        "1F 7F 6F 1F FF": "no message has the id",
+    }
+    found = on_the_page(index, list(said))
+    assert [
+        (text, one) for (text, says), one in zip(said.items(), found, strict=True) if says not in one["error"]
+    ] == []
