@@ -46,6 +46,11 @@ class FieldDescription(Named[Field]):
         return self.model.const or 0
 
     @property
+    def byte_order(self) -> str:
+        """``little`` or ``big``: its own, its message's or its node's."""
+        return self.model.orders(self.message.node)[0]
+
+    @property
     def pieces(self) -> tuple[layout.Piece, ...]:
         """The runs of bits of the frame that make up a number."""
         return layout.pieces(self.model, self.message.node)

@@ -17,6 +17,7 @@ from icdgen.icd import model
 from icdgen.icd.formula import Scale
 from icdgen.icd.units import Unit
 
+_SCALARS = frozenset((str, int, bool, float, type(None)))
 _CLASSES: dict[str, type[Any]] = {
     kind.__name__: kind
     for kind in (Scale, Unit, *vars(model).values())
@@ -45,20 +46,18 @@ class _Writer:
         self.known: dict[int, int] = {}  # id of an object -> its number
 
     def plain(self, value: Any) -> Any:
-        if value is None or isinstance(value, (str, int, float)):
+        kind = type(value)
+        if kind in _SCALARS:
             return value
-        if isinstance(value, Fraction):
+        if kind is tuple:
+            return [self.plain(item) for item in value]
+        if kind is Fraction:
             return {"is": "/", "parts": [value.numerator, value.denominator]}
-        name = type(value).__name__
-        if name not in _CLASSES:
-            return (
-                [self.plain(item) for item in value]
-                if type(value) is tuple
-                else {"is": "raw", "json": json.dumps(value)}
-            )
+        if kind.__name__ not in _CLASSES:
+            return {"is": "raw", "json": json.dumps(value)}
         if id(value) in self.known:
             return {"same": self.known[id(value)]}
-        made = {"is": name}
+        made = {"is": kind.__name__}
         for key, item in _attributes(value):
             made[key] = self.plain(item)
         self.known[id(value)] = len(self.known)

@@ -24,6 +24,6 @@ def build(source: Path, out: Path, profile: str) -> list[str]:
 
 
 LANGUAGES = [
-    Language("rust", BACKENDS, ("cargo", "rustc"), partial(build, profile="release"), front=False),
-    Language("rust-debug", BACKENDS, ("cargo", "rustc"), partial(build, profile="dev"), front=False),
+    Language("rust", BACKENDS, ("cargo", "rustc"), partial(build, profile="release")),
+    Language("rust-debug", BACKENDS, ("cargo", "rustc"), partial(build, profile="dev")),
 ]

@@ -14,28 +14,25 @@ from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
 from icdgen.backends.rust import CRATE, names
 from icdgen.backends.rust.links import longest
-from icdgen.backends.rust.text import string
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.links import links_of
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
 
-WIRE = ("ask", "client", "file", "logs", "wire")  # what answers requests about the protocol
+WIRE = ("logs", "scripts", "wire")  # what answers requests about the protocol
 
 
 class Route(NamedTuple):
-    """Kind of a message, where its id is said, its type."""
+    """Where an id is said, and the type of the message that it leads to."""
 
-    way: str
     id: str
     type: str
 
 
 class EnumEntry(NamedTuple):
-    """Name, type and integer of an enumeration."""
+    """Type and integer of an enumeration."""
 
-    name: str
     type: str
     raw: str
 
@@ -43,7 +40,6 @@ class EnumEntry(NamedTuple):
 class FieldEntry(NamedTuple):
     """What the table of fields says."""
 
-    title: str
     name: str
     scale: str
     special: str
@@ -72,18 +68,17 @@ class NodeEntry:
 
     def __init__(self, crate: str, node: NodeDescription, id_bits: int) -> None:
         self.name, self.crate = node.name, crate
-        self.routes = [route for message in node.spoken for route in self._routes(message)]
+        ways = {
+            "telecommand": [(m, m.telecommand_id_name) for m in node.telecommands],
+            "telemetry": [(m, m.telemetry_id_name) for m in node.telemetry],
+        }
+        self.routes = [[self._route(*route) for route in routes] for routes in ways.values()]
         self.enums = [
-            EnumEntry(
-                string(enum.model.name),
-                f"{crate}::{node.name}::enums::{names.type_name(enum)}",
-                f"u{enum.storage.bits}",
-            )
+            EnumEntry(f"{crate}::{node.name}::enums::{names.type_name(enum)}", f"u{enum.storage.bits}")
             for enum in node.enums
         ]
-        has = {"telecommand": bool(node.telecommands), "telemetry": bool(node.telemetry)}
-        self.sums = [Dispatcher(way, way.capitalize(), f"u{id_bits}") for way, there in has.items() if there]
-        self.telecommand, self.telemetry = (f"Some({way})" if there else "None" for way, there in has.items())
+        self.sums = [Dispatcher(way, way.capitalize(), f"u{id_bits}") for way, routes in ways.items() if routes]
+        self.dispatchers = [f"Some({way})" if routes else "None" for way, routes in ways.items()]
         self.node_type = self._constant("NODE_TYPE", node.model.node_type)
         self.interface_version = self._constant("INTERFACE_VERSION", node.model.interface_version)
         self.messages = [self._message(message) for message in node.messages]
@@ -94,11 +89,9 @@ class NodeEntry:
     def _path(self, message: MessageDescription) -> str:
         return f"{self.crate}::{message.node.name}::{names.type_name(message)}"
 
-    def _routes(self, message: MessageDescription) -> Iterator[Route]:
+    def _route(self, message: MessageDescription, id: str) -> Route:
         path = self._path(message)
-        ways = {"id": message.model.kind.capitalize(), "set_id": "Set", "get_id": "Get"}
-        for id in message.ids:
-            yield Route(ways[id.name], f"{path}::{id.name.upper()}", path)
+        return Route(f"{path}::{id.upper()}", path)
 
     def _message(self, message: MessageDescription) -> MessageEntry:
         ids = ", ".join(f"Self::{id.name.upper()} as u32" for id in message.ids)
@@ -116,7 +109,7 @@ def _field(field: FieldDescription) -> FieldEntry:
     if field.bounds:
         values = ", ".join(f'("{key}", {name} as f64)' for key, name in names if key != "special")
         limits = f"|| vec![{values}]"
-    return FieldEntry(string(field.model.name), field.name, scale, special, limits)
+    return FieldEntry(field.name, scale, special, limits)
 
 
 class RustTesteeBackend:
@@ -133,8 +126,7 @@ class RustTesteeBackend:
         description = describe(icd)
         yield PurePosixPath("Cargo.toml"), render("Cargo.toml.j2", **common)
         known = links_of(description)
-        for name in ("main", "protocol"):
-            yield PurePosixPath(f"src/{name}.rs"), render(f"{name}.rs.j2", wired=bool(known), **common)
+        yield PurePosixPath("src/main.rs"), render("main.rs.j2", wired=bool(known), **common)
         for file in render.runtime_files():
             if known or PurePosixPath(file).stem not in WIRE:
                 yield PurePosixPath(file), render.source(file)

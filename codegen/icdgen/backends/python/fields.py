@@ -47,6 +47,7 @@ def info(field: FieldDescription) -> str:
     if one.special:
         pairs = [f"({special.value}, {literal(special.meaning)})" for special in one.special]
         items.append(exploded("special=(", pairs, ")", " " * 12))
+    items += (f'{key}="{value}"' for key in ("byte_order", "bit_order") if (value := getattr(one, key)))
     items += (f"{_KEYWORDS.get(bound.key, bound.key)}={_number(bound.value)}" for bound in field.bounds)
     return bracketed("_base.FieldInfo(", items, ")", WIDTH, " " * 8)
 

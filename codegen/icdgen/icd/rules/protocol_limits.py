@@ -132,8 +132,8 @@ def _codes(errors: Map) -> Iterator[Fault]:
 
 def _checksum(crc: Map) -> Iterator[Fault]:
     width = crc.get("width")
-    if not isinstance(width, int):
-        return
+    if not isinstance(width, int) or width < 1:
+        return  # the schema's business
     for key in ("polynomial", "init", "xor_out", "empty", "check"):
         value = crc.get(key)
         if isinstance(value, int) and value >= 1 << width:
