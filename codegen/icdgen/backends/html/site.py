@@ -8,7 +8,19 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from icdgen import __version__, show
-from icdgen.backends.html import drawing, enums, errata, llms, messages, nodes, recognition, search, sidebar, units
+from icdgen.backends.html import (
+    drawing,
+    enums,
+    errata,
+    llms,
+    messages,
+    nodes,
+    protocol,
+    recognition,
+    search,
+    sidebar,
+    units,
+)
 from icdgen.backends.html.links import CHANGES, ERRATA, HOME, UNITS
 from icdgen.backends.html.relations import Relations
 from icdgen.icd.model import Icd
@@ -20,9 +32,9 @@ if TYPE_CHECKING:
 # Written by hand; the pages load them.
 _LOADED = (
     *("style.css", "layout.css", "print.css", "icon.svg"),
-    *("theme.js", "site.js", "load.js", "search.js", "find.js", "filter.js", "copy.js"),
+    *("theme.js", "site.js", "load.js", "search.js", "find.js", "filter.js", "errata.js", "copy.js"),
     *("codec.js", "frames.js", "packets.js", "pasted.js", "stream.js", "recognize.js"),
-    *("frame-links.js", "paste.js", "values.js", "lit.js", "try.js"),
+    *("frame-links.js", "paste.js", "values.js", "lit.js", "try.js", "protocol.js"),
 )
 
 
@@ -57,6 +69,9 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
         beside = sidebar.of_node(relations, node, render)
         url = relations.links.node(node.name)
         yield page(url, "node.html.j2", sidebar=beside(url), **nodes.values(relations, node))
+        if protocol.has_page(relations, node):
+            url = relations.links.protocol(node.name)
+            yield page(url, "protocol.html.j2", sidebar=beside(url), **protocol.values(relations, node))
         shown = [messages.values(relations, node, message, render) for message in node.messages]
         for before, one, after in zip([None, *shown], shown, [*shown[1:], None], strict=False):
             yield page(one["url"], "message.html.j2", before=before, after=after, sidebar=beside(one["url"]), **one)
