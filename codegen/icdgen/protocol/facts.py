@@ -38,7 +38,7 @@ class Unsupported(LookupError):
     """The ICD does not describe this part of the protocol."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Facts:
     """Everything that the protocol layer of a node is made from."""
 

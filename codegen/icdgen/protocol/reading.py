@@ -6,8 +6,7 @@ Facts are read as they are declared; here is what takes more: lists by role, mes
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.protocol.declared import Fact, read
@@ -37,8 +36,7 @@ from icdgen.protocol.sections import (
 T = TypeVar("T")
 
 
-@dataclass(frozen=True, slots=True)
-class Assumption:
+class Assumption(NamedTuple):
     """Something that the manual leaves open: where it stands, what we hold, and why."""
 
     section: str  # "can.extended", or "message Reset"
