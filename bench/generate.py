@@ -3,7 +3,8 @@
     python bench/generate.py [--runs 21] [--lang c ...]
 
 Each figure is the processor's time of whole processes, interpreter start included, with their output thrown away; the least of
-them is also given as a multiple of bare Python's. Every run writes to a folder that did not exist: ext4 takes ten times as long to
+them is also given as a multiple of bare Python's. What is compared takes turns, so that what else the machine does slows all
+alike. Every run writes to a folder that did not exist: ext4 takes ten times as long to
 create a file where some have just been deleted, and a user's cold build deletes none. Python keeps its compiled modules, as it does
 for a user, whatever the environment says.
 """
@@ -23,19 +24,12 @@ from itertools import count
 from pathlib import Path
 
 
-def seconds(
-    command: Callable[[], list[str]], runs: int, environment: dict[str, str], before: Callable[[], None]
-) -> list[float]:
-    """Seconds of the processor's time, after one run that is not counted."""
-    times = []
-    for _ in range(runs + 1):
-        before()
-        line = command()
-        start = resource.getrusage(resource.RUSAGE_CHILDREN)
-        subprocess.run(line, check=True, stdout=subprocess.DEVNULL, env=environment)
-        end = resource.getrusage(resource.RUSAGE_CHILDREN)
-        times.append(end.ru_utime + end.ru_stime - start.ru_utime - start.ru_stime)
-    return times[1:]
+def seconds(line: list[str], environment: dict[str, str]) -> float:
+    """Seconds of the processor's time that a command takes."""
+    start = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(line, check=True, stdout=subprocess.DEVNULL, env=environment)
+    end = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return end.ru_utime + end.ru_stime - start.ru_utime - start.ru_stime
 
 
 def main() -> None:
@@ -45,9 +39,11 @@ def main() -> None:
     options = parser.parse_args()
     languages = options.lang or ["c"]
     with tempfile.TemporaryDirectory() as folder:
-        cache, numbers = Path(folder, "cache"), count()
-        environment = {**os.environ, "ICDGEN_CACHE": str(cache), "PYTHONPYCACHEPREFIX": str(Path(folder, "pycache"))}
+        numbers, empty = count(1), Path(folder, "empty")
+        environment = {**os.environ, "PYTHONPYCACHEPREFIX": str(Path(folder, "pycache"))}
         environment.pop("PYTHONDONTWRITEBYTECODE", None)
+        forgetting = {**environment, "ICDGEN_CACHE": str(empty)}
+        remembering = {**environment, "ICDGEN_CACHE": str(Path(folder, "cache"))}
         program = shutil.which("icdgen", path=str(Path(sys.executable).parent))
         icdgen = [program] if program else [sys.executable, "-m", "icdgen"]
         icdgen += [word for language in languages for word in ("--lang", language)]
@@ -55,25 +51,25 @@ def main() -> None:
         def into(number: int) -> list[str]:
             return [*icdgen, "--out", str(Path(folder, f"out{number}"))]
 
-        rows = [
-            ("python -c pass", lambda: [sys.executable, "-c", "pass"], lambda: None),
-            ("nothing remembered, all files written", lambda: into(next(numbers)), lambda: forget(cache)),
-            ("ICDs validated before, all files written", lambda: into(next(numbers)), lambda: None),
-            ("nothing to do", lambda: into(0), lambda: None),
+        bare = [sys.executable, "-c", "pass"]
+        rows: list[tuple[str, Callable[[], list[str]], dict[str, str]]] = [
+            ("python -c pass", lambda: bare, environment),
+            ("nothing remembered, all files written", lambda: into(next(numbers)), forgetting),
+            ("ICDs validated before, all files written", lambda: into(next(numbers)), remembering),
+            ("nothing to do", lambda: into(0), remembering),
         ]
+        times: dict[str, list[float]] = {title: [] for title, _, _ in rows}
+        for turn in range(options.runs + 1):
+            for title, command, its_environment in rows:
+                shutil.rmtree(empty, ignore_errors=True)
+                spent = seconds(command(), its_environment)
+                times[title] += [spent] if turn else []  # the first fills the caches
         print(
             f"| {'+'.join(languages)}, {options.runs} runs | median, s | least, s | times bare Python |\n|---|---|---|---|"
         )
-        bare = 0.0
-        for title, command, before in rows:
-            times = seconds(command, options.runs, environment, before)
-            bare = bare or min(times)
-            row = f"{statistics.median(times):.3f} | {min(times):.3f} | {min(times) / bare:.1f}"
-            print(f"| {title} | {row} |", flush=True)
-
-
-def forget(cache: Path) -> None:
-    shutil.rmtree(cache, ignore_errors=True)
+        for title, all_spent in times.items():
+            least, times_bare = min(all_spent), min(all_spent) / min(times["python -c pass"])
+            print(f"| {title} | {statistics.median(all_spent):.3f} | {least:.3f} | {times_bare:.1f} |")
 
 
 if __name__ == "__main__":

@@ -131,7 +131,7 @@ def _read(node: Node, field: Field, frame: int) -> int | bytes:
         part = frame >> field.at // 8 * 8 & (1 << field.bits) - 1
         return part.to_bytes(field.bits // 8, "little")
     value = 0
-    for here, index, count in _runs(field.at, field.bits, node.byte_order, node.bit_order):
+    for here, index, count in _runs(field.at, field.bits, *field.orders(node)):
         value |= (frame >> here & (1 << count) - 1) << index
     if field.type == "int" and value >> (field.bits - 1):
         value -= 1 << field.bits
@@ -144,6 +144,6 @@ def _written(node: Node, field: Field, value: int | bytes) -> int:
     if isinstance(value, (bytes, bytearray)):
         return int.from_bytes(value, "little") << field.at // 8 * 8
     frame, value = 0, int(value)
-    for here, index, count in _runs(field.at, field.bits, node.byte_order, node.bit_order):
+    for here, index, count in _runs(field.at, field.bits, *field.orders(node)):
         frame |= (value >> index & (1 << count) - 1) << here
     return frame

@@ -5,6 +5,7 @@ A field is a row of pieces, each a run of bits of one byte. See 'Bits' in ``docs
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -45,7 +46,14 @@ def pieces_at(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[Piec
 
 def pieces(field: Field, node: Node) -> tuple[Piece, ...]:
     """The pieces of a number field. A ``bytes`` field is whole bytes in order: see `byte_range`."""
-    return pieces_at(field.at, field.bits, node.byte_order, node.bit_order)
+    return pieces_at(field.at, field.bits, *field.orders(node))
+
+
+def mask(field: Field, node: Node) -> int:
+    """The bits of the frame that the field has; bit w of byte b is bit 8 * b + w."""
+    if field.type == "bytes":
+        return ((1 << field.bits) - 1) << field.at
+    return sum(piece.mask << 8 * piece.byte for piece in pieces(field, node))
 
 
 def byte_range(field: Field) -> range:
@@ -59,14 +67,16 @@ def is_whole_bytes(field: Field) -> bool:
 
 
 class Gap(NamedTuple):
-    """Reserved bits: ``bits`` bits from bit ``at`` of the frame."""
+    """Reserved bits: ``bits`` bits from bit ``at`` of the frame, counted as the node counts them."""
 
     at: int
     bits: int
 
 
-def gaps(message: Message) -> tuple[Gap, ...]:
+def gaps(message: Message, node: Node) -> tuple[Gap, ...]:
     """Bits of the frame that no field covers, in order."""
+    if any(field.bit_order not in ("", node.bit_order) for field in message.fields):
+        return tuple(_gaps_among(message, node))
     found, reached = [], 0
     for field in sorted(message.fields, key=lambda f: f.at):
         if field.at > reached:
@@ -75,3 +85,19 @@ def gaps(message: Message) -> tuple[Gap, ...]:
     if reached < message.length * 8:
         found.append(Gap(reached, message.length * 8 - reached))
     return tuple(found)
+
+
+def _gaps_among(message: Message, node: Node) -> Iterator[Gap]:
+    """`gaps` where fields count bits in different ways."""
+    covered = 0
+    for field in message.fields:
+        covered |= mask(field, node)
+    start = None
+    for at in range(message.length * 8 + 1):
+        weight = at if node.bit_order == "lsb0" else at // 8 * 8 + 7 - at % 8
+        is_free = at < message.length * 8 and not covered >> weight & 1
+        if is_free and start is None:
+            start = at
+        elif not is_free and start is not None:
+            yield Gap(start, at - start)
+            start = None

@@ -709,7 +709,7 @@ static inline void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t len
     const uint32_t mask = UINT32_C(0xFFFFFFFF) >> (32u - width);
     const uint32_t top = UINT32_C(1) << (width - 1u);
 #ifndef ICDGEN_NO_TABLES
-    const unsigned beyond = width > 8u ? width - 8u : 0u; /* bits of the register below those that meet a byte */
+    const unsigned beyond = width > 8u ? width - 8u : 0u;  /* bits of the register below those that meet a byte */
     const unsigned missing = width < 8u ? 8u - width : 0u; /* bits of a byte that meet none of the register */
 #endif
     uint32_t value = crc->value;

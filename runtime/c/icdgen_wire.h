@@ -14,6 +14,8 @@
 
 #include "wire/forms.h"
 
+#include "wire/procedure_forms.h"
+
 #include "wire/link.h"
 
 #include "wire/events.h"

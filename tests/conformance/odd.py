@@ -74,6 +74,21 @@ messages:
     length: 1
     fields:
       - {at: 0, bits: 8, name: A, type: uint}
+  - name: Orders
+    id: 0x01020304
+    kind: telecommand
+    length: 32
+    fields:
+      - {at: 0, bits: 12, name: Big Bits, type: int, byte_order: big, bit_order: msb0, formula: raw*0.5}
+      - {at: 8, bits: 4, name: Low Half, type: uint}
+      - {at: 16, bits: 16, name: Big Word, type: uint, byte_order: big}
+      - {at: 32, bits: 24, name: Big Three, type: int, byte_order: big}
+      - {at: 56, bits: 32, name: Big Float, type: float, byte_order: big}
+      - {at: 88, bits: 32, name: Little Float, type: float}
+      - {at: 120, bits: 64, name: Big Long, type: int, byte_order: big}
+      - {at: 187, bits: 3, name: Turned Bits, type: uint, bit_order: msb0}
+      - {at: 184, bits: 2, name: Straight Bits, type: uint}
+      - {at: 192, bits: 64, name: Big Double, type: float, byte_order: big}
   - {name: Lowest byte of it, id: 0x78, kind: telemetry, length: 0}
   - {name: Lowest half of it, id: 0x5678, kind: telemetry, length: 0}
   - {name: Without its highest bit, id: 0x7FFFFFFF, kind: telecommand, length: 0}

@@ -85,11 +85,15 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         "byte_order": draw(st.sampled_from(("little", "big"))),
         "bit_order": draw(st.sampled_from(("lsb0", "msb0"))),
     }
-    straight = tuple(orders.values()) in (("little", "lsb0"), ("big", "msb0"))
     messages = []
     for number in range(draw(st.integers(1, 5))):
-        fields, length = draw(_fields(enums if number else enums + enums, straight))
-        message = {**names.one("message"), "kind": draw(st.sampled_from(("telecommand", "telemetry", "configuration")))}
+        own = draw(_own_orders())
+        fields, length = draw(_fields(enums if number else enums + enums, orders | own))
+        message = {
+            **names.one("message"),
+            **own,
+            "kind": draw(st.sampled_from(("telecommand", "telemetry", "configuration"))),
+        }
         if message["kind"] == "configuration":
             message |= {"set_id": ids(first_id + number), "get_id": ids(first_id + 20 - number)}
         else:
@@ -130,23 +134,47 @@ def _enum(draw, names: Names, name: str) -> dict:
 
 
 @st.composite
-def _fields(draw, enums: list[dict], straight: bool) -> tuple[list[dict], int]:
-    """Fields one after another with gaps of reserved bits, and their bytes; ``straight``: a value is one run of bits."""
+def _own_orders(draw) -> dict:
+    """Orders of a message or a field over those around it; mostly none."""
+    found = {}
+    if draw(st.integers(0, 3)) == 0:
+        found["byte_order"] = draw(st.sampled_from(("little", "big")))
+    if draw(st.integers(0, 3)) == 0:
+        found["bit_order"] = draw(st.sampled_from(("lsb0", "msb0")))
+    return found
+
+
+def _bits_of(field: dict, orders: dict) -> int:
+    """The bits of the frame that a field has: bit w of byte b is bit 8 * b + w."""
+    places = (divmod(at, 8) for at in range(field["at"], field["at"] + field["bits"]))
+    return sum(1 << 8 * byte + (bit if orders["bit_order"] == "lsb0" else 7 - bit) for byte, bit in places)
+
+
+@st.composite
+def _fields(draw, enums: list[dict], orders: dict) -> tuple[list[dict], int]:
+    """Fields one after another with gaps of reserved bits, and their bytes; ``orders`` are those of the message."""
     fields: list[dict] = []
     names = Names(draw, set())
-    at = 0
+    at = used = end = 0
     for _ in range(draw(st.integers(0, 8))):
         at += draw(st.sampled_from((0, 0, 0, 1, 2, 3, 5, 8, 11)))
         field = draw(_field(enums))
+        is_plain = field.keys() == {"bits", "type"} and field["type"] == "uint"
+        own = draw(_own_orders()) if field["type"] not in ("bytes", "bool") else {}
+        straight = tuple({**orders, **own}.values()) in (("little", "lsb0"), ("big", "msb0"))
         if field["type"] == "bytes":
             at = (at + 7) // 8 * 8
-        fields.append({"at": at, "bits": field.pop("bits"), **names.one("field"), **field})
-        is_plain = field.keys() == {"type"} and field["type"] == "uint"
+        while used & _bits_of({"at": at, **field}, orders | own):
+            at += draw(st.sampled_from((1, 8 - at % 8)))
+            at = (at + 7) // 8 * 8 if field["type"] == "bytes" else at
+        used |= _bits_of({"at": at, **field}, orders | own)
+        fields.append({"at": at, "bits": field.pop("bits"), **names.one("field"), **field, **own})
         if is_plain and (straight or at % 8 + fields[-1]["bits"] <= 8) and draw(st.booleans()):
             fields[-1]["bitfields"] = draw(_division(names, fields[-1]["bits"]))
-        at += fields[-1]["bits"]
+        end = max(end, at + fields[-1]["bits"])
+        at = draw(st.sampled_from((end, end, end // 8 * 8)))
     order = draw(st.permutations(fields)) if draw(st.booleans()) else fields
-    return order, (at + 7) // 8
+    return order, (end + 7) // 8
 
 
 @st.composite

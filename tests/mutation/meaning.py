@@ -26,4 +26,4 @@ def _place(node: Node, field: Field) -> object:
     """Where each of its bits lies."""
     if field.type == "bytes":
         return field.at
-    return codec._runs(field.at, field.bits, node.byte_order, node.bit_order)
+    return codec._runs(field.at, field.bits, *field.orders(node))

@@ -117,8 +117,13 @@ def _message(home: _Home, message: Message) -> Iterator[Mutant]:
     for step in (-1, 1):
         yield on_message("length", f"length {message.length} -> {message.length + step}", length=message.length + step)
     for key, values in (("byte_order", ("little", "big")), ("bit_order", ("lsb0", "msb0"))):
-        other = values[getattr(home.node, key) == values[0]]
-        yield mutant(key.replace("_", " "), f"{key} {other}", lambda t, k=key, o=other: t["node"].update({k: o}))
+        own = key in base["messages"][0]
+        other = values[(base["messages"][0] if own else base["node"])[key] == values[0]]
+        yield mutant(
+            key.replace("_", " "),
+            f"{key} {other}",
+            lambda t, k=key, o=other, own=own: (t["messages"][0] if own else t["node"]).update({k: o}),
+        )
     fields = base["messages"][0].get("fields") or []
     for about, change in _swaps(fields):
         yield mutant("swap", about, change)
@@ -146,6 +151,10 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
         yield _number("width", field, "bits", step)
     for other in _OTHER_TYPES[field["type"]]:
         yield "type", f"{field['type']} -> {other}", lambda f, o=other: _retype(f, o)
+    for key, values in (("byte_order", ("little", "big")), ("bit_order", ("lsb0", "msb0"))):
+        if key in field:
+            other = values[field[key] == values[0]]
+            yield key.replace("_", " "), f"{key} {other}", lambda f, k=key, o=other: f.update({k: o})
     if "formula" in field:
         for text in _formulas(field["formula"]):
             yield "formula", f"{field['formula']} -> {text}", lambda f, t=text: f.update(formula=t)

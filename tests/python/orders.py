@@ -1,4 +1,4 @@
-"""ICDs that no manual has: integers of every width at every bit, in all bit and byte orders."""
+"""ICDs that no manual has: integers of every width at every bit, in all bit and byte orders, some of their own."""
 
 from __future__ import annotations
 
@@ -31,10 +31,21 @@ def _message(source: random.Random, first: int) -> dict:
             field["enum"] = "Wide"
         elif field["type"] in ("uint", "int") and bits <= 48 and source.random() < 0.5:
             field["formula"] = source.choice(["raw*0.1", "raw/1000 - 40", "raw*-3/7", "raw*5 + 1", "0.25 - raw*1.5"])
+        if first % 2 and field["type"] != "bool" and source.random() < 0.4:
+            field["byte_order"] = source.choice(("little", "big"))
         fields.append(field)
         at += bits
     at = -(-at // 8) * 8
     for size in (3, 17):
         fields.append({"at": at, "bits": size * 8, "name": f"Bytes {size}", "type": "bytes"})
         at += size * 8
+    for size in (8, 16, 24, 32, 64, 32, 64):  # whole bytes in orders of their own
+        field = {
+            "at": at,
+            "bits": size,
+            "name": f"Word {at}",
+            "type": "float" if size in (32, 64) and at % 16 else "int",
+        }
+        fields.append(field | {"byte_order": source.choice(("little", "big")), "bit_order": "msb0"})
+        at += size
     return {"name": f"From bit {first}", "kind": "telemetry", "id": first, "length": at // 8, "fields": fields}

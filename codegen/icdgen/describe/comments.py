@@ -102,7 +102,14 @@ def limits_text(limits: Iterable[Bound], field: Field) -> str:
 def _place(field: Field) -> str:
     if field.type == "bytes":
         return byte_range(field.at // 8, field.bits // 8)
-    return bit_range(field.at, field.bits)
+    return ", ".join(filter(None, (bit_range(field.at, field.bits), orders_text(field))))
+
+
+def orders_text(field: Field) -> str:
+    """``big-endian``: byte order and bit order where they are its own or its message's; else empty."""
+    bit = {"msb0": "bit 0 of a byte is the most significant", "lsb0": "bit 0 of a byte is the least significant"}
+    told = f"{field.byte_order}-endian" if field.byte_order else "", bit.get(field.bit_order, "")
+    return ", ".join(filter(None, told))
 
 
 def _meaning(field: Field) -> str:
@@ -116,6 +123,7 @@ def _meaning(field: Field) -> str:
     return f"{text}; physical `{words(field.formula)}`, {span_text(scaled)}{f' {unit}' if unit else ''}"
 
 
+@lru_cache(maxsize=4096)
 def span_text(scaled: Steps) -> str:
     """``-327.68 to 327.67``: the physical values of all raw values."""
     low, high = scaled.span

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from itertools import chain
 from typing import TypeVar
 
@@ -14,6 +15,8 @@ from icdgen.icd.located import Map, plain
 from icdgen.icd.units import STANDARD, Unit
 
 T = TypeVar("T")
+
+Orders = tuple[str, str]
 
 _LIMITS = frozenset({"min", "max", "above", "below"})
 
@@ -111,7 +114,7 @@ class Builder:
             name=item["name"],
             kind=item["kind"],
             length=item["length"],
-            fields=tuple(chain.from_iterable(self.each("fields", self.fields, item))),
+            fields=tuple(chain.from_iterable(self.each("fields", partial(self.fields, orders(item)), item))),
             id=_id(item, "id"),
             set_id=_id(item, "set_id"),
             get_id=_id(item, "get_id"),
@@ -130,28 +133,30 @@ class Builder:
             source=item,
         )
 
-    def fields(self, item: Map) -> tuple[model.Field, ...]:
-        """The field, or the parts that it is divided into."""
+    def fields(self, around: Orders, item: Map) -> tuple[model.Field, ...]:
+        """The field, or the parts that it is divided into; ``around``: the orders that its message gives."""
         if "bitfields" not in item:
-            return (self.field(item),)
+            return (self.field(item, around),)
         parts = division.parts_of(item)
-        orders = self.tree["node"]["byte_order"], self.tree["node"]["bit_order"]
-        if not parts or any(id(p) in self.broken for p in parts) or any(division.obstacles(item, *orders)):
-            return (self.field(item),)
+        own, head = orders(item, around), self.tree["node"]
+        used = own[0] or head["byte_order"], own[1] or head["bit_order"]
+        if not parts or any(id(p) in self.broken for p in parts) or any(division.obstacles(item, *used)):
+            return (self.field(item, around),)
         errata = self.applied.about(item)
         return tuple(
             replace(
-                self.field(part),
-                at=division.place(item, part, *orders),
+                self.field(part, own),
+                at=division.place(item, part, *used),
                 summary=division.described(item, part),
                 errata=errata,
             )
             for part in parts
         )
 
-    def field(self, item: Map) -> model.Field:
+    def field(self, item: Map, around: Orders) -> model.Field:
         get = item.get
         kind = get("type", "uint")  # which parts of a field need not say
+        byte_order, bit_order = orders(item, around)
         return model.Field(
             name=item["name"],
             at=item["at"],
@@ -166,6 +171,8 @@ class Builder:
             special=tuple(self.each("special", special, item)) if "special" in item else (),
             limits=limits(item),
             summary=get("summary", ""),
+            byte_order=byte_order,
+            bit_order=bit_order,
             errata=self.applied.about(item),
             source=item,
         )
@@ -180,6 +187,11 @@ class Builder:
 
 def _id(item: Map, key: str) -> int | None:
     return wire_ids.number(item[key]) if key in item else None
+
+
+def orders(item: Map, around: Orders = ("", "")) -> Orders:
+    """Byte order and bit order that a mapping gives, or else the mapping around it."""
+    return item.get("byte_order", around[0]), item.get("bit_order", around[1])
 
 
 def scale(text: str | None) -> formula.Scale | None:

@@ -47,7 +47,7 @@ def apply(tree: Map, overlay: Map | None, broken: Set[int] = frozenset()) -> App
     named = _ByName()
     notes = list(_maps(overlay.get("notes")))  # first: what they speak of is what the vendor prints
     for entry in (*notes, *_maps(overlay.get("entries"))):
-        if _is_broken(entry, broken):
+        if broken and _is_broken(entry, broken):
             continue
         if entry["id"] in seen:
             applied.findings.append(

@@ -109,8 +109,14 @@ class Field:
     special: tuple[Special, ...] = ()
     limits: Limits | None = None
     summary: str = ""
+    byte_order: str = ""  # its own or its message's; empty: the node's
+    bit_order: str = ""  # likewise; `at` is counted by it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
+
+    def orders(self, node: Node) -> tuple[str, str]:
+        """Byte order and bit order; ``node`` is the one that declares its message."""
+        return self.byte_order or node.byte_order, self.bit_order or node.bit_order
 
     @property
     def signed(self) -> bool:

@@ -17,6 +17,7 @@ from icdgen.icd import model
 from icdgen.icd.formula import Scale
 from icdgen.icd.units import Unit
 
+_SCALARS = frozenset((str, int, bool, float, type(None)))
 _CLASSES: dict[str, type[Any]] = {
     kind.__name__: kind
     for kind in (Scale, Unit, *vars(model).values())
@@ -45,35 +46,24 @@ class _Writer:
         self.known: dict[int, int] = {}  # id of an object -> its number
 
     def plain(self, value: Any) -> Any:
-        if value is None or isinstance(value, (str, int, float)):
+        kind: Any = type(value)
+        if kind in _SCALARS:
             return value
-        if isinstance(value, Fraction):
+        if kind is tuple:
+            return [item if type(item) in _SCALARS else self.plain(item) for item in value]
+        if kind is Fraction:
             return {"is": "/", "parts": [value.numerator, value.denominator]}
-        name = type(value).__name__
-        if name not in _CLASSES:
-            return (
-                [self.plain(item) for item in value]
-                if type(value) is tuple
-                else {"is": "raw", "json": json.dumps(value)}
-            )
+        if kind.__name__ not in _CLASSES:
+            return {"is": "raw", "json": json.dumps(value)}
         if id(value) in self.known:
             return {"same": self.known[id(value)]}
-        made = {"is": name}
-        for key, item in _attributes(value):
-            made[key] = self.plain(item)
+        made = {"is": kind.__name__}
+        for name, default in _defaults(kind):  # what is as it is by default is left out
+            item = getattr(value, name)
+            if item is not default and (item != default or type(item) is not type(default)):
+                made[name] = item if type(item) in _SCALARS else self.plain(item)
         self.known[id(value)] = len(self.known)
         return made
-
-
-def _attributes(value: Any) -> list[tuple[str, Any]]:
-    """What differs from the default, without positions."""
-    found = []
-    kind: Any = type(value)
-    for name, default in _defaults(kind):
-        item = getattr(value, name)
-        if item is not default and (default is MISSING or item != default or type(item) is not type(default)):
-            found.append((name, item))
-    return found
 
 
 @cache

@@ -20,8 +20,11 @@ MAX_SCALAR = 20_000
 _INTEGER = re.compile(r"-?(?:0|[1-9][0-9]*)\Z")
 _HEX = re.compile(r"0x[0-9A-Fa-f]+\Z")
 _DECIMAL = re.compile(r"-?(?:0|[1-9][0-9]*)\.[0-9]+\Z")
+_LONGEST_WORD = len("false")  # of those that mean something else to some reader of YAML
 _WORDS = {"true": True, "false": False, "null": None, "~": None, "": None}
-_UNPRINTABLE = re.compile("[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_UNPRINTABLE = (
+    "[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"  # takes long to compile, and is seldom needed
+)
 # What YAML 1.1 or 1.2 reads as something other than the text it looks like.
 _TREACHEROUS = re.compile(
     r"""(?: [-+.0-9][-+0-9_.:eExXobA-Fa-f]*
@@ -199,10 +202,6 @@ class _Builder:
             if "\0" in text:
                 self.add("ICD001", "the text holds a NUL character", event, "remove it")
             return text
-        try:
-            return self.scalars[text]
-        except KeyError:
-            pass
         value = self.plain(text, event)
         if value is not self:
             self.scalars[text] = value
@@ -211,6 +210,8 @@ class _Builder:
 
     def plain(self, text: str, event: Event) -> object:
         """The value of an unquoted scalar; ``self`` if YAML readers disagree about it."""
+        if len(text) > _LONGEST_WORD and text[0].isalpha():
+            return text
         if text in _WORDS:
             return _WORDS[text]
         if _INTEGER.match(text):
@@ -234,7 +235,7 @@ class _Builder:
 
     def unprintable(self) -> Place:
         """Where the first character stands that YAML does not allow; the beginning if there is none."""
-        found = _UNPRINTABLE.search(self.text)
+        found = re.search(_UNPRINTABLE, self.text)
         return _after(self.name, self.text[: found.start()]) if found else Place(self.name)
 
     def add(self, code: str, message: str, event: Event, help: str) -> None:

@@ -98,7 +98,7 @@ def _columns(icd: Icd, known: Facts, slot: LogBit, start: int) -> Iterator[Colum
         if field.unit:
             name += f"_{naming.snake(naming.words(field.unit.identifier))}"
         pieces = tuple(p._replace(byte=p.byte + start) for p in layout.pieces(field, owner))
-        yield Column(name, message.name, message, field, start, slot.length, owner.byte_order, pieces)
+        yield Column(name, message.name, message, field, start, slot.length, field.orders(owner)[0], pieces)
 
 
 def _identifier(item: Message | Field, vocabulary: tuple[str, ...]) -> str:

@@ -7,8 +7,9 @@ from fractions import Fraction
 
 from icdgen import layout
 from icdgen.describe.bounds import allowed_ends, bounds
+from icdgen.describe.comments import orders_text
 from icdgen.describe.numbers import exact_text, factor_text, value_text
-from icdgen.icd.model import Field, Message
+from icdgen.icd.model import Field, Message, Node
 from icdgen.tables import Column, render
 
 _COLUMNS = [
@@ -24,11 +25,11 @@ _COLUMNS = [
 ]
 
 
-def field_table(message: Message, width: int | None = None) -> str:
+def field_table(message: Message, node: Node, width: int | None = None) -> str:
     """Fields and reserved bits in the order of the frame; empty for a message without any."""
     rows: list[tuple[int, tuple[str, ...]]] = [(field.at, _row(field)) for field in message.fields]
     reserved = ("reserved", "", "", "", "", "", "")
-    rows += [(gap.at, (str(gap.at), str(gap.bits), *reserved)) for gap in layout.gaps(message)]
+    rows += [(gap.at, (str(gap.at), str(gap.bits), *reserved)) for gap in layout.gaps(message, node)]
     return render(_COLUMNS, [row for _, row in sorted(rows, key=lambda r: r[0])], width)
 
 
@@ -42,6 +43,8 @@ def _row(field: Field) -> tuple[str, ...]:
 
 def remarks(field: Field, number: Callable[[Fraction], str] = exact_text) -> Iterator[str]:
     """What is constant, exclusive limits, and what special values mean; ``number`` writes numbers."""
+    if told := orders_text(field):
+        yield told
     if field.const is not None:
         yield f"always {value_text(field.const)}"
     for bound in bounds(field.limits):

@@ -132,7 +132,7 @@ def _message(icd: Icd, message: Message, width: int | None) -> str:
     lines += [f"Dangerous: {message.hazard}"] if message.hazard else []
     lines += [f"From bit {part.at} it repeats {part.message}." for part in message.contains]
     text = _lines(lines, width)
-    table = field_table(message, width)
+    table = field_table(message, node, width)
     text += "\n" + table if table else ""
     enums = dict.fromkeys(f.enum for f in message.fields if f.enum)
     errata = errata_of_message(message)

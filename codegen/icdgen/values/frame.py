@@ -163,7 +163,7 @@ def _outside(field: Field, raw: int) -> list[str]:
 
 def _reserved(node: Node, message: Message, data: bytes) -> list[str]:
     found = []
-    for gap in layout.gaps(message):
+    for gap in layout.gaps(message, node):
         pieces = layout.pieces_at(gap.at, gap.bits, node.byte_order, node.bit_order)
         if any(data[piece.byte] & piece.mask for piece in pieces):
             found.append(f"reserved {bit_range(gap.at, gap.bits)} {'is' if gap.bits == 1 else 'are'} not 0")

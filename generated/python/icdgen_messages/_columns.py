@@ -162,7 +162,8 @@ class _Decoder:
         if info.type == "bytes":
             return self.rows[:, start : start + size]
         code = {"int": "i", "float": "f"}.get(info.type, "u")
-        order = ">" if self.message.BYTE_ORDER == "big" else "<"
+        is_big = (info.byte_order or self.message.BYTE_ORDER) == "big"
+        order = ">" if is_big else "<"
         kind = self.numpy.dtype(f"{order}{code}{size}")
         column = self._column(kind, start)
         return column if kind.isnative else column.astype(kind.newbyteorder("="))
@@ -252,11 +253,13 @@ def _pieces(
     """Byte, shift, width and place in the value of each run of bits."""
     at, end = info.at, info.at + info.bits
     below = 0
+    is_little = (info.byte_order or message.BYTE_ORDER) == "little"
+    is_lsb0 = (info.bit_order or message.BIT_ORDER) == "lsb0"
     while at < end:
         byte, first = divmod(at, 8)
         bits = min(8 - first, end - at)
-        shift = first if message.BIT_ORDER == "lsb0" else 8 - first - bits
+        shift = first if is_lsb0 else 8 - first - bits
         at += bits
-        weight = below if message.BYTE_ORDER == "little" else info.bits - below - bits
+        weight = below if is_little else info.bits - below - bits
         below += bits
         yield byte, shift, bits, weight

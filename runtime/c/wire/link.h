@@ -3,6 +3,7 @@
 
 #include "../icdgen.h"
 #include "forms.h"
+#include "procedure_forms.h"
 
 /** How a client waits and tries again, in milliseconds. */
 typedef struct {

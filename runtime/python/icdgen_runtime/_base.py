@@ -56,6 +56,10 @@ class FieldInfo(NamedTuple):
     maximum: _MaybeFloat = None
     above: _MaybeFloat = None
     below: _MaybeFloat = None
+    byte_order: str = ""
+    """``little`` or ``big``; empty where it is the message's."""
+    bit_order: str = ""
+    """``lsb0`` or ``msb0``; empty where it is the message's."""
 
 
 class Message:

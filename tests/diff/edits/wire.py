@@ -27,7 +27,7 @@ from tests.diff.edits.edit import (
 @edit()
 def move_field(icd, rng):
     found = [
-        (n, m, f, g) for n, m, f in fields_of(icd, lambda f: f.type != "bytes") for g in gaps(m) if g.bits >= f.bits
+        (n, m, f, g) for n, m, f in fields_of(icd, lambda f: f.type != "bytes") for g in gaps(m, n) if g.bits >= f.bits
     ]  # fmt: skip
     one = pick(rng, found)
     if one is None:
@@ -103,7 +103,7 @@ def take_field_out(icd, rng):
 
 @edit()
 def fill_gap(icd, rng):
-    found = [(n, m, g) for n, m in messages_of(icd, lambda m: is_free(m, "Filler")) for g in gaps(m)]
+    found = [(n, m, g) for n, m in messages_of(icd, lambda m: is_free(m, "Filler")) for g in gaps(m, n)]
     one = pick(rng, found)
     if one is None:
         return None
@@ -191,6 +191,17 @@ def turn_byte_order(icd, rng):
         return None
     other = {"little": "big", "big": "little"}[node.byte_order]
     return done(with_node(icd, node, replace(node, byte_order=other)), "", "DIF112")
+
+
+@edit()
+def turn_field(icd, rng):
+    found = fields_of(icd, lambda f: f.type in ("uint", "int", "float") and f.bits > 8 and not f.byte_order)
+    one = pick(rng, found)
+    if one is None:
+        return None
+    node, message, field = one
+    other = {"little": "big", "big": "little"}[node.byte_order]
+    return done(with_field(icd, node, message, field, replace(field, byte_order=other)), message.name, "DIF117")
 
 
 @edit(beyond=True)

@@ -7,7 +7,6 @@ from typing import NamedTuple
 from icdgen.backends.c.statement import grouped, joined
 from icdgen.backends.c.types import cast, mask
 from icdgen.describe import FieldDescription, MessageDescription
-from icdgen.icd.model import Node
 from icdgen.layout import Piece
 
 BITS = "{bits}"  # stands for the bits of the field in the expressions made here
@@ -19,9 +18,9 @@ def is_word(field: FieldDescription) -> bool:
     return one.type != "bytes" and one.at % 8 == 0 and one.bits in (8, 16, 32, 64)
 
 
-def order(node: Node) -> str:
-    """How the support header's loads and stores name the node's byte order."""
-    return "le" if node.byte_order == "little" else "be"
+def order(field: FieldDescription) -> str:
+    """How the support header's loads and stores name the field's byte order."""
+    return "le" if field.byte_order == "little" else "be"
 
 
 class Read(NamedTuple):
@@ -65,7 +64,7 @@ def _from_bits(field: FieldDescription, wide: int, joined: bool) -> str:
 
 def _load(field: FieldDescription) -> str:
     byte, bits = field.model.at // 8, field.model.bits
-    return f"buffer[{byte}]" if bits == 8 else f"icdgen_load_u{bits}{order(field.message.node)}(&buffer[{byte}])"
+    return f"buffer[{byte}]" if bits == 8 else f"icdgen_load_u{bits}{order(field)}(&buffer[{byte}])"
 
 
 def _byte(piece: Piece) -> str:
@@ -105,7 +104,7 @@ def store(field: FieldDescription) -> str:
         value = cast(value, bits)
     if bits == 8:
         return f"buffer[{byte}] = {value};"
-    return f"icdgen_store_u{bits}{order(field.message.node)}(&buffer[{byte}], {value});"
+    return f"icdgen_store_u{bits}{order(field)}(&buffer[{byte}], {value});"
 
 
 def _raw(field: FieldDescription) -> str:

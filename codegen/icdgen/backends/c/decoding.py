@@ -29,13 +29,14 @@ def statements(message: MessageDescription) -> list[str]:
 
 
 def _group(group: Flags | Row, message: MessageDescription) -> str:
-    names = [field.name for field in message.fields[group.first : group.first + group.count]]
+    members = message.fields[group.first : group.first + group.count]
+    names = [field.name for field in members]
     target = f"{stem(message)}_t", "message"
     if isinstance(group, Flags):
         value = f"buffer[{group.byte}]" + (f" >> {group.shift}" if group.shift else "")
         return call(f"ICDGEN_READ_{group.macro}", (*target, value, *names))
     value = f"&buffer[{group.byte}]"
-    return call(f"ICDGEN_READ_{row_macro(message.node)}", (*target, value, f"{group.count}u", names[0], names[-1]))
+    return call(f"ICDGEN_READ_{row_macro(members[0])}", (*target, value, f"{group.count}u", names[0], names[-1]))
 
 
 def _one(field: FieldDescription) -> str:

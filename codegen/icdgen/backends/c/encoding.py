@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from icdgen.backends.c import bits
 from icdgen.backends.c.member_groups import Flags, Row, member_groups, row_macro
 from icdgen.backends.c.names import stem
@@ -33,7 +35,7 @@ class _Frame:
             if group is None:
                 self._one(message.fields[index])
             else:
-                self._group(group, [field.name for field in message.fields[index : index + group.count]])
+                self._group(group, message.fields[index : index + group.count])
             index += group.count if group else 1
 
     def _add(self, byte: int, shift: int, term: str) -> None:
@@ -50,11 +52,12 @@ class _Frame:
             for piece in field.pieces:
                 self._add(piece.byte, piece.shift, bits.put(field, piece))
 
-    def _group(self, group: Flags | Row, names: list[str]) -> None:
+    def _group(self, group: Flags | Row, members: Sequence[FieldDescription]) -> None:
+        names = [field.name for field in members]
         byte, source = group.byte, (f"{stem(self.message)}_t", "message")
         if isinstance(group, Row):
             arguments = (*source, f"&buffer[{byte}]", f"{group.count}u", names[0], names[-1])
-            self.whole[byte] = group.length, call(f"ICDGEN_WRITE_{row_macro(self.message.node)}", arguments)
+            self.whole[byte] = group.length, call(f"ICDGEN_WRITE_{row_macro(members[0])}", arguments)
             return
         macro = f"ICDGEN_JOIN_{group.macro}"
         if group.count == 8:

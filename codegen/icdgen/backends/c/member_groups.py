@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from icdgen.backends.c.bits import is_word, order
 from icdgen.describe import FieldDescription
-from icdgen.icd.model import Node
 
 LONG_ENOUGH = 8
 """From this many words on, a row is moved as one."""
@@ -85,10 +84,12 @@ def _row(fields: Sequence[FieldDescription], first: int) -> Row | None:
         one = field.model
         if not is_word(field) or one.bits != bits or one.at != start + count * bits or field.storage.bits != bits:
             break
+        if field.byte_order != fields[first].byte_order:
+            break
         count += 1
     return Row(first, count, start // 8, bits) if count >= LONG_ENOUGH else None
 
 
-def row_macro(node: Node) -> str:
+def row_macro(first: FieldDescription) -> str:
     """The end of the macro's name."""
-    return f"ROW_{order(node).upper()}"
+    return f"ROW_{order(first).upper()}"

@@ -119,7 +119,11 @@ class _Canvas:
             (LEFT + (column + 0.5) * self.cell, str(column if msb0 else column // 8 * 8 + 7 - column % 8))
             for column in range(8 * min(self.across, self.length))
         ]
-        gaps = [gap for gap in layout.gaps(self.message) if 8 * self.first <= gap.at < 8 * (self.first + self.length)]
+        gaps = [
+            gap
+            for gap in layout.gaps(self.message, self.node)
+            if 8 * self.first <= gap.at < 8 * (self.first + self.length)
+        ]
         reserved = Shape(0, "reserved", "Reserved: " + ", ".join(bit_range(g.at, g.bits) for g in gaps[:20]))
         reserved.rects = self._rects(0)
         rows = [

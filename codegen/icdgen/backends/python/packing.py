@@ -66,7 +66,8 @@ class Packer:
         shared = self._shared_bytes()
         for field in self.fields:
             span = byte_range(field.model)
-            if is_whole_bytes(field.model) and not shared.intersection(span):
+            turned_float = field.model.type == "float" and field.byte_order != self.order
+            if is_whole_bytes(field.model) and not shared.intersection(span) and not turned_float:
                 self._whole(field, span.start, len(span))
             elif len(span) == 1:
                 (piece,) = field.pieces
@@ -116,8 +117,8 @@ class Packer:
             self.items.append(_Item(byte, size, _FLOATS[one.bits], own, own))
             if one.bits == 32:
                 self.floats.append(own)
-        elif one.bits not in _INTEGERS:
-            how = f'"{self.order}"{", signed=True" if one.signed else ""}'
+        elif one.bits not in _INTEGERS or (size > 1 and field.byte_order != self.order):
+            how = f'"{field.byte_order}"{", signed=True" if one.signed else ""}'
             self.items.append(_Item(byte, size, f"{size}s", local, local))
             self._assign(field, f"int.from_bytes({local}, {how})")
             self.prepare.append(f"{local} = {own}.to_bytes({size}, {how})")

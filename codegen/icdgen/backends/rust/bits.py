@@ -44,7 +44,7 @@ def _whole(field: FieldDescription, size: int) -> str:
 
 
 def _order(field: FieldDescription) -> str:
-    return "le" if field.message.node.byte_order == "little" else "be"
+    return "le" if field.byte_order == "little" else "be"
 
 
 def _enum(value: str, size: int, wider: int) -> str:

@@ -116,6 +116,22 @@ def order_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
             yield Found(text, (key,), before, after, (f"Read otherwise, {what}: {some(fields)}.",))
 
 
+@rule("DIF117", "field")
+def own_order_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    old, new, nodes = pair.old, pair.new, (pair.owner.old_node, pair.owner.new_node)
+    if pair.same_bits or (old.at, old.bits) != (new.at, new.bits):
+        return
+    for key in ("byte_order", "bit_order"):
+        own = getattr(old, key), getattr(new, key)
+        if own[0] == own[1]:
+            continue  # if it is read otherwise, its node has turned round
+        was, now = (one or getattr(node, key) for one, node in zip(own, nodes, strict=True))
+        if was != now:
+            yield Found(
+                f"the {key.replace('_', ' ')} of {quote(new.name)} is {now}, was {was}", (key, "type"), was, now
+            )
+
+
 @rule("DIF116", "node")
 def id_width_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
     was, now = pair.old.id_bits, pair.new.id_bits

@@ -83,6 +83,7 @@ def _quoted_value(source: Map, key: str) -> str:
 def _differences(field: Field, twin: Field, frame: Message) -> Iterator[Fault]:
     mine, other = field.source, twin.source
     keys = [key for key in _KEYS if mine.get(key) != other.get(key)]
+    keys += (key for key in ("byte_order", "bit_order") if getattr(field, key) != getattr(twin, key))
     if field.scale is not None and field.scale == twin.scale and "formula" in keys:
         keys.remove("formula")  # written differently, and the same
     if keys:

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from icdgen.icd.identifiers import Language
 
 # Keys of a field that only few fields have.
-RARE = ("enum", "unit", "formula", "formula_for", "const", "special", "min", "max", "above", "below", "bitfields")
+RARE = ("enum", "unit", "formula", "formula_for", "const", "special", "min", "max", "above", "below", "bitfields",
+    "byte_order", "bit_order",
+)  # fmt: skip
 
 Row = tuple[Field, Message, Node]
 

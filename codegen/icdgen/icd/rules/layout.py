@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.icd.division import obstacles
-from icdgen.icd.model import Field
+from icdgen.icd.model import Field, Message, Node
 from icdgen.icd.rules.context import Context
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
@@ -40,7 +40,10 @@ def past_the_end(ctx: Context) -> Iterator[Fault]:
 
 @rule("ICD021")
 def overlap(ctx: Context) -> Iterator[Fault]:
-    for message, _ in ctx.messages:
+    for message, node in ctx.messages:
+        if any(field.bit_order not in ("", node.bit_order) for field in message.fields):
+            yield from _overlaps_among(message, node)
+            continue
         reached, widest = -1, -1
         fields = message.fields
         for index in sorted(range(len(fields)), key=lambda i: fields[i].at):
@@ -51,10 +54,34 @@ def overlap(ctx: Context) -> Iterator[Fault]:
                 reached, widest = field.at + field.bits, index
 
 
-def _overlap(first: Field, second: Field) -> Fault:
+def _overlaps_among(message: Message, node: Node) -> Iterator[Fault]:
+    """`overlap` where fields count bits in different ways."""
+    seen: list[tuple[Field, int]] = []
+    for field in message.fields:
+        if field.at + field.bits > message.length * 8:
+            continue  # a finding already
+        mask = _mask(field, node)
+        clash = next(((one, shared) for one, other in seen if (shared := mask & other)), None)
+        if clash is not None:
+            first, shared = clash
+            low = (shared & -shared).bit_length() - 1
+            size = shared.bit_count()
+            bits = f"{count(size, 'bit')} of byte {low // 8}" if shared >> low // 8 * 8 < 256 else count(size, "bit")
+            yield _overlap(first, field, bits)
+        seen.append((field, mask))
+
+
+def _mask(field: Field, node: Node) -> int:
+    """The bits of the frame that the field has; bit w of byte b is bit 8 * b + w."""
+    if field.orders(node)[1] == "lsb0" or field.at % 8 == 0 == field.bits % 8:
+        return ((1 << field.bits) - 1) << field.at
+    return sum(1 << (at // 8 * 8 + 7 - at % 8) for at in range(field.at, field.at + field.bits))
+
+
+def _overlap(first: Field, second: Field, bits: str = "") -> Fault:
     place = second.source.at("at")
     start, end = max(first.at, second.at), min(first.at + first.bits, second.at + second.bits)
-    bits = f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}"
+    bits = bits or (f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}")
     other = f"{quote(first.name)} ({line_of(first.source.place, place)})"
     return Fault(second.source, place, f"{quote(second.name)} overlaps {other} in {bits}", "correct `at` or `bits`")
 
@@ -85,6 +112,16 @@ def bytes_boundary(ctx: Context) -> Iterator[Fault]:
             )
 
 
+@rule("ICD026")
+def order_of_nothing(ctx: Context) -> Iterator[Fault]:
+    for key in ("byte_order", "bit_order"):
+        for field, _, _ in ctx.having[key]:
+            if field.type == "bytes" or (field.type == "bool" and key == "byte_order"):
+                what = "bytes stand as they come" if field.type == "bytes" else "it is one bit"
+                message = f"{quote(field.name)} is `{field.type}`: {what}, so there is no `{key}`"
+                yield Fault(field.source, field.source.at(key), message, f"remove `{key}`")
+
+
 @rule("ICD024", whole=True)
 def undescribed_end(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
@@ -105,5 +142,5 @@ def undescribed_end(ctx: Context) -> Iterator[Fault]:
 @rule("ICD025")
 def bitfields(ctx: Context) -> Iterator[Fault]:
     for field, _, node in ctx.having["bitfields"]:
-        for item, key, message, help in obstacles(field.source, node.byte_order, node.bit_order):
+        for item, key, message, help in obstacles(field.source, *field.orders(node)):
             yield Fault(item, item.at(key), message, help)

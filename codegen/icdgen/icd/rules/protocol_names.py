@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 from icdgen.diagnostics import Place
 from icdgen.icd.located import Map, Seq
+from icdgen.icd.model import Message, Node
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.protocol import sections
@@ -55,24 +56,51 @@ def named_things_exist(ctx: Context) -> Iterator[Fault]:
                             yield Fault(section, place, message, f"correct `{key}` or `{name}`")
 
 
+class _Named(NamedTuple):
+    """A field that the protocol section names: ``owner[key]``, of ``message``."""
+
+    owner: Map
+    key: str
+    message: Message
+
+
+def _named_fields(ctx: Context, node: Node) -> Iterator[_Named]:
+    messages = {m.name: m for m in ctx.messages_of(node)}
+    for section in sections(node):
+        named: list[tuple[Map, str, object]] = []
+        if isinstance(section.get("message"), str):
+            named = [(section, key, section["message"]) for key in FIELDS if key in section]
+            fields = section.get("fields")
+            if isinstance(fields, Map):
+                named += [(fields, key, section["message"]) for key in fields]
+        if isinstance(section.get("names"), Seq) and isinstance(section.get("field"), str):
+            named += [(section, "field", name) for name in section["names"]]
+        for owner, key, name in named:
+            if isinstance(name, str) and name in messages and isinstance(owner[key], str):
+                yield _Named(owner, key, messages[name])
+
+
 @rule("ICD094", whole=True)
 def named_fields_exist(ctx: Context) -> Iterator[Fault]:
     for node in ctx.icd.nodes:
-        messages = {m.name: {f.name for f in m.fields} for m in ctx.messages_of(node)}
-        for section in sections(node):
-            named: list[tuple[Map, str, str]] = []
-            if isinstance(section.get("message"), str):
-                named = [(section, key, section["message"]) for key in FIELDS if key in section]
-                fields = section.get("fields")
-                if isinstance(fields, Map):
-                    named += [(fields, key, section["message"]) for key in fields]
-            if isinstance(section.get("names"), Seq) and isinstance(section.get("field"), str):
-                named += [(section, "field", name) for name in section["names"] if isinstance(name, str)]
-            for owner, key, message in named:
-                known, field = messages.get(message), owner[key]
-                if known is not None and isinstance(field, str) and field not in known:
-                    text = f"{quote(message)} has no field {quote(field)}"
-                    yield Fault(owner, owner.at(key), text, _verbatim(field, known))
+        for owner, key, message in _named_fields(ctx, node):
+            known = {field.name for field in message.fields}
+            if owner[key] not in known:
+                text = f"{quote(message.name)} has no field {quote(owner[key])}"
+                yield Fault(owner, owner.at(key), text, _verbatim(owner[key], known))
+
+
+@rule("ICD113", whole=True)
+def named_fields_in_the_order_of_the_node(ctx: Context) -> Iterator[Fault]:
+    for node in ctx.icd.nodes:
+        for owner, key, message in _named_fields(ctx, node):
+            orders = node.byte_order, node.bit_order
+            home = next(one for one in ctx.scope(node) if message in one.messages)
+            for field in message.fields:
+                if field.name == owner[key] and field.type != "bytes" and field.orders(home) != orders:
+                    text = f"{quote(field.name)} is {' '.join(field.orders(home))}, the links of `{node.name}` read fields as"
+                    help = f"give it the orders of the node, or leave `{key}` out"
+                    yield Fault(owner, owner.at(key), f"{text} {' '.join(orders)}", help)
 
 
 @rule("ICD095")

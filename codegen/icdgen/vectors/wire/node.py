@@ -106,7 +106,7 @@ class FileNode:
             return self._packet(position)
         name, step = self.steps[id]
         busy, self.polls = int(self.polls > 0), max(0, self.polls - 1)
-        return self._frame(step, self._told(name, busy))
+        return self._frame(step, self._values_of(name, busy))
 
     def _frame(self, step: Step, values: dict[str, Any]) -> bytes:
         raw = {f.name: bytes(f.bits // 8) if f.type == "bytes" else 0 for f in step.message.fields}
@@ -117,7 +117,7 @@ class FileNode:
         assert self.known.crc16
         return crc.compute(self.known.crc16, data)
 
-    def _told(self, step: str, busy: int) -> dict[str, Any]:
+    def _values_of(self, step: str, busy: int) -> dict[str, Any]:
         """What the frame of a step tells, by role."""
         if step == "list.information":
             return {"busy": 1} if busy else self._listed()

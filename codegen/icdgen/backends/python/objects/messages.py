@@ -67,7 +67,15 @@ def _class(description: MessageDescription) -> type[ModelMessage]:
         "IDS": message.ids,
         "ACKNOWLEDGED": message.acknowledge,
         "FIELDS": tuple(
-            FieldInfo(one.name, one.model.name, one.model.at, one.model.bits, one.model.type)
+            FieldInfo(
+                one.name,
+                one.model.name,
+                one.model.at,
+                one.model.bits,
+                one.model.type,
+                byte_order=one.model.byte_order,
+                bit_order=one.model.bit_order,
+            )
             for one in description.fields
         ),
         "BYTE_ORDER": description.node.byte_order,

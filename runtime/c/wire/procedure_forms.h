@@ -1,0 +1,109 @@
+#ifndef ICDGEN_WIRE_PROCEDURE_FORMS_H
+#define ICDGEN_WIRE_PROCEDURE_FORMS_H
+
+#include "../icdgen.h"
+#include "forms.h"
+
+/** Listing files. Times are in milliseconds, here and below. */
+typedef struct {
+    /** Returns to the first file. */
+    icd_step_t reset;
+    /** Goes on to the next file. */
+    icd_step_t advance;
+    /** Describes a file. */
+    icd_step_t information;
+    /** Time between two polls of the busy flag, in milliseconds. */
+    uint32_t poll_interval;
+    /** How long the busy flag may stay set, in milliseconds. */
+    uint32_t timeout;
+} icd_list_form_t;
+
+/** Downloading a file. */
+typedef struct {
+    /** Loads a block. */
+    icd_step_t load;
+    /** Tells whether the block is loaded. */
+    icd_step_t ready;
+    /** Starts the transfer of the block. */
+    icd_step_t burst;
+    /** What the burst telecommand gives as length. */
+    uint32_t message_length;
+    /** Whether the checksum of a block covers the fill of its last packet. */
+    bool checksum_covers_fill;
+    /** Counter that goes with the type of the index file. */
+    uint8_t index_counter;
+    /** Time between two polls of the ready flag, in milliseconds. */
+    uint32_t poll_interval;
+    /** How long a block may take to load, in milliseconds. */
+    uint32_t ready_timeout;
+    /** A burst is over if no packet came for this long, in milliseconds. */
+    uint32_t silence;
+    /** Most bursts for one block. */
+    uint32_t rounds;
+} icd_download_form_t;
+
+/** Uploading a file. */
+typedef struct {
+    /** Erases the destination. */
+    icd_step_t initiate;
+    /** Tells whether the destination is erased. */
+    icd_step_t initiated;
+    /** Begins a block. */
+    icd_step_t begin;
+    /** Carries a packet. */
+    icd_step_t packet;
+    /** Tells the checksum of the block received. */
+    icd_step_t checksum;
+    /** Commits a block. */
+    icd_step_t finalize;
+    /** Tells whether the block is committed. */
+    icd_step_t finalized;
+    /** What `initiate` gives as block size. */
+    uint32_t block_size;
+    /** Whether the checksum of a block covers the fill of its last packet. */
+    bool checksum_covers_fill;
+    /** Time between two polls of a busy flag, in milliseconds. */
+    uint32_t poll_interval;
+    /** How long the destination may take to be erased, in milliseconds. */
+    uint32_t erase_timeout;
+    /** How long committing a block may take, in milliseconds. */
+    uint32_t finalize_timeout;
+    /** Most rounds of packets for one block. */
+    uint32_t rounds;
+    /** Bytes that a destination holds: no file may be larger; 0 if the ICD does not say. */
+    uint32_t destination_bytes;
+    /** The destinations that are supported; NULL: all. */
+    const uint8_t *destinations;
+    /** How many they are. */
+    uint16_t destinations_count;
+} icd_upload_form_t;
+
+/** Erasing files, or formatting their medium. */
+typedef struct {
+    /** Begins it. */
+    icd_step_t request;
+    /** Tells whether it is done. */
+    icd_step_t progress;
+    /** Time between two polls of the busy flag, in milliseconds. */
+    uint32_t poll_interval;
+    /** How long it may take, in milliseconds. */
+    uint32_t timeout;
+} icd_erase_form_t;
+
+/** What a telecommand starts for a stored program, and a frame tells the end of. */
+typedef struct {
+    /** Starts it. */
+    icd_step_t request;
+    /** Tells when it is done. */
+    icd_step_t progress;
+    /** Time between two polls of that frame, in milliseconds. */
+    uint32_t poll_interval;
+    /** How long it may take, in milliseconds. */
+    uint32_t timeout;
+    /** The programs that it may be asked for; NULL: all. */
+    const uint8_t *programs;
+    /** How many they are. */
+    uint16_t programs_count;
+} icd_operation_form_t;
+
+#endif /* ICDGEN_WIRE_PROCEDURE_FORMS_H */
