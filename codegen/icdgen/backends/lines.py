@@ -54,6 +54,8 @@ def commented(paragraphs: Iterable[str], width: int, start: str, is_spaced: bool
 
 def tamed(line: str) -> str:
     """A line that begins no list, heading or quotation of Markdown."""
+    if line[:1].isalpha():
+        return line
     word, space, rest = line.partition(" ")
     return _BLOCK.sub(r"\1\\\2", word, count=1) + space + rest if _BLOCK.match(word) else line
 

@@ -35,7 +35,7 @@ def prose(text: str) -> str:
 
 
 def _spelled(paragraph: str) -> str:
-    command = _COMMAND.match(paragraph)
+    command = _COMMAND.match(paragraph) if paragraph[0] == "@" else None
     start = command.group() if command else ""
     return start + prose(paragraph[len(start) :])
 
