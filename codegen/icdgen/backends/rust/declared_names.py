@@ -71,7 +71,7 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     yield from _ours(associated, _CONSTANTS)
     for field in message.fields:
         owner, source = f"field `{field.model.name}` of `{message.model.name}`", field.model.source
-        yield Identifier(fields, field.name, owner, source)
+        yield Identifier(fields, names.field_name(field), owner, source)
         if field.steps is not None:
             yield Identifier(methods, field.physical_name, owner, source)
             yield Identifier(methods, f"set_{field.physical_name}", owner, source)
