@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from icdgen import values
 from icdgen.loading import load
+from icdgen.values.text import to_text
 from tests.conftest import ROOT
+from tests.values.decoding import decode
 
 
 @pytest.fixture(scope="module")
@@ -26,8 +27,8 @@ def erratum(icd, id: str):
 
 def test_a_position_of_16_bits_is_not_told_in_metres(icd):
     """Tables 149 and 166: 32.767 km do not reach the orbit."""
-    frame = values.decode(icd, "cubeacp", "219", bytes.fromhex("e80300000000"))
-    assert " ".join(values.to_text(frame).split("\n")[5].split()) == "ECEF Position X 1000 1000"
+    frame = decode(icd, "cubeacp", "219", bytes.fromhex("e80300000000"))
+    assert " ".join(to_text(frame).split("\n")[5].split()) == "ECEF Position X 1000 1000"
     assert field(icd, "cubeacp", "ADCS State", "ECEF Position Z").unit is None
     assert field(icd, "cubeacp", "Raw GPS X", "ECEF Position X").unit.symbol == "m"  # 32 bits, Table 136
 

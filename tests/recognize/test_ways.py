@@ -7,7 +7,7 @@ import json
 import pytest
 
 from icdgen.recognize import read, recognize
-from icdgen.values import Ambiguous, BadHex, BadLength, NotFound
+from icdgen.values.errors import Ambiguous, BadHex, BadLength, NotFound
 from tests.recognize.ways import BARE, DATA, WHOLE
 
 

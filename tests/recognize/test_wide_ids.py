@@ -6,7 +6,7 @@ import pytest
 
 from icdgen.loading import load
 from icdgen.recognize import recognize
-from icdgen.values import BadLength, NotFound
+from icdgen.values.errors import BadLength, NotFound
 
 ICD = """\
 icdgen: 1

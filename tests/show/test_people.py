@@ -8,7 +8,7 @@ import pytest
 
 from icdgen.loading import load
 from icdgen.show import to_text
-from icdgen.values import NotFound
+from icdgen.values.errors import NotFound
 from tests.show.test_machine import BASE, OVERLAY, TOP
 
 EXPECTED = """\

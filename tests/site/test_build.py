@@ -65,7 +65,9 @@ def test_the_site_is_small_and_has_a_page_for_everything(site, shipped):
     assert sum(path.stat().st_size for path in site.rglob("*")) < 15_000_000
     for node in shipped.nodes:
         pages = {path.name for path in (site / node.name).iterdir()}
-        assert len(pages) == len(node.messages) + len(node.enums) + 2
+        talks = bool(shipped.protocol_of(node))
+        assert len(pages) == len(node.messages) + len(node.enums) + 2 + talks
+        assert ("protocol.html" in pages) == talks
 
 
 def test_the_site_is_the_same_each_time():

@@ -12,8 +12,8 @@ import pytest
 from icdgen.protocol import crc, declared, i2c, uart
 from icdgen.protocol.facts import of as facts_of
 from icdgen.protocol.sections import Crc
-from icdgen.values import parse_hex
 from icdgen.values.errors import BadHex
+from icdgen.values.hexadecimal import parse_hex
 from tests.conftest import ROOT
 from tests.site.conftest import program
 

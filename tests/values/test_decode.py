@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import struct
 
-import pytest
-
 from icdgen.loading import load
-from icdgen.values import BadLength, decode, parse_hex, to_text
+from icdgen.values.hexadecimal import parse_hex
+from icdgen.values.text import to_text
+from tests.values.decoding import decode
 
 
 def test_the_table_for_people(icd):
@@ -124,15 +124,6 @@ def test_the_bit_order_of_the_node_that_declares_the_message_holds(icd):
 
 def test_a_message_without_fields(icd):
     assert to_text(decode(icd, "top", "42", b"")) == "top: 42 (telecommand 21), 0 bytes\n"
-
-
-def test_the_length_must_be_the_messages(icd):
-    with pytest.raises(BadLength, match="Set Speed has 6 bytes, 5 given") as caught:
-        decode(icd, "top", "17", bytes(5))
-    assert (caught.value.expected, caught.value.actual) == (6, 5)
-    with pytest.raises(BadLength) as caught:
-        decode(icd, "top", "17", b"\x11" + bytes(6))
-    assert caught.value.help == "the bytes begin with the id: leave it out"
 
 
 def test_names_cannot_write_to_the_terminal(tmp_path):

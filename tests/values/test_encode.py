@@ -10,7 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from icdgen.describe.numbers import exact_text
-from icdgen.values import BadValue, decode, encode, numbers
+from icdgen.values import numbers
+from icdgen.values.encode import encode
+from icdgen.values.errors import BadValue
+from tests.values.decoding import decode
 
 SPEED = {"x": "1", "y": "-1", "timeout": "0"}
 EVERYTHING = {"enabled": "yes", "small": "-64", "mode": "on", "ratio": "1", "precise": "0", "Key = Code": "01020304",

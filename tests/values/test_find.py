@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from icdgen.values import Ambiguous, NotFound, find_field, find_message, find_node
+from icdgen.values.errors import Ambiguous, NotFound
+from icdgen.values.find import find_field, find_message, find_node
 
 
 @pytest.mark.parametrize(

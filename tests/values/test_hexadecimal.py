@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from icdgen.values import BadHex, parse_hex
+from icdgen.values.errors import BadHex
+from icdgen.values.hexadecimal import parse_hex
 
 
 @pytest.mark.parametrize(

@@ -48,7 +48,8 @@ def decode(arguments: tuple[str, ...], icds: tuple[Path, ...], kind: str | None,
 
 def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | None, str | None, str | bytes]:
     """Node, message and frame: a word is the node or the message if there is one of that name."""
-    from icdgen.values import NotFound, find_message, find_node
+    from icdgen.values.errors import NotFound
+    from icdgen.values.find import find_message, find_node
 
     node = message = None
     if len(words) == 1 and words[0].lower() in {n.name for n in icd.nodes}:
@@ -68,7 +69,7 @@ def _taken_apart(icd: Icd, words: list[str], kind: str | None) -> tuple[str | No
 
 def _is_frame(words: list[str]) -> bool:
     from icdgen.recognize import read
-    from icdgen.values import BadHex
+    from icdgen.values.errors import BadHex
 
     if words[0] == "-" or words[0].startswith("@") or _is_file(words[0]):
         return True
@@ -97,7 +98,8 @@ def _content(words: list[str]) -> str | bytes:
 
 
 def _is_bytes(text: str) -> bool:
-    from icdgen.values import BadHex, parse_hex
+    from icdgen.values.errors import BadHex
+    from icdgen.values.hexadecimal import parse_hex
 
     try:
         return bool(parse_hex(text))
@@ -123,13 +125,14 @@ def _frames_in(file: BinaryIO, name: str) -> str | bytes:
 
 
 def _print_text(found: Sequence[Reading]) -> None:
-    from icdgen import tables, values
+    from icdgen import tables
+    from icdgen.values.text import to_text
 
     for number, one in enumerate(found):
         if number:
             click.echo("")
         if one.frame is not None:
-            click.echo(values.to_text(one.frame, tables.width_of(sys.stdout)), nl=False)
+            click.echo(to_text(one.frame, tables.width_of(sys.stdout)), nl=False)
         else:
             say("\n\nnote: ".join((one.title, *one.remarks)))
 

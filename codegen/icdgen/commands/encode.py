@@ -39,17 +39,19 @@ def encode(
 
     NODE may be left out where there is one only.
     """
-    from icdgen import values
+    from icdgen.values.encode import encode
+    from icdgen.values.find import find_frame
 
     icd = load_or_exit(icds).icd
-    node, message, assignments = values.find_frame(icd, words)
-    _print(values.encode(icd, node.name, message, assignments, raw=raw, kind=kind), form)
+    node, message, assignments = find_frame(icd, words)
+    _print(encode(icd, node.name, message, assignments, raw=raw, kind=kind), form)
 
 
 def _print(frame: Frame, form: str) -> None:
-    from icdgen import tables, values
+    from icdgen import tables
+    from icdgen.values.text import to_text
 
     if form == "json":
         click.echo(json.dumps(frame.to_json(), indent=1))
     else:
-        click.echo(values.to_text(frame, tables.width_of(sys.stdout)), nl=False)
+        click.echo(to_text(frame, tables.width_of(sys.stdout)), nl=False)

@@ -39,7 +39,8 @@ def _style(origin: str, icds: tuple[Path, ...]) -> Style:
     from icdgen import shipped
     from icdgen.loading import load
     from icdgen.starter import style
-    from icdgen.values import NotFound, find_node
+    from icdgen.values.errors import NotFound
+    from icdgen.values.find import find_node
 
     paths = chosen(icds)[0]
     if not icds and not all(path.exists() for path in paths):

@@ -45,13 +45,13 @@ def monitor(
     terminal the table stays in its place; in a pipe each round is printed; --format json prints an object for each frame. A line
     that is lost is taken up again as soon as it is there. Exit status: 1 if a frame was not answered in the last round.
     """
-    from icdgen import values
     from icdgen.link.live import Monitor, Screen
     from icdgen.link.options import open_session, stranger
     from icdgen.link.ports import PortError
+    from icdgen.values.find import find_named
 
     icd = load_or_exit(icds).icd
-    node, messages = values.find_named(icd, words)
+    node, messages = find_named(icd, words)
     watched = Monitor(icd, node.name, messages)
     rounds = _Rounds(watched, 1 if once else count, every, form)
     live = form == "text" and sys.stdout is not None and sys.stdout.isatty() and rounds.last != 1

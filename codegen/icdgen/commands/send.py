@@ -39,13 +39,14 @@ def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, f
     from icdgen_runtime.wire.client import Request
     from icdgen_runtime.wire.events import Done
 
-    from icdgen import values
     from icdgen.link.options import open_session
     from icdgen.protocol import facts
+    from icdgen.values.encode import encode
+    from icdgen.values.find import find_frame
 
     icd = load_or_exit(icds).icd
-    found, message, assignments = values.find_frame(icd, words)
-    frame = values.encode(icd, found.name, message, assignments, raw=raw, kind="telecommand")
+    found, message, assignments = find_frame(icd, words)
+    frame = encode(icd, found.name, message, assignments, raw=raw, kind="telecommand")
     assert frame.message.telecommand_id is not None
     if frame.message.hazard and not yes and not _is_meant(frame):
         say(f"{frame.message.name}: not sent", err=True)
@@ -66,12 +67,13 @@ def send(words: tuple[str, ...], icds: tuple[Path, ...], raw: bool, yes: bool, f
 
 def _is_meant(frame: Frame) -> bool:
     """Shows what is dangerous and asks. Raises `UserError` where nobody can answer."""
-    from icdgen import tables, values
+    from icdgen import tables
+    from icdgen.values.text import to_text
 
     hazard = f"{frame.message.name} is dangerous: {frame.message.hazard}"
     if sys.stdin is None or not sys.stdin.isatty():
         raise UserError(hazard, "--yes sends it without asking")
-    say(f"{values.to_text(frame, tables.width_of(sys.stderr))}\n{hazard}", err=True)
+    say(f"{to_text(frame, tables.width_of(sys.stderr))}\n{hazard}", err=True)
     return click.confirm("Send it?", err=True)
 
 

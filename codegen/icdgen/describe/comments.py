@@ -125,6 +125,7 @@ def _meaning(field: Field) -> str:
     return f"{text}; physical `{words(field.formula)}`, {span_text(scaled)}{f' {unit}' if unit else ''}"
 
 
+@lru_cache(maxsize=4096)
 def span_text(scaled: Steps) -> str:
     """``-327.68 to 327.67``: the physical values of all raw values."""
     low, high = scaled.span

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from functools import lru_cache
 
 _LIGATURES = {c: unicodedata.normalize("NFKC", c) for c in "ﬀﬁﬂﬃﬄﬅﬆ"}
 _PLAIN = str.maketrans(
@@ -29,6 +30,7 @@ def tidy_unit(text: str) -> str:
     return re.sub(r"\s+(?=[⁰¹²³⁴⁵⁶⁷⁸⁹⁻])", "", plain(text).strip("[] "))
 
 
+@lru_cache(maxsize=1 << 16)
 def folded(text: str) -> tuple[str, ...]:
     """The words of a heading, a label or a title, without case and punctuation."""
     return tuple(word.casefold() for word in _WORD.findall(plain(text)))

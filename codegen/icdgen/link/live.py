@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 from icdgen_runtime.wire.events import Done, Log, Outcome
 
-from icdgen import tables, values
+from icdgen import tables
 from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Message
 from icdgen.protocol import facts
 from icdgen.tables import Column, clean
+from icdgen.values.find import find_message, find_node
 from icdgen.values.frame import Frame, frame
 
 if TYPE_CHECKING:
@@ -26,11 +27,11 @@ class Monitor:
     """The frames that are watched, as they came last."""
 
     def __init__(self, icd: Icd, node: str, names: Sequence[str]) -> None:
-        self.icd, self.node = icd, values.find_node(icd, node)
+        self.icd, self.node = icd, find_node(icd, node)
         self.known = facts.of(icd, self.node)
         self.messages: list[Message] = []
         for name in names:
-            message = values.find_message(icd, node, name, "telemetry")
+            message = find_message(icd, node, name, "telemetry")
             if message not in self.messages:
                 self.messages.append(message)
         if not names:

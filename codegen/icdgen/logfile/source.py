@@ -10,7 +10,7 @@ from icdgen.errors import UserError
 from icdgen.icd.model import Icd, Node
 from icdgen.logfile.columns import Plan, plan
 from icdgen.protocol import facts
-from icdgen.values import find_node
+from icdgen.values.find import find_node
 
 _SAMPLE = 64  # entries by which it is judged whether this is a log
 PIECE = 4 << 20  # bytes that are read at once, about

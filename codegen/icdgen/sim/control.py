@@ -16,9 +16,9 @@ from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.sim import faults
 from icdgen.sim.line import Line
 from icdgen.sim.values import raw_of
-from icdgen.values import find_field, find_message, find_node
 from icdgen.values.entry import from_physical
 from icdgen.values.errors import BadValue, NotFound
+from icdgen.values.find import find_field, find_message, find_node
 
 Wave = Mapping[str, Any]  # as a script has it
 WAVES = ("sine", "ramp", "steps", "noise")

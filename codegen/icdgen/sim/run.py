@@ -23,8 +23,8 @@ from icdgen.sim.computer import Computer, has_protocol
 from icdgen.sim.line import Line
 from icdgen.sim.settings import Settings
 from icdgen.sim.storage import File, Storage
-from icdgen.values import find_node, numbers
-from icdgen.values.find import is_part
+from icdgen.values import numbers
+from icdgen.values.find import find_node, is_part
 
 Way = tuple[Any, ...]  # name of a function of `serve`, and what it is given
 

@@ -36,13 +36,15 @@ def prose(text: str) -> str:
 
 
 def _spelled(paragraph: str) -> str:
-    command = _COMMAND.match(paragraph)
+    command = _COMMAND.match(paragraph) if paragraph[0] == "@" else None
     start = command.group() if command else ""
     return start + prose(paragraph[len(start) :])
 
 
 def _tamed(line: str) -> str:
     """A line that begins no list, heading or quotation."""
+    if line[:1].isalpha():
+        return line
     word, space, rest = line.partition(" ")
     return _BLOCK.sub(r"\1\\\2", word, count=1) + space + rest if _BLOCK.match(word) else line
 

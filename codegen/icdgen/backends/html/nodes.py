@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from icdgen.backends.html import examples, texts, wire
+from icdgen.backends.html import examples, protocol, texts, wire
 from icdgen.backends.html.relations import Place, Relations, document, manual
 from icdgen.describe.errata import errata_of_message
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Erratum, Loggable, Message, Node
@@ -101,6 +101,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
         "speakers": [
             Place(one.title, relations.links.node(one.name)) for one in relations.speakers[node.name] if one is not node
         ],
+        "protocol": protocol.has_page(relations, node),
         "printed": relations.links.printed(node.name),
         "errata_count": sum(not erratum.is_note for erratum in node.errata),
         "notes_count": sum(erratum.is_note for erratum in node.errata),

@@ -18,6 +18,7 @@ from icdgen.importer.words import grows, number, tidy_unit
 
 MOST_BITS = 64  # of a number
 _NONE = ("", "-", "–", "n/a", "na", "none")
+_READABLE_UNIT = re.compile(r"(?:[^\W\d_]|[%°'\"′″‰(]|1\s*/|10\s*\^)[\w\s%°'\"′″‰^*/·.,()\[\]⁻⁺+-]*\Z")
 _SCALED_UNIT = re.compile(r"(?P<factor>[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[^0-9\s].*)?\Z")
 
 
@@ -152,6 +153,9 @@ def _line(entry: Entry, header: Header, table: Table, profile: Profile, troubles
             return None
         if not at_unit and not entry.get("at"):
             at_unit = 8
+        if entry.get("at") and "at_bytes" in header.roles and number(entry.get("at_bytes")) is None:
+            _refuse(entry.get("at_bytes"), "the byte of the offset", line, table, troubles)
+            return None
     for role in ("bits", "bits_bytes"):
         text = entry.get(role)
         if not text:
@@ -217,8 +221,8 @@ def _fields(
         name = f"Unnamed {at}"
     described = _described(entry, profile, kind == "enum")
     for problem in described.problems:
-        text = entry.get("description")
-        troubles.append(Trouble("IMP040", f"{line.where}: {problem}: `{text[-160:]}`", entry.spot, "read the page"))
+        text = f": `{entry.get('description')[-160:]}`" if entry.get("description") else ""
+        troubles.append(Trouble("IMP040", f"{line.where}: {problem}{text}", entry.spot, "read the page"))
     count = line.type.times if line.type else 1
     if count > 1 and kind != "bytes":
         troubles.append(Trouble("IMP029", f"{line.where}: its {count} elements are held as {count} fields", entry.spot,
@@ -287,6 +291,9 @@ def _unit(text: str, made: descriptions.Described) -> None:
         text = tidy_unit(match["unit"] or "")
         if not text:
             return
+    if not _READABLE_UNIT.match(text):
+        made.problems.append(f"the unit `{text}` cannot be read")
+        return
     if made.unit and made.unit != text:
         made.problems.append(f"its unit is `{text}` in one column and `{made.unit}` in another")
     made.unit = text

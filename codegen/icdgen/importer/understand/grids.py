@@ -100,6 +100,7 @@ def read(
         return []
     troubles.append(Trouble("IMP026", f"{table.title}: a grid prints no types", table.spot,
                             "one bit is held as bool, the rest as uint; look at the page"))  # fmt: skip
+    _unread_columns(grid, rows, table, troubles)
     if "address" in grid.roles:
         made = []
         for row in rows:
@@ -113,6 +114,21 @@ def read(
         message.fields += _fields(grid, row, table, 0 if grid.unit == 8 else label * grid.count, profile, troubles)
     message.length = max((f.at + f.bits + 7) // 8 for f in message.fields) if message.fields else None
     return [message]
+
+
+def _unread_columns(grid: Grid, rows: list[Row], table: Table, troubles: list[Trouble]) -> None:
+    """Says which columns are neither of the grid nor have a role, so that their cells are not held."""
+    spread = [_spread(grid, row) for row in rows]
+    for index, title in enumerate(grid.row.cells):
+        if index in grid.columns or index in grid.roles.values():
+            continue
+        cells = [text for row in spread if (text := row.get(index, "")) and _label(text) is None]
+        if cells:
+            numbered = any(c.isdigit() for c in title)
+            what = "numbers no column of the grid" if numbered else "has no role"
+            troubles.append(Trouble("IMP027", f"{table.title}: the heading `{title[:40]}` {what}, its cells were left out: "
+                                    f"`{cells[0][:40]}`" + (f" and {len(cells) - 1} more" if cells[1:] else ""), table.spot,
+                                    "look at the page", "error" if numbered else "warning"))  # fmt: skip
 
 
 def _label(cell: str) -> int | None:

@@ -7,8 +7,8 @@ from typing import TypeVar
 
 from icdgen.importer.document import Document, Heading, Table, Text, Trouble
 from icdgen.importer.profile import Profile
-from icdgen.importer.understand import grids, lists, messages
-from icdgen.importer.understand.around import Around, kind_of
+from icdgen.importer.understand import around, grids, lists, messages
+from icdgen.importer.understand.around import Around, Said, kind_of
 from icdgen.importer.understand.model import ReadEnum, ReadList, ReadLog, ReadMessage, Thing
 
 BACKGROUND, UNKNOWN = "background", "not understood"
@@ -76,7 +76,7 @@ def survey(document: Document, profile: Profile) -> Survey:
             continue  # a figure, a listing, a box: nobody called it a table
         made.found.append(Found(block, what, thing, run, titles))
         if what == UNKNOWN:
-            made.troubles.append(_not_understood(block))
+            made.troubles.append(_not_understood(block, around.read(about, profile)))
     return made
 
 
@@ -119,14 +119,16 @@ def _by_section(sections: tuple[str, ...], profile: Profile) -> str:
     return next((kind for title in reversed(sections) if (kind := kind_of(title, profile))), "")
 
 
-def _not_understood(table: Table) -> Trouble:
+def _not_understood(table: Table, said: Said) -> Trouble:
+    """That nobody knows what a table is; where an id stands above it, a message is missing."""
     rows = [row for row in (*table.head, *table.rows) if any(row.cells)]
     cells = [cell for cell in rows[0].cells if cell] if rows else []
     begins = f"; it begins with `{' | '.join(cells)[:100]}`" if cells else ""
+    id = f", though what stands above it gives the id {' '.join(said.ids)}" if said.ids else ""
     return Trouble(
-        "IMP030", f"{table.title}: none of the tables that icdgen knows{begins}", table.spot,
+        "IMP030", f"{table.title}: none of the tables that icdgen knows{id}{begins}", table.spot,
         "if it describes a message or an enumeration add its headings to the profile, else name it under `background:`",
-        "note" if table.number is None else "warning",
+        "error" if id else "note" if table.number is None else "warning",
     )  # fmt: skip
 
 
