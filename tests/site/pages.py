@@ -12,6 +12,7 @@ KINDS = {
     "composite": "cubeacp/adcs_state.html",
     "long": "cubeacp/adcs_system_configuration.html",
     "protocol": "cubeacp/protocol.html",
+    "guide": "icdgen-docs/wire.html",
     "units": "units.html",
     "errata": "errata.html",
     "changes": "changes.html",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
@@ -12,6 +12,7 @@ from icdgen.backends.html import (
     drawing,
     enums,
     errata,
+    guide,
     llms,
     messages,
     nodes,
@@ -46,7 +47,12 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
         "version": __version__,
         "nodes": [nodes.brief(relations, node) for node in icd.nodes],
         "compared": compared,
-        "further": [(ERRATA, "Errata"), (UNITS, "Units"), *([(CHANGES, "Changes")] if compared else [])],
+        "further": [
+            (ERRATA, "Errata"),
+            (UNITS, "Units"),
+            *([(guide.HOME, "Guide")] if guide.pages() else []),
+            *([(CHANGES, "Changes")] if compared else []),
+        ],
         "sidebar": "",
         "changed": errata.changed,
         "hatch": drawing.hatch,
@@ -79,6 +85,7 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
         for enum in node.enums:
             url = relations.links.enum(enum)
             yield page(url, "enum.html.j2", sidebar=beside(url), **enums.values(relations, enum))
+    yield from _guide(page, render)
     for name in _LOADED:
         yield PurePosixPath(name), render(name)
     most = max((len(m.fields) for node in icd.nodes for m in node.messages), default=0)
@@ -87,3 +94,22 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
     yield PurePosixPath("frame-index.js"), recognition.script(relations)
     yield PurePosixPath("icd.json"), json.dumps(show.to_json(icd), indent=1) + "\n"
     yield PurePosixPath("llms.txt"), llms.text(relations, compared)
+
+
+_Page = Callable[..., tuple[PurePosixPath, str]]
+
+
+def _guide(page: _Page, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
+    """The manual of icdgen, where it is there."""
+    from markupsafe import Markup
+
+    found = guide.pages()
+    if not found:
+        return
+    beside = {
+        name: Markup(render("guide-sidebar.html.j2", pages=found, name=name)) for name in ["", *(p.name for p in found)]
+    }
+    yield page(guide.HOME, "guide-index.html.j2", pages=found, sidebar=beside[""])
+    for one in found:
+        yield page(one.url, "guide.html.j2", page=one, sidebar=beside[one.name])
+    yield from ((PurePosixPath(path), text) for path, text in guide.files())
