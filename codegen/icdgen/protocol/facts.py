@@ -44,7 +44,6 @@ class Facts:
 
     node: Node
     little: bool  # byte order of numbers
-    telecommand_ids: Direction
     telemetry_ids: Direction
     telecommands: dict[int, Message]
     telemetry: dict[int, Message]
@@ -133,8 +132,7 @@ def of(icd: Icd, node: Node) -> Facts:
     return Facts(
         node=node,
         little=node.byte_order == "little",
-        telecommand_ids=reader.direction("telecommand"),
-        telemetry_ids=reader.direction("telemetry"),
+        telemetry_ids=reader.telemetry_ids(),
         telecommands=reader.telecommands,
         telemetry=reader.telemetry,
         client=reader.part("client", Settings) or Settings(),

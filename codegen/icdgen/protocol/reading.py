@@ -75,10 +75,11 @@ class Reader:
         found: T | None = read(part, section, step, **made) if section else None
         return found
 
-    def direction(self, name: str) -> Direction:
-        ids = self.section("message_id", name)
-        known = self.telecommands if name == "telecommand" else self.telemetry
-        return Direction(ids.get("first", min(known, default=0)), ids.get("last", max(known, default=255)))
+    def telemetry_ids(self) -> Direction:
+        ids = self.section("message_id", "telemetry")
+        return Direction(
+            ids.get("first", min(self.telemetry, default=0)), ids.get("last", max(self.telemetry, default=255))
+        )
 
     def acknowledge(self) -> Acknowledge | None:
         rows = self.section("uart", "acknowledge").get("data", ())
