@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from icdgen.importer.document import Document, Heading, Table, Text, Trouble
+from icdgen.icd.model import CONFIGURATION
+from icdgen.importer.document import Document, Heading, Spot, Table, Text, Trouble
 from icdgen.importer.profile import Profile
-from icdgen.importer.understand import grids, lists, messages
+from icdgen.importer.understand import around, grids, lists, messages
 from icdgen.importer.understand.around import Around, kind_of
 from icdgen.importer.understand.model import ReadEnum, ReadList, ReadLog, ReadMessage, Thing
 
@@ -46,14 +47,18 @@ def survey(document: Document, profile: Profile) -> Survey:
     sections: list[Heading] = []
     prose: list[str] = []
     used: set[str] = set()  # headings whose id a table has
-    for block in document.blocks:
+    bare = False  # whether no table stands below the last heading
+    for block in (*document.blocks, Heading("", "")):
         if isinstance(block, Heading):
+            made.troubles += _without_table(sections, profile) if bare else []
+            bare = True
             sections = [s for s in sections if _holds(s, block)] + [block]
             prose = []
         elif isinstance(block, Text):
             prose = [block.text, *prose][:NEAR]
         if not isinstance(block, Table):
             continue
+        bare = False
         if block.number is not None:
             if block.number <= last:
                 run += 1
@@ -117,6 +122,21 @@ def _holds(outer: Heading, inner: Heading) -> bool:
 
 def _by_section(sections: tuple[str, ...], profile: Profile) -> str:
     return next((kind for title in reversed(sections) if (kind := kind_of(title, profile))), "")
+
+
+def _without_table(sections: list[Heading], profile: Profile) -> list[Trouble]:
+    """What is to be said of a heading below which no table stands, if it gives a message's name and id."""
+    *_, heading = sections
+    said = around.read(Around(headings=[heading.text]), profile)
+    kind = said.kind or _by_section(tuple(s.text for s in sections), profile) or profile.data["defaults"]["kind"]
+    if not (said.ids and said.name and kind):
+        return []
+    ids = f"set_id: {said.id}, get_id: {said.id}" if kind == CONFIGURATION else f"id: {said.id}"
+    return [Trouble(
+        "IMP039", f"the heading `{heading.text[:80]}` names a message, and no table follows; it was left out",
+        Spot(heading.page, heading.line),
+        f"if it is one without fields, add it to the ICD: `{{name: {said.name}, {ids}, kind: {kind}, length: 0}}`",
+    )]  # fmt: skip
 
 
 def _not_understood(table: Table) -> Trouble:
