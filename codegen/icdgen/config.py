@@ -18,7 +18,7 @@ NAME = "icdgen.toml"
 _KEYS = {"icds": list, "lang": list, "out": str, "templates": str}
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class Config:
     """What the file says; ``looked_at`` names every place where it was or might have been."""
 

@@ -33,7 +33,6 @@ from tests.mutation.measure import LANGUAGES
 
 REFERENCE = "reference"
 OUTCOMES = ("refused", "killed", "same", "survived")
-NODES = 12  # of mutants in one build
 AT_ONCE = 50  # cases that are asked of a mutant before its answers are looked at
 
 
@@ -164,8 +163,8 @@ def measure(icd: Icd, chosen: list[Mutant], languages: list[str], folder: Path) 
 
 
 def _facts(icd: Icd, node: Node) -> object:
-    """The facts that code is made from, but for the node that they are of."""
-    return replace(facts.of(icd, node), node=icd.nodes[0])
+    """The facts that code is made from, but for the node that they are of, and for remarks."""
+    return replace(facts.of(icd, node), node=icd.nodes[0], assumptions=())
 
 
 def _kills(testee: Answering, cases: list[dict[str, Any]], name: str) -> bool:

@@ -71,6 +71,14 @@ QUERIES = {
     "table 27": "common/identification.html",
     "acp-066": "errata.html#ACP-066",
     "ACP-066": "errata.html#ACP-066",
+    # protocol words
+    "baud": "cubeacp/protocol.html#lines",
+    "crc": "cubeacp/protocol.html#checksums",
+    "escape byte framing": "cubeacp/protocol.html#framing",
+    "can identifier": "cubeacp/protocol.html#identifier",
+    "error codes": "cubeacp/protocol.html#errors",
+    "timeout retries": "cubeacp/protocol.html#times",
+    "parity": "cubeacp/protocol.html#lines",
     # misspelt
     "estimted attitude": ANGLES,
     "atittude angles": ANGLES,
@@ -102,8 +110,13 @@ def found(site, queries: list[str]) -> list[list[str]]:
 
 def test_what_is_meant_comes_first_or_second(site):
     results = found(site, list(QUERIES))
-    wrong = [(q, r[:3]) for (q, url), r in zip(QUERIES.items(), results, strict=True) if url not in r[:2]]
-    assert wrong == []
+    wrong = [(q, r[:3]) for (q, url), r in zip(QUERIES.items(), results, strict=True) if not fits(url, r[:2])]
+    assert len(QUERIES) >= 60 and wrong == []
+
+
+def fits(url: str, best: list[str]) -> bool:
+    """Whether it is among the best; of a protocol, that of any node that talks so."""
+    return url in best or ("/protocol" in url and any(one.partition("/")[2] == url.partition("/")[2] for one in best))
 
 
 def test_what_is_nothing_finds_nothing(site):

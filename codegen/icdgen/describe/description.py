@@ -5,23 +5,28 @@ from __future__ import annotations
 from functools import cached_property
 from typing import NamedTuple
 
-from icdgen import layout, naming
+from icdgen import layout
 from icdgen.describe import steps
 from icdgen.describe.bounds import Bound, bounds
 from icdgen.describe.comments import Comment, field_comment, message_comment
 from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
+from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding
+from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Enum, Field, Icd, Message, Node
 
 
-class FieldDescription:
-    """A field (``model``) of ``message``. ``name`` is its identifier in snake case, ``words`` what that is made of."""
+class FieldDescription(Named[Field]):
+    """A field of ``message``."""
 
     def __init__(self, field: Field, message: MessageDescription, enum: EnumDescription | None) -> None:
-        self.model, self.message, self.enum = field, message, enum
-        self.words = naming.words(field.identifier or field.name, message.node.vocabulary)
-        self.name = naming.snake(self.words)
+        super().__init__(field, message.node.vocabulary)
+        self.message, self.enum = message, enum
+
+    @property
+    def owner(self) -> str:
+        return f"field `{self.model.name}` of `{self.message.model.name}`"
 
     @cached_property
     def storage(self) -> Storage:
@@ -91,13 +96,16 @@ class Id(NamedTuple):
     comment: str
 
 
-class MessageDescription:
-    """A message (``model``) that ``node`` declares."""
+class MessageDescription(Named[Message]):
+    """A message that ``node`` declares."""
 
     def __init__(self, description: Description, message: Message, node: Node) -> None:
-        self._description, self.model, self.node = description, message, node
-        self.words = naming.words(message.identifier or message.name, node.vocabulary)
-        self.name = naming.snake(self.words)
+        super().__init__(message, node.vocabulary)
+        self._description, self.node = description, node
+
+    @property
+    def owner(self) -> str:
+        return f"message `{self.model.name}`"
 
     @cached_property
     def fields(self) -> tuple[FieldDescription, ...]:
@@ -154,6 +162,10 @@ class NodeDescription:
 
     def __init__(self, description: Description, node: Node) -> None:
         self._description, self.model, self.name = description, node, node.name
+
+    def identifier(self, scope: str, name: str) -> Identifier:
+        """A name that generated code declares for it."""
+        return Identifier(scope, name, f"node `{self.name}`", self.model.source)
 
     @cached_property
     def messages(self) -> tuple[MessageDescription, ...]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from icdgen import naming
 from icdgen.describe.comments import Comment, enum_comment, member_comment
+from icdgen.describe.named import Named
 from icdgen.describe.storage import Storage, holding
 from icdgen.icd.model import Enum, Icd, Member, Node
 
@@ -25,19 +25,21 @@ def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
     return found
 
 
-class EnumDescription:
-    """An enumeration (``model``) of ``node``; ``storage`` holds every value of it, named or not."""
+class EnumDescription(Named[Enum]):
+    """An enumeration of ``node``; ``storage`` holds every value of it, named or not."""
 
     def __init__(self, enum: Enum, node: Node, bits: int) -> None:
-        self.model, self.node = enum, node
-        self.storage = Storage(holding(bits))
-        self.words = naming.words(enum.identifier or enum.name, node.vocabulary)
-        self.name = naming.snake(self.words)
+        super().__init__(enum, node.vocabulary)
+        self.node, self.storage = node, Storage(holding(bits))
+
+    @property
+    def owner(self) -> str:
+        return f"enumeration `{self.model.name}`"
 
     @cached_property
     def members(self) -> tuple[MemberDescription, ...]:
         """In the order of the manual."""
-        return tuple(MemberDescription(member, self.node.vocabulary) for member in self.model.members)
+        return tuple(MemberDescription(member, self) for member in self.model.members)
 
     @cached_property
     def comment(self) -> Comment:
@@ -48,13 +50,16 @@ class EnumDescription:
         return next((one for one in self.members if one.model.value == value), None)
 
 
-class MemberDescription:
-    """A value (``model``) of an enumeration."""
+class MemberDescription(Named[Member]):
+    """A value of an enumeration."""
 
-    def __init__(self, member: Member, vocabulary: tuple[str, ...]) -> None:
-        self.model = member
-        self.words = naming.words(member.identifier or member.name, vocabulary)
-        self.name = naming.snake(self.words)
+    def __init__(self, member: Member, enum: EnumDescription) -> None:
+        super().__init__(member, enum.node.vocabulary)
+        self._enum = enum
+
+    @property
+    def owner(self) -> str:
+        return f"member `{self.model.name}` of `{self._enum.model.name}`"
 
     @cached_property
     def comment(self) -> Comment:

@@ -14,7 +14,7 @@ from icdgen.model_cache import load_checked
 from icdgen.render import Renderer
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class Job:
     """What is asked for. With several languages each goes into a folder of its own below ``out``."""
 
@@ -27,7 +27,7 @@ class Job:
     configs: dict[Path, str] = field(default_factory=dict)  # configuration files that were read or looked for
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class Outcome:
     loaded: Loaded
     plans: list[write.Plan] = field(default_factory=list)

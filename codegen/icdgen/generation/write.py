@@ -13,7 +13,7 @@ from icdgen.errors import UserError
 from icdgen.generation import manifest
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class Plan:
     """What would have to change below ``out`` so that it holds exactly the generated files."""
 

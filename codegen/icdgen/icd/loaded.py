@@ -9,7 +9,7 @@ from icdgen.diagnostics import Finding
 from icdgen.icd.model import Icd
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class Loaded:
     """``icd`` holds what could be built; it is whole only if no finding is an error."""
 

@@ -46,11 +46,11 @@ class _Writer:
         self.known: dict[int, int] = {}  # id of an object -> its number
 
     def plain(self, value: Any) -> Any:
-        kind = type(value)
+        kind: Any = type(value)
         if kind in _SCALARS:
             return value
         if kind is tuple:
-            return [self.plain(item) for item in value]
+            return [item if type(item) in _SCALARS else self.plain(item) for item in value]
         if kind is Fraction:
             return {"is": "/", "parts": [value.numerator, value.denominator]}
         if kind.__name__ not in _CLASSES:
@@ -58,21 +58,12 @@ class _Writer:
         if id(value) in self.known:
             return {"same": self.known[id(value)]}
         made = {"is": kind.__name__}
-        for key, item in _attributes(value):
-            made[key] = self.plain(item)
+        for name, default in _defaults(kind):  # what is as it is by default is left out
+            item = getattr(value, name)
+            if item is not default and (item != default or type(item) is not type(default)):
+                made[name] = item if type(item) in _SCALARS else self.plain(item)
         self.known[id(value)] = len(self.known)
         return made
-
-
-def _attributes(value: Any) -> list[tuple[str, Any]]:
-    """What differs from the default, without positions."""
-    found = []
-    kind: Any = type(value)
-    for name, default in _defaults(kind):
-        item = getattr(value, name)
-        if item is not default and (default is MISSING or item != default or type(item) is not type(default)):
-            found.append((name, item))
-    return found
 
 
 @cache

@@ -34,7 +34,7 @@ def check(tree: Map, document: str) -> tuple[list[Finding], set[int]]:
     broken: set[int] = set()
     for error in _validator(document).iter_errors(tree):
         path = list(error.instance_path)
-        holder, owner, place = _locate(tree, path)
+        holder, owner, place = locate(tree, path)
         # A mapping where something else must stand breaks the mapping around it, not itself.
         broken.add(id(owner if error.kind.name in _ABOUT_KEYS else holder))
         findings += _explain(error, tree, path, owner, place)
@@ -55,7 +55,7 @@ def _validator(document: str) -> Any:
     return jsonschema_rs.validator_for(schema)
 
 
-def _locate(tree: Map, path: list[Any]) -> tuple[Map, Map, Place]:
+def locate(tree: Map, path: list[Any]) -> tuple[Map, Map, Place]:
     """The innermost mapping around the value the path leads to, the same or the value itself, and the value's place."""
     node: Any = tree
     holder, owner, place = tree, tree, tree.place

@@ -14,6 +14,7 @@ from icdgen.importer.profile import Profile
 from icdgen.importer.propose import Column, proposal
 from icdgen.importer.run import Result
 from icdgen.importer.understand import grids
+from icdgen.importer.understand.model import ReadMessage
 from icdgen.importer.understand.survey import UNKNOWN
 from icdgen.importer.words import folded, plain, squeezed
 
@@ -128,7 +129,10 @@ def report(result: Result, profile: Profile) -> str:
     lines += ["", "profile: 1", ""]
     unread = [one.columns() for one in found if one.what == UNKNOWN]
     partly = [one.columns() for one in found if one.what != UNKNOWN]
-    lines += proposal(unread, partly, caption_words(result, profile), unknown_labels(result, profile), profile)
+    kindless = sum(not message.kind for _, message in result.survey.of(ReadMessage))
+    lines += proposal(
+        unread, partly, caption_words(result, profile), unknown_labels(result, profile), kindless, profile
+    )
     return "\n".join(line.rstrip() for line in lines).rstrip() + "\n"
 
 

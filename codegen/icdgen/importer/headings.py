@@ -52,8 +52,7 @@ def segmented(words: list[str], profile: Profile) -> list[list[int]] | None:
     """
     best: tuple[int, list[list[int]]] = (0, [])
     flat = [folded(word) for word in words]
-    for kind, roles in profile.headings.items():
-        known = {heading for headings in roles.values() for heading in headings}
+    for kind, known in profile.known_headings.items():
         groups, index, hits = [], 0, 0
         while index < len(words):
             for length in range(min(5, len(words) - index), 0, -1):

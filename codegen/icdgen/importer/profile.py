@@ -54,10 +54,17 @@ class Profile:
         }
 
     @cached_property
+    def known_headings(self) -> dict[str, frozenset[tuple[str, ...]]]:
+        """Kind of table -> the headings of all its columns."""
+        return {
+            kind: frozenset(heading for headings in roles.values() for heading in headings)
+            for kind, roles in self.headings.items()
+        }
+
+    @cached_property
     def heading_words(self) -> frozenset[str]:
         """All words of all headings."""
-        roles = (roles for kinds in self.headings.values() for roles in kinds.values())
-        return frozenset(word for headings in roles for heading in headings for word in heading)
+        return frozenset(word for known in self.known_headings.values() for heading in known for word in heading)
 
     @cached_property
     def needs(self) -> dict[str, list[tuple[str, ...]]]:

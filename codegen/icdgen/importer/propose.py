@@ -37,9 +37,11 @@ def proposal(
     partly: list[list[Column]],
     captions: list[str],
     labelled: Counter[str],
+    kindless: int,
     profile: Profile,
 ) -> list[str]:
-    """The lines of a profile that would have more of the tables read. Every guess is marked."""
+    """The lines of a profile that would have more of the tables read. Every guess is marked. ``kindless``: messages of
+    which nothing says the kind."""
     lines = [f"captions: [{', '.join(captions)}]   # ?", ""] if captions else []
     guesses: dict[str, dict[str, list[str]]] = {"fields": {}, "enumeration": {}}
     names: dict[str, str] = {}
@@ -68,9 +70,18 @@ def proposal(
         lines += [f"  {_quoted(name)}: {{type: {_type(name)}}}" for name in list(names)[:40]]
         lines.append("")
     lines += ["# Where ids stand in headings, captions or prose:", '# patterns: ["{name} ({id})", "Message ID {id}"]',
-              "# What the manual does not say:", "# defaults: {kind: telemetry}",
+              "# What the manual does not say:", _defaults(kindless),
               "# node: {byte_order: little, bit_order: lsb0}"]  # fmt: skip
     return lines
+
+
+def _defaults(kindless: int) -> str:
+    plural = "s" if kindless != 1 else ""
+    return (
+        f"defaults: {{kind: telemetry}}   # ? of {kindless} message{plural} nothing says the kind"
+        if kindless
+        else "# defaults: {kind: telemetry}"
+    )
 
 
 def _quoted(text: str) -> str:

@@ -34,7 +34,7 @@ class Kind(Enum):
     STEP = auto()  # a message and its fields by role
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Fact:
     """One fact. ``least`` and ``most`` are those of the ICD, ``holds`` is the most that generated code has room for."""
 

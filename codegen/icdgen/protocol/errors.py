@@ -2,29 +2,39 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
 
-class LengthError(ValueError):
+
+class Mismatch(ValueError):
+    """Something is not as it must be. ``error`` is what answers call it."""
+
+    error: ClassVar[str]
+    text: ClassVar[str]
+
+    def __init__(self, expected: int, actual: int) -> None:
+        super().__init__(self.text.format(expected=expected, actual=actual))
+        self.expected, self.actual = expected, actual
+
+
+class LengthError(Mismatch):
     """A message does not have the length that it must have."""
 
-    def __init__(self, expected: int, actual: int) -> None:
-        super().__init__(f"{expected} bytes are expected, {actual} given")
-        self.expected, self.actual = expected, actual
+    error = "length"
+    text = "{expected} bytes are expected, {actual} given"
 
 
-class TooLongError(ValueError):
+class TooLongError(Mismatch):
     """``actual`` bytes are more than the ``expected`` ones for which there is room."""
 
-    def __init__(self, expected: int, actual: int) -> None:
-        super().__init__(f"{actual} bytes, at most {expected} fit")
-        self.expected, self.actual = expected, actual
+    error = "too-long"
+    text = "{actual} bytes, at most {expected} fit"
 
 
-class ChecksumError(ValueError):
+class ChecksumError(Mismatch):
     """The checksum of a reply is wrong."""
 
-    def __init__(self, expected: int, actual: int) -> None:
-        super().__init__(f"the checksum is {actual:#04x}, of the data it is {expected:#04x}")
-        self.expected, self.actual = expected, actual
+    error = "checksum"
+    text = "the checksum is {actual:#04x}, of the data it is {expected:#04x}"
 
 
 class RangeError(ValueError):

@@ -38,13 +38,12 @@ class Unsupported(LookupError):
     """The ICD does not describe this part of the protocol."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Facts:
     """Everything that the protocol layer of a node is made from."""
 
     node: Node
     little: bool  # byte order of numbers
-    telecommand_ids: Direction
     telemetry_ids: Direction
     telecommands: dict[int, Message]
     telemetry: dict[int, Message]
@@ -133,8 +132,7 @@ def of(icd: Icd, node: Node) -> Facts:
     return Facts(
         node=node,
         little=node.byte_order == "little",
-        telecommand_ids=reader.direction("telecommand"),
-        telemetry_ids=reader.direction("telemetry"),
+        telemetry_ids=reader.telemetry_ids(),
         telecommands=reader.telecommands,
         telemetry=reader.telemetry,
         client=reader.part("client", Settings) or Settings(),

@@ -26,12 +26,8 @@ def answer(icd: Icd, request: Request) -> dict[str, Any]:
         return refusal.answer
     except facts.Unsupported:
         return {"ok": False, "error": "unsupported"}
-    except errors.LengthError as error:
-        return {"ok": False, "error": "length", "expected": error.expected, "actual": error.actual}
-    except errors.TooLongError as error:
-        return {"ok": False, "error": "too-long", "expected": error.expected, "actual": error.actual}
-    except errors.ChecksumError as error:
-        return {"ok": False, "error": "checksum", "expected": error.expected, "actual": error.actual}
+    except errors.Mismatch as error:
+        return {"ok": False, "error": error.error, "expected": error.expected, "actual": error.actual}
     except errors.RangeError as error:
         return {"ok": False, "error": "range"} | ({"field": error.field} if error.field in times.PARTS else {})
     except OverflowError:

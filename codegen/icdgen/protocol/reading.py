@@ -6,8 +6,7 @@ Facts are read as they are declared; here is what takes more: lists by role, mes
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from icdgen.icd.model import Icd, Message, Node
 from icdgen.protocol.declared import Fact, read
@@ -37,8 +36,7 @@ from icdgen.protocol.sections import (
 T = TypeVar("T")
 
 
-@dataclass(frozen=True, slots=True)
-class Assumption:
+class Assumption(NamedTuple):
     """Something that the manual leaves open: where it stands, what we hold, and why."""
 
     section: str  # "can.extended", or "message Reset"
@@ -77,10 +75,11 @@ class Reader:
         found: T | None = read(part, section, step, **made) if section else None
         return found
 
-    def direction(self, name: str) -> Direction:
-        ids = self.section("message_id", name)
-        known = self.telecommands if name == "telecommand" else self.telemetry
-        return Direction(ids.get("first", min(known, default=0)), ids.get("last", max(known, default=255)))
+    def telemetry_ids(self) -> Direction:
+        ids = self.section("message_id", "telemetry")
+        return Direction(
+            ids.get("first", min(self.telemetry, default=0)), ids.get("last", max(self.telemetry, default=255))
+        )
 
     def acknowledge(self) -> Acknowledge | None:
         rows = self.section("uart", "acknowledge").get("data", ())

@@ -35,7 +35,7 @@ CAN_KINDS = ("telecommand", "acknowledge", "refusal", "request", "reply", "reque
 _POLL = "time between two polls of "
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Direction:
     """Ids of one direction."""
 
@@ -43,7 +43,7 @@ class Direction:
     last: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Framing:
     """How messages are delimited on the UART. The escape byte comes before each of the other three."""
 
@@ -61,7 +61,7 @@ class Framing:
     )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Acknowledge:
     """The acknowledge as a message on the UART, which counts from its first byte."""
 
@@ -70,7 +70,7 @@ class Acknowledge:
     error_at: int = octets("", "where the error code stands")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Polled:
     """The frame that tells what became of a telecommand, with the names of its fields."""
 
@@ -81,7 +81,7 @@ class Polled:
     parameter: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Crc:
     """Parameters of a CRC in the notation of the usual catalogues."""
 
@@ -94,7 +94,7 @@ class Crc:
     empty: int | None = code("empty", "checksum of no bytes at all, where it is not what the algorithm gives", None)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Checksum:
     """The optional checksum of telecommands and frames."""
 
@@ -105,7 +105,7 @@ class Checksum:
     bytes: int = octets("", "bytes that it adds to a message", 1, BYTE)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class CanPart:
     """A part of the CAN identifier."""
 
@@ -117,7 +117,7 @@ def _all_packets(known: dict[str, Any]) -> int:
     return int(known["data_bytes"] * known["packets"])
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Extended:
     """CAN messages of several packets."""
 
@@ -132,7 +132,7 @@ class Extended:
     packet_timeout: int = time("packet_timeout_ms", "longest time between two packets of a message", 1000)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Can:
     """CAN: parts of the identifier by role (type, channel, source, destination), and types by kind of message."""
 
@@ -150,7 +150,7 @@ class Can:
     extended: Extended | None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class LogBit:
     """A bit of the log mask and the frame that it selects; ``id`` and ``name`` are None for an unassigned bit."""
 
@@ -160,7 +160,7 @@ class LogBit:
     name: str | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class LogMask:
     """The mask of a log. Frames stand in slots, in the order of rising bits."""
 
@@ -180,7 +180,7 @@ class LogMask:
         return found
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class LogFile:
     """The file form of a log."""
 
@@ -192,7 +192,7 @@ class LogFile:
     file_type: int | None = number("file_type.value", "type of such a file", 0, BYTE, None)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class LogMessage:
     """The unsolicited form of a log. Places count from the id."""
 
@@ -201,7 +201,7 @@ class LogMessage:
     frames_at: int = octets("frames_byte", "where the selected frames begin, counted from the id", 0)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class TimePart:
     at: int
     bits: int
@@ -209,13 +209,13 @@ class TimePart:
     offset: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class IndexField:
     at: int
     bytes: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Index:
     """Entries of the index file: fields by role (type, counter, checksum, size, time, meta)."""
 
@@ -232,7 +232,7 @@ def _received(known: dict[str, Any]) -> bool:
     return bool(known["received"])
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class HoleMap:
     """A bit for each packet of a block."""
 
@@ -245,7 +245,7 @@ class HoleMap:
     field: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Step:
     """A message that plays a part in a procedure, and its fields by role."""
 
@@ -253,7 +253,7 @@ class Step:
     fields: dict[str, str] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Listing:
     """How the list of files is read one by one."""
 
@@ -267,7 +267,7 @@ class Listing:
 _COVERS_FILL = "whether the checksum of a block covers the fill of its last packet"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Download:
     """How a file is downloaded."""
 
@@ -283,7 +283,7 @@ class Download:
     rounds: int = number("rounds", "most bursts for one block", 1, U32)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Upload:
     """How a file is uploaded."""
 
@@ -308,7 +308,7 @@ class Upload:
     )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Erasure:
     """How files are deleted, or their medium is formatted."""
 
@@ -323,7 +323,7 @@ PROCEDURES: dict[str, type[Any]] = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Files:
     """File transfer. Steps by path: ``list.reset``, ``download.load``, ``upload.packet``, ``erase.request`` ..."""
 
@@ -340,7 +340,7 @@ class Files:
     procedures: dict[str, Any]  # those of `PROCEDURES` that the ICD describes completely
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Operation:
     """What a telecommand starts; its frame says when it is done: ``busy`` is clear, or ``ready`` is set."""
 
@@ -355,7 +355,7 @@ class Operation:
     )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Settings:
     """How a client waits and tries again, unless it is told otherwise."""
 

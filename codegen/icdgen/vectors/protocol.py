@@ -11,7 +11,7 @@ from icdgen import __version__
 from icdgen.icd.model import Icd, Node
 from icdgen.protocol import facts, ops
 from icdgen.protocol.facts import Facts
-from icdgen.vectors.wire import clients, files, i2c, logs, operations, packets, procedures, streams
+from icdgen.vectors.wire import clients, files, i2c, logs, operations, packets, procedures, streams, waits
 
 FORMAT = 1
 
@@ -67,3 +67,4 @@ def _requests(known: Facts) -> Iterator[tuple[str, dict[str, Any]]]:
     yield from clients.scripts(known)
     yield from procedures.scripts(known)
     yield from operations.scripts(known)
+    yield from waits.scripts(known)

@@ -105,7 +105,7 @@ class _Rows:
 
     def all(self) -> dict[str, object]:
         node, upper = self.node, self.node.name.upper()
-        used = {field.enum: None for message in node.spoken for field in message.fields if field.enum is not None}
+        used = {field.enum: None for message in node.messages for field in message.fields if field.enum is not None}
         dispatchers = [
             self.dispatcher("telecommand", [(m, m.telecommand_id_name) for m in node.telecommands]),
             self.dispatcher("telemetry", [(m, m.telemetry_id_name) for m in node.telemetry]),
@@ -113,7 +113,8 @@ class _Rows:
         return {
             "node": node.name,
             "id_type": f"uint{node.id_bits}_t",
-            "messages": [self.message(message) for message in node.spoken],
+            "messages": [self.message(message) for message in node.messages],
+            "included": [names.stem(one) for one in node.spoken if one not in node.messages],
             "enums": [_enum(enum) for enum in dict.fromkeys(node.enums) | used],
             "own_enums": [_enum(enum) for enum in node.enums],
             "dispatchers": [one for one in dispatchers if one.routes],

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from icdgen.backends import Identifier
 from icdgen.backends.c import names, physical
 from icdgen.backends.c.accessors import whole_name
-from icdgen.describe import Description, EnumDescription, FieldDescription, MessageDescription, NodeDescription
+from icdgen.describe import Description, FieldDescription, MessageDescription, NodeDescription
 
 FILE = "C names at file scope"
 FILES = "C header files"
@@ -32,30 +32,24 @@ def declared_names(description: Description) -> Iterator[Identifier]:
 
 
 def _node(node: NodeDescription) -> Iterator[Identifier]:
-    owner, source = f"node `{node.name}`", node.model.source
-    yield Identifier(FILES, f"{node.name}.h", owner, source)
+    yield node.identifier(FILES, f"{node.name}.h")
     for end in ("ICD_DIGEST", "NODE_TYPE", "INTERFACE_VERSION", "H"):
-        yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source)
+        yield node.identifier(FILE, f"{node.name.upper()}_{end}")
     for kind in ("telemetry", "telecommand"):
         for end in ("t", "name", "length", "decode", "encode"):
-            yield Identifier(FILE, f"{node.name}_{kind}_{end}", f"{kind} of {owner}", source)
-    for kind, messages in (("telemetry", node.telemetry), ("telecommand", node.telecommands)):
-        for one in messages:
-            scope = f"members of {node.name}_{kind}_t"
-            yield Identifier(scope, one.name, f"message `{one.model.name}`", one.model.source)
+            owner = f"{kind} of node `{node.name}`"
+            yield Identifier(FILE, f"{node.name}_{kind}_{end}", owner, node.model.source)
+    for direction in node.directions:
+        for one, _ in direction.messages:
+            yield one.identifier(f"members of {node.name}_{direction.kind}_t", one.name)
     if node.enums:
         yield Identifier(FILES, f"{node.name}/enums.h", "the enumerations", None)
         yield Identifier(FILE, f"{node.name.upper()}_ENUMS_H", "the enumerations", None)
     for enum in node.enums:
-        yield from _enum(enum)
-
-
-def _enum(enum: EnumDescription) -> Iterator[Identifier]:
-    owner = f"enumeration `{enum.model.name}`"
-    for end in ("t", "name"):
-        yield Identifier(FILE, f"{names.stem(enum)}_{end}", owner, enum.model.source)
-    for one in enum.members:
-        yield Identifier(FILE, names.enumerator(enum, one), f"`{one.model.name}` of {owner}", one.model.source)
+        for end in ("t", "name"):
+            yield enum.identifier(FILE, f"{names.stem(enum)}_{end}")
+        for member in enum.members:
+            yield member.identifier(FILE, names.enumerator(enum, member))
 
 
 def _link(node: NodeDescription) -> Iterator[Identifier]:
@@ -67,22 +61,20 @@ def _link(node: NodeDescription) -> Iterator[Identifier]:
 
 
 def _message(message: MessageDescription, linked: bool) -> Iterator[Identifier]:
-    owner, source = f"message `{message.model.name}`", message.model.source
-    yield Identifier(FILES, f"{message.node.name}/{message.name}.h", owner, source)
+    stem = names.stem(message)
+    yield message.identifier(FILES, f"{message.node.name}/{message.name}.h")
     telemetry = ("telemetry",) if linked and message.model.telemetry_id is not None else ()
     for end in ("h", "length", *(id.name for id in message.ids), *telemetry):
-        yield Identifier(FILE, names.constant(message, end), owner, source)
+        yield message.identifier(FILE, names.constant(message, end))
     for end in ("t", "init", "decode", "encode", *(("misfit",) if message.is_narrow else ())):
-        yield Identifier(FILE, f"{names.stem(message)}_{end}", owner, source)
-    stem, members = names.stem(message), f"members of {names.stem(message)}_t"
+        yield message.identifier(FILE, f"{stem}_{end}")
     for field in message.fields:
-        owner, source = f"field `{field.model.name}` of `{message.model.name}`", field.model.source
-        yield Identifier(members, field.name, owner, source)
+        yield field.identifier(f"members of {stem}_t", field.name)
         for one in field.constants:
-            yield Identifier(FILE, names.constant(message, one.name), owner, source)
+            yield field.identifier(FILE, names.constant(message, one.name))
         for end in _physical_names(field) if field.steps is not None else ():
-            yield Identifier(FILE, f"{stem}_{end}", owner, source)
-            yield Identifier(FILE, f"{stem}_set_{end}", owner, source)
+            yield field.identifier(FILE, f"{stem}_{end}")
+            yield field.identifier(FILE, f"{stem}_set_{end}")
 
 
 def _physical_names(field: FieldDescription) -> tuple[str, ...]:

@@ -2,26 +2,53 @@
 
 from __future__ import annotations
 
-from icdgen.backends.html.relations import Relations
-from icdgen.icd.model import Erratum
+from dataclasses import dataclass
+
+from icdgen.backends.html.relations import Place, Relations
+from icdgen.icd.model import Erratum, Node
 
 _FEW = 6
+_LEVELS = ("certain", "likely", "open")
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """An erratum or a note, where it applies, and the names of the messages among that."""
+
+    erratum: Erratum
+    places: list[Place]
+    more: list[Place]
+    messages: list[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Those of a node: anchor, title and entries of its errata and its notes."""
+
+    node: Node
+    kinds: list[tuple[str, str, list[Entry]]]
 
 
 def values(relations: Relations) -> dict[str, object]:
     """Values of the page: of each node that has some, its errata and its notes in their order."""
+    groups = [_group(relations, node) for node in relations.icd.nodes if node.errata]
+    entries = [entry for group in groups for _, _, some in group.kinds for entry in some]
     return {
-        "groups": [
-            (node, [[_entry(relations, e) for e in node.errata if e.is_note == kind] for kind in (False, True)])
-            for node in relations.icd.nodes
-            if node.errata
-        ],
+        "groups": groups,
+        "messages": sorted({name for entry in entries for name in entry.messages}),
+        "levels": [level for level in _LEVELS if any(entry.erratum.confidence == level for entry in entries)],
     }
 
 
-def _entry(relations: Relations, erratum: Erratum) -> dict[str, object]:
+def _group(relations: Relations, node: Node) -> Group:
+    errata = [_entry(relations, one) for one in node.errata if not one.is_note]
+    notes = [_entry(relations, one) for one in node.errata if one.is_note]
+    return Group(node, [(f"{node.name}-errata", "Errata", errata), (f"{node.name}-notes", "Notes", notes)])
+
+
+def _entry(relations: Relations, erratum: Erratum) -> Entry:
     places = relations.places_of(erratum)
-    return {"erratum": erratum, "places": places[:_FEW], "more": places[_FEW:]}
+    return Entry(erratum, places[:_FEW], places[_FEW:], list(dict.fromkeys(one.text.split(": ")[0] for one in places)))
 
 
 def changed(erratum: Erratum) -> list[tuple[str, str, str]]:

@@ -16,7 +16,15 @@ from icdgen.naming import snake, words
 _LONGEST = 80
 # Stems that file systems or the site itself keep for themselves.
 _TAKEN = frozenset(
-    ["index", "con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(10))]
+    [
+        "index",
+        "protocol",
+        "con",
+        "prn",
+        "aux",
+        "nul",
+        *(f"{port}{number}" for port in ("com", "lpt") for number in range(10)),
+    ]
 )
 
 HOME, ERRATA, UNITS, CHANGES = "index.html", "errata.html", "units.html", "changes.html"
@@ -55,6 +63,10 @@ class Links:
     def printed(self, name: str) -> str:
         """The page that holds a whole node."""
         return f"{name}/all-messages.html"
+
+    def protocol(self, name: str) -> str:
+        """The page that says how a node talks."""
+        return f"{name}/protocol.html"
 
     def message(self, message: Message) -> str:
         """``demo/estimated_roll.html``"""

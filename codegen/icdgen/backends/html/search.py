@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from icdgen.backends.html import texts
+from icdgen.backends.html import guide, protocol, texts
 from icdgen.backends.html.relations import Relations
 from icdgen.icd.model import CONFIGURATION, Enum, Field, Member, Message, Node
 from icdgen.naming import words
@@ -38,6 +38,9 @@ def entries(relations: Relations) -> Iterator[Entry]:
         phrases = (unit.symbol, unit.identifier)
         yield Entry("unit", unit.symbol, unit.quantity, unit.identifier, about, phrases, links.unit(unit))
     for node in relations.icd.nodes:
+        if protocol.has_page(relations, node):
+            for words_, title, place in protocol.entries(relations, node, links.protocol(node.name)):
+                yield Entry("protocol", title, place.text, "", f"protocol {words_}", (), place.url)
         for message in node.messages:
             yield from _of_message(relations, node, message)
         for enum in node.enums:
@@ -46,6 +49,11 @@ def entries(relations: Relations) -> Iterator[Entry]:
             about = " ".join([*(f"table {table}" for table in erratum.tables), erratum.why])
             title = f"{erratum.id} {erratum.title}"
             yield Entry(erratum.label.lower(), title, node.title, "", about, (erratum.id,), links.erratum(erratum))
+    for page in guide.pages():
+        for section in page.sections:
+            url = page.url if section.level == 1 else f"{page.url}#{section.anchor}"
+            context = "guide" if section.level == 1 else f"guide · {page.title}"
+            yield Entry("guide", section.title, context, "", section.text, (), url)
 
 
 def script(relations: Relations) -> str:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from icdgen.backends.html.relations import Relations
 from icdgen.icd.model import Message
 
-_LONG = 32  # fields of a message that is shown in sections; four flags count as one field
-_SHARE = 16  # fields of a section that is no message of its own
+_LONG = 16  # fields of a message that is shown in sections; four flags count as one field
+_SHARE = 10  # fields of a section that is no message of its own
 
 
 @dataclass(frozen=True, slots=True)

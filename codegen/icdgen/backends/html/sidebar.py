@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
+from icdgen.backends.html import protocol
 from icdgen.backends.html.relations import Place, Relations
 from icdgen.icd.model import Node
 
@@ -21,16 +22,21 @@ def of_node(relations: Relations, node: Node, render: Renderer) -> Callable[[str
     """Gives the sidebar of each page of the node, which is the same but for the place where one is."""
     from markupsafe import Markup
 
-    text = render("sidebar.html.j2", title=node.title, groups=_groups(relations, node))
+    text = render(
+        "sidebar.html.j2",
+        title=node.title,
+        protocol=protocol.has_page(relations, node),
+        groups=_groups(relations, node),
+    )
 
     def of_page(url: str) -> object:
         link = f'<a href="{html.escape(PurePosixPath(url).name)}">'
         before, found, after = text.partition(f"<li>{link}")
         if not found:
             return Markup(text)
-        folded, _, rest = before.rpartition("<details>")
+        folded, fold, rest = before.rpartition("<details>")
         marked = link.replace("<a ", '<a aria-current="page" ')
-        return Markup(f"{folded}<details open>{rest}<li>{marked}{after}")
+        return Markup(f"{folded}{fold and '<details open>'}{rest}<li>{marked}{after}")
 
     return of_page
 

@@ -3,12 +3,25 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from icdgen import __version__, show
-from icdgen.backends.html import drawing, enums, errata, llms, messages, nodes, recognition, search, sidebar, units
+from icdgen.backends.html import (
+    drawing,
+    enums,
+    errata,
+    guide,
+    llms,
+    messages,
+    nodes,
+    protocol,
+    recognition,
+    search,
+    sidebar,
+    units,
+)
 from icdgen.backends.html.links import CHANGES, ERRATA, HOME, UNITS
 from icdgen.backends.html.relations import Relations
 from icdgen.icd.model import Icd
@@ -20,9 +33,9 @@ if TYPE_CHECKING:
 # Written by hand; the pages load them.
 _LOADED = (
     *("style.css", "layout.css", "print.css", "icon.svg"),
-    *("theme.js", "site.js", "load.js", "search.js", "find.js", "filter.js", "copy.js"),
+    *("theme.js", "site.js", "load.js", "search.js", "find.js", "filter.js", "errata.js", "copy.js"),
     *("codec.js", "frames.js", "packets.js", "pasted.js", "stream.js", "recognize.js"),
-    *("frame-links.js", "paste.js", "values.js", "lit.js", "try.js"),
+    *("frame-links.js", "paste.js", "values.js", "lit.js", "try.js", "protocol.js"),
 )
 
 
@@ -34,7 +47,12 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
         "version": __version__,
         "nodes": [nodes.brief(relations, node) for node in icd.nodes],
         "compared": compared,
-        "further": [(ERRATA, "Errata"), (UNITS, "Units"), *([(CHANGES, "Changes")] if compared else [])],
+        "further": [
+            (ERRATA, "Errata"),
+            (UNITS, "Units"),
+            *([(guide.HOME, "Guide")] if guide.pages() else []),
+            *([(CHANGES, "Changes")] if compared else []),
+        ],
         "sidebar": "",
         "changed": errata.changed,
         "hatch": drawing.hatch,
@@ -57,6 +75,9 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
         beside = sidebar.of_node(relations, node, render)
         url = relations.links.node(node.name)
         yield page(url, "node.html.j2", sidebar=beside(url), **nodes.values(relations, node))
+        if protocol.has_page(relations, node):
+            url = relations.links.protocol(node.name)
+            yield page(url, "protocol.html.j2", sidebar=beside(url), **protocol.values(relations, node))
         shown = [messages.values(relations, node, message, render) for message in node.messages]
         for before, one, after in zip([None, *shown], shown, [*shown[1:], None], strict=False):
             yield page(one["url"], "message.html.j2", before=before, after=after, sidebar=beside(one["url"]), **one)
@@ -64,6 +85,7 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
         for enum in node.enums:
             url = relations.links.enum(enum)
             yield page(url, "enum.html.j2", sidebar=beside(url), **enums.values(relations, enum))
+    yield from _guide(page, render)
     for name in _LOADED:
         yield PurePosixPath(name), render(name)
     most = max((len(m.fields) for node in icd.nodes for m in node.messages), default=0)
@@ -72,3 +94,22 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
     yield PurePosixPath("frame-index.js"), recognition.script(relations)
     yield PurePosixPath("icd.json"), json.dumps(show.to_json(icd), indent=1) + "\n"
     yield PurePosixPath("llms.txt"), llms.text(relations, compared)
+
+
+_Page = Callable[..., tuple[PurePosixPath, str]]
+
+
+def _guide(page: _Page, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
+    """The manual of icdgen, where it is there."""
+    from markupsafe import Markup
+
+    found = guide.pages()
+    if not found:
+        return
+    beside = {
+        name: Markup(render("guide-sidebar.html.j2", pages=found, name=name)) for name in ["", *(p.name for p in found)]
+    }
+    yield page(guide.HOME, "guide-index.html.j2", pages=found, sidebar=beside[""])
+    for one in found:
+        yield page(one.url, "guide.html.j2", page=one, sidebar=beside[one.name])
+    yield from ((PurePosixPath(path), text) for path, text in guide.files())

@@ -32,21 +32,22 @@ class PythonBackend:
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """The project's files, then the package's, then those of each node."""
         from icdgen.backends.python import links, messages, nodes  # the rules about names need none of them
-        from icdgen.backends.python.text import prose
         from icdgen.describe.links import links_of
 
+        description = describe(icd)
         root = PurePosixPath(self.package)
         common = {
             "origin": origin(),
             "package": self.package,
             "version": __version__,
             "project": self.package.replace("_", "-"),
+            "nodes": description.nodes,
+            **_functions(),
         }
-        description = describe(icd)
-        listed, linked = nodes.listed(description), links_of(description)
+        linked = links_of(description)
         yield PurePosixPath("pyproject.toml"), render("pyproject.toml.j2", **common)
-        yield PurePosixPath("README.md"), render("README.md.j2", **common, **listed)
-        yield root / "__init__.py", render("package.py.j2", **common, **listed)
+        yield PurePosixPath("README.md"), render("README.md.j2", **common)
+        yield root / "__init__.py", render("package.py.j2", **common)
         yield root / "py.typed", ""
         for name in render.runtime_files(str(_RUNTIME)):
             path = PurePosixPath(name).relative_to(_RUNTIME)
@@ -54,25 +55,32 @@ class PythonBackend:
                 yield root / path, f"# {origin()}\n{render.source(name)}"
         for node in description.nodes:
             folder = root / node.name
-            first = {"origin": origin(node.model)}
-            yield folder / "__init__.py", render(
-                "node.py.j2",
-                origin=origin(node.model, with_digest=True),
-                **nodes.values(node, description),
-            )
-            title = prose(node.model.title)
+            shared = {**common, "origin": origin(node.model), "node": node}
+            digested = {**shared, "origin": origin(node.model, with_digest=True)}
+            yield folder / "__init__.py", render("node.py.j2", **digested, **nodes.values(node, description))
             if node.name in linked:
-                link = links.literal(linked[node.name])
-                yield folder / "_link.py", render("link.py.j2", **first, title=title, link=link)
+                yield folder / "_link.py", render("link.py.j2", **shared, link=links.literal(linked[node.name]))
             folder /= names.TYPES
-            yield folder / "__init__.py", render("types.py.j2", **first, title=title)
+            yield folder / "__init__.py", render("types.py.j2", **shared)
             for enum in node.enums:
-                path = folder / f"{names.module_name(enum)}.py"
-                yield path, render("enum.py.j2", **first, **nodes.enum_values(enum))
+                yield folder / f"{names.module_name(enum)}.py", render("enum.py.j2", enum=enum, **shared)
             for message in node.messages:
                 path = folder / f"{names.module_name(message)}.py"
-                yield path, render("message.py.j2", **first, **messages.values(message))
+                yield path, render("message.py.j2", m=message, **shared, **messages.values(message))
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Every name that ``files`` declares, for the name rules."""
         return declared_names(describe(icd), self.package)
+
+
+def _functions() -> dict[str, object]:
+    """What templates spell names and text with."""
+    from icdgen.backends.python import fields, nodes, text
+    from icdgen.describe.comments import physical_comment
+    from icdgen.describe.numbers import byte_count
+
+    found = (
+        byte_count, fields.annotation, fields.info, fields.physical, fields.set_physical, names.class_name, physical_comment,
+        nodes.mapping, text.docstring, text.documented, text.literal, text.paragraph, text.prose,
+    )  # fmt: skip
+    return {function.__name__: function for function in found}

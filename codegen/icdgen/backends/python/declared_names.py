@@ -14,35 +14,27 @@ def declared_names(description: Description, package: str) -> Iterator[Identifie
     """All names that come from the ICDs, and what they clash with of the names that are always there."""
     for node in description.nodes:
         scope, within = f"package {package}", f"{package}.{node.name}"
-        yield Identifier(scope, node.name, f"node `{node.name}`", node.model.source)
+        yield node.identifier(scope, node.name)
         if node.name in names.IN_PACKAGE:
             yield Identifier(scope, node.name, names.IN_PACKAGE[node.name].format(node.name), None)
         for name in DEVICES:
             yield Identifier(f"files of {within}", name, "a device of Windows", None)
-        for enum in node.enums:  # messages have files in every language
-            owner_text = f"enumeration `{enum.model.name}`"
-            yield Identifier(f"files of {within}", names.module_name(enum), owner_text, enum.model.source)
         for owner in map(description.node, (*description.icd.included(node.model), node.model)):
             for one in owner.messages:
-                owner_text = f"message `{one.model.name}`"
-                yield Identifier(f"module {within}", names.class_name(one), owner_text, one.model.source)
+                yield one.identifier(f"module {within}", names.class_name(one))
             for enum in owner.enums:
-                owner_text = f"enumeration `{enum.model.name}`"
-                yield Identifier(f"module {within}", names.class_name(enum), owner_text, enum.model.source)
-        for enum in node.enums:
-            scope = f"members of {within}.{names.class_name(enum)}"
+                yield enum.identifier(f"module {within}", names.class_name(enum))
+        for enum in node.enums:  # messages have files in every language
+            yield enum.identifier(f"files of {within}", names.module_name(enum))
             for member in enum.members:
-                owner_text = f"member `{member.model.name}` of `{enum.model.name}`"
-                yield Identifier(scope, member.name.upper(), owner_text, member.model.source)
+                yield member.identifier(f"members of {within}.{names.class_name(enum)}", member.name.upper())
         for one in node.messages:
             yield from _message(one, f"members of {within}.{names.class_name(one)}")
 
 
 def _message(message: MessageDescription, scope: str) -> Iterator[Identifier]:
     for field in message.fields:
-        physical = (field.physical_name,) if field.steps is not None else ()
-        for name in (field.name, *physical):
-            owner = f"field `{field.model.name}` of `{message.model.name}`"
-            yield Identifier(scope, name, owner, field.model.source)
+        for name in (field.name, field.physical_name) if field.steps is not None else (field.name,):
+            yield field.identifier(scope, name)
             if name in names.IN_MESSAGE:
                 yield Identifier(scope, name, names.IN_MESSAGE[name].format(name), None)

@@ -1,57 +1,39 @@
-"""Fields: annotations, documentation, what they are at first, properties of physical values."""
+"""Fields: annotations, what they are at first, what is told of them, properties of physical values."""
 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import NamedTuple
 
 from icdgen.backends.lines import bracketed, exploded
 from icdgen.backends.python.names import class_name
-from icdgen.backends.python.text import WIDTH, docstring, literal, paragraph
+from icdgen.backends.python.text import WIDTH, literal
 from icdgen.describe import FieldDescription
-from icdgen.describe.comments import physical_comment
 
 _KEYWORDS = {"min": "minimum", "max": "maximum"}
 
 
-class Row(NamedTuple):
-    """One field."""
-
-    attribute: str
-    kind: str  # its annotation
-    doc: str
-    parameter: str  # of __init__
-    physical: str  # name of the property with the physical value, or of the attribute
-    physical_parameter: str  # of from_physical
-    info: str  # FieldInfo(...)
+def annotation(field: FieldDescription) -> str:
+    """The type of the attribute."""
+    return class_name(field.enum) if field.enum else "int" if field.model.type == "uint" else field.model.type
 
 
-class Scaled(NamedTuple):
-    """The property that holds a physical value."""
-
-    name: str
-    doc: str
-    result: str
-    assign: str
-
-
-def row(field: FieldDescription, default: str) -> Row:
-    """Everything that the template needs of a field; ``default`` is an expression."""
-    kind = class_name(field.enum) if field.enum else "int" if field.model.type == "uint" else field.model.type
-    parameter = f"{field.name}: {kind} = {default}"
-    physical, physical_parameter = field.name, parameter
-    if field.steps is not None:
-        physical = field.physical_name
-        physical_parameter = f"{physical}: float = {field.steps.double(field.fresh)!r}"
-    doc = docstring(4, map(paragraph, field.comment.paragraphs))
-    return Row(field.name, kind, doc, parameter, physical, physical_parameter, _info(field, kind))
+def default(field: FieldDescription, constants: dict[str, str]) -> str:
+    """What a field is at first; constants of the module are kept in ``constants``: the call that makes it, and its name."""
+    kind, value = field.model.type, field.fresh
+    if kind == "bytes":
+        return _constant(constants, f"bytes({field.model.bits // 8})")
+    if field.enum is None:
+        return str(bool(value)) if kind == "bool" else "0.0" if kind == "float" else str(value)
+    name, member = class_name(field.enum), field.enum.member(value)
+    return f"{name}.{member.name.upper()}" if member else _constant(constants, f"_codec.unnamed({name}, {value})")
 
 
-def _number(exact: Fraction) -> str:
-    return str(exact.numerator) if exact.denominator == 1 else repr(exact.numerator / exact.denominator)
+def _constant(constants: dict[str, str], call: str) -> str:
+    return constants.setdefault(call, f"_DEFAULT_{len(constants)}")
 
 
-def _info(field: FieldDescription, kind: str) -> str:
+def info(field: FieldDescription) -> str:
+    """``_base.FieldInfo(...)``"""
     one = field.model
     items = [f'"{field.name}"', literal(one.name), str(one.at), str(one.bits), f'"{one.type}"']
     if one.unit:
@@ -59,7 +41,7 @@ def _info(field: FieldDescription, kind: str) -> str:
     if field.steps is not None:
         items += [f'physical="{field.physical_name}"', f"scale={field.steps.terms}"]
     if field.enum is not None:
-        items.append(f"enum={kind}")
+        items.append(f"enum={class_name(field.enum)}")
     if one.const is not None:
         items.append(f"const={one.const}")
     if one.special:
@@ -70,18 +52,23 @@ def _info(field: FieldDescription, kind: str) -> str:
     return bracketed("_base.FieldInfo(", items, ")", WIDTH, " " * 8)
 
 
-def scaled(field: FieldDescription) -> Scaled:
-    """The property of a field with a scale."""
+def _number(exact: Fraction) -> str:
+    return str(exact.numerator) if exact.denominator == 1 else repr(exact.numerator / exact.denominator)
+
+
+def physical(field: FieldDescription) -> str:
+    """The physical value of a field with a scale."""
     assert field.steps is not None
     p, c, q = field.steps.terms
     value = f"self.{field.name}" if p == 1 else f"self.{field.name} * {p}"
     if c:
         value = f"{value} {'+' if c > 0 else '-'} {abs(c)}"
+    return f"float({value})" if q == 1 else f"({value}) / {q}" if c else f"{value} / {q}"
+
+
+def set_physical(field: FieldDescription) -> str:
+    """The statement that sets it."""
+    assert field.steps is not None
     ends = str(field.model.raw_min), str(field.model.raw_max)
     arguments = ["value", f'"{field.name}"', str(field.steps.terms), *ends]
-    return Scaled(
-        field.physical_name,
-        docstring(8, [paragraph(physical_comment(field.model, field.steps))]),
-        f"float({value})" if q == 1 else f"({value}) / {q}" if c else f"{value} / {q}",
-        bracketed(f"self.{field.name} = _codec.raw_value(", arguments, ")", WIDTH, " " * 8),
-    )
+    return bracketed(f"self.{field.name} = _codec.raw_value(", arguments, ")", WIDTH, " " * 8)

@@ -61,3 +61,8 @@ def docstring(indent: int, paragraphs: Iterable[str]) -> str:
     blocks = [f'"""{first}', *others]
     text = f"\n\n{pad}".join(f"\n{pad}".join(wrapped(block, WIDTH - indent)) for block in blocks)
     return f'{text}\n{pad}"""'
+
+
+def documented(paragraphs: Iterable[str], indent: int = 4) -> str:
+    """The docstring of paragraphs of a description."""
+    return docstring(indent, map(paragraph, paragraphs))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from icdgen.backends import Identifier
 from icdgen.backends.rust import names
-from icdgen.describe import Description, EnumDescription, MessageDescription, NodeDescription
+from icdgen.describe import Description, MessageDescription, NodeDescription
 from icdgen.naming import DEVICES
 
 _METHODS = ("from_bytes", "from_array", "to_bytes", "try_to_bytes", "default")
@@ -23,7 +23,7 @@ def declared_names(description: Description) -> Iterator[Identifier]:
         yield Identifier(scope, name, said, None)
     yield from _devices(scope)
     for node in description.nodes:
-        yield Identifier(scope, node.name, f"node `{node.name}`", node.model.source)
+        yield node.identifier(scope, node.name)
     for node in description.nodes:
         yield from _node(node)
 
@@ -43,25 +43,18 @@ def _node(node: NodeDescription) -> Iterator[Identifier]:
     yield from _ours(types, names.USED_TYPES)
     yield from _ours(enums, _ENUM_USES)
     for enum in node.enums:
-        yield Identifier(enums, names.type_name(enum), f"enumeration `{enum.model.name}`", enum.model.source)
-        yield from _enum(enum)
+        yield enum.identifier(enums, names.type_name(enum))
+        variants = f"variants of {node.name}::{enum.model.name}"
+        yield from _ours(variants, (names.catch_all(enum),))
+        for member in enum.members:
+            yield member.identifier(variants, names.type_name(member))
     for one in node.messages:
-        owner = f"message `{one.model.name}`"
-        yield Identifier(modules, one.name, owner, one.model.source)
-        yield Identifier(types, names.type_name(one), owner, one.model.source)
+        yield one.identifier(modules, one.name)
+        yield one.identifier(types, names.type_name(one))
         yield from _message(one)
-    for sum_type, messages in (("Telecommand", node.telecommands), ("Telemetry", node.telemetry)):
-        scope = f"variants of {node.name}::{sum_type}"
-        for one in messages:
-            yield Identifier(scope, names.type_name(one), f"message `{one.model.name}`", one.model.source)
-
-
-def _enum(enum: EnumDescription) -> Iterator[Identifier]:
-    scope = f"variants of {enum.node.name}::{enum.model.name}"
-    yield from _ours(scope, (names.catch_all(enum),))
-    for one in enum.members:
-        owner = f"member `{one.model.name}` of `{enum.model.name}`"
-        yield Identifier(scope, names.type_name(one), owner, one.model.source)
+    for direction in node.directions:
+        for one, _ in direction.messages:
+            yield one.identifier(f"variants of {node.name}::{direction.kind.capitalize()}", names.type_name(one))
 
 
 def _message(message: MessageDescription) -> Iterator[Identifier]:
@@ -70,10 +63,9 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     yield from _ours(methods, _METHODS)
     yield from _ours(associated, _CONSTANTS)
     for field in message.fields:
-        owner, source = f"field `{field.model.name}` of `{message.model.name}`", field.model.source
-        yield Identifier(fields, field.name, owner, source)
+        yield field.identifier(fields, names.field_name(field))
         if field.steps is not None:
-            yield Identifier(methods, field.physical_name, owner, source)
-            yield Identifier(methods, f"set_{field.physical_name}", owner, source)
+            yield field.identifier(methods, field.physical_name)
+            yield field.identifier(methods, f"set_{field.physical_name}")
         for constant in field.constants:
-            yield Identifier(associated, constant.name.upper(), owner, source)
+            yield field.identifier(associated, constant.name.upper())

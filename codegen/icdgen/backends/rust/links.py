@@ -101,7 +101,6 @@ class _Literal:
             part("longest", integer(known.longest)),
             part("longest_data", integer(known.longest_data)),
             part("little", spelled(known.little)),
-            part("telecommand_ids", _ids(known.telecommand_ids)),
             part("telemetry_ids", _ids(known.telemetry_ids)),
             part("telecommands", rows(map(_form, link.telecommands))),
             part("telemetry", rows(map(_form, link.telemetry))),

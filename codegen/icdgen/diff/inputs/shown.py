@@ -7,19 +7,16 @@ import sys
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from icdgen.diagnostics import Finding, Findings, Place
 from icdgen.diff.inputs.side import Side
 from icdgen.errors import UserError
-from icdgen.icd import model, source
+from icdgen.icd import model, schema, source
 from icdgen.icd.formula import Scale
 from icdgen.icd.located import Map, Seq, plain
 from icdgen.icd.units import STANDARD, Unit
 from icdgen.show import machine
-
-if TYPE_CHECKING:
-    from jsonschema_rs import ValidationError
 
 Thing = TypeVar("Thing")
 _MOST = 64_000_000  # bytes
@@ -102,29 +99,15 @@ def _placed(value: Any, place: Place) -> Any:
     return value
 
 
-def _check(tree: object, name: str) -> None:
+def _check(tree: Any, name: str) -> None:
     import jsonschema_rs
 
     validator = jsonschema_rs.validator_for(json.loads(machine.SCHEMA.read_text(encoding="utf-8")))
-    errors = list(validator.iter_errors(tree))
-    if errors:
-        finding = Finding(
-            "ICD010", f"{_path(errors[0])}{errors[0].message[:200]}", _where(tree, errors[0], name), _HELP
-        )
-        raise Findings([finding])
-
-
-def _path(error: ValidationError) -> str:
-    path = ".".join(str(step) for step in error.instance_path)
-    return f"`{path}`: " if path else ""
-
-
-def _where(tree: Any, error: ValidationError, name: str) -> Place:
-    place: Place = getattr(tree, "place", Place(name))
-    for step in error.instance_path:
-        place = tree.item_at(int(step)) if isinstance(tree, Seq) else tree.at(step)
-        tree = tree[step]
-    return place
+    for error in validator.iter_errors(tree):
+        path = list(error.instance_path)
+        place = schema.locate(tree, path)[2] if isinstance(tree, Map) else Place(name)
+        what = f"`{'.'.join(map(str, path))}`: " if path else ""
+        raise Findings([Finding("ICD010", f"{what}{error.message[:200]}", place, _HELP)])
 
 
 class _Reader:

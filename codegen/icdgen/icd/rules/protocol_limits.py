@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import ceil
 
 from icdgen.icd.located import Map, Seq
@@ -161,24 +161,29 @@ def _counter(files: Map) -> Iterator[Fault]:
         yield Fault(files, files.at("packet_counter_bytes"), message, "correct it, `block_packets` or `first_packet`")
 
 
+def roles_stand_once(
+    section: Map, key: str, roles: Sequence[str], lacks: str, help: str = "give the parts their `role`"
+) -> Iterator[Fault]:
+    """Faults of a list of parts, of which each has a role, or the name of one."""
+    seen: set[object] = set()
+    for row in mappings(section[key]):
+        named = "role" if "role" in row else "name"
+        role = row.get(named)
+        if role in roles and role in seen:
+            yield Fault(row, row.at(named), f"a second {role}", "each role stands once")
+        seen.add(role)
+    missing = [f"`{role}`" for role in roles if role not in seen]
+    if missing:
+        yield Fault(section, section.at(key), f"{lacks} {listing(missing)}", help)
+
+
 @rule("ICD101")
 def identifier_is_whole(ctx: Context) -> Iterator[Fault]:
     for can in ctx.sections("can"):
         parts = can.get("identifier")
         if not isinstance(parts, Seq) or not {"message_types", "telecommand", "telemetry"} & set(can):
             continue
-        roles: set[str] = set()
-        for row in mappings(parts):
-            role = str(row.get("role", row.get("name")))
-            if role in ROLES and role in roles:
-                yield Fault(
-                    row, row.at("role" if "role" in row else "name"), f"a second {role}", "each role stands once"
-                )
-            roles.add(role)
-        missing = [f"`{role}`" for role in ROLES if role not in roles]
-        if missing:
-            message = f"the identifier has no part for {listing(missing)}"
-            yield Fault(can, can.at("identifier"), message, "give the parts their `role`")
+        yield from roles_stand_once(can, "identifier", ROLES, "the identifier has no part for")
 
 
 @rule("ICD102")
@@ -186,13 +191,5 @@ def times_are_whole(ctx: Context) -> Iterator[Fault]:
     for time in ctx.sections("msdos_time"):
         if not isinstance(time.get("parts"), Seq):
             continue
-        named: set[str] = set()
-        for row in mappings(time["parts"]):
-            name = str(row.get("name"))
-            if name in named:
-                yield Fault(row, row.at("name"), f"a second {name}", "each part stands once")
-            named.add(name)
-        missing = [f"`{name}`" for name in TIME_PARTS if name not in named]
-        if missing:
-            message = f"the packed time has no {listing(missing)}"
-            yield Fault(time, time.at("parts"), message, "it has all parts from `year` to `second`")
+        help = "it has all parts from `year` to `second`"
+        yield from roles_stand_once(time, "parts", TIME_PARTS, "the packed time has no", help)

@@ -10,10 +10,10 @@ from icdgen.icd.rules.context import Context, mappings, section_of
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.ids import KEYS
 from icdgen.icd.rules.protocol import sections
-from icdgen.icd.rules.protocol_limits import in_force
+from icdgen.icd.rules.protocol_limits import in_force, roles_stand_once
 from icdgen.icd.rules.protocol_sizes import numbers
 from icdgen.icd.rules.rule import rule
-from icdgen.icd.rules.wording import count, line_of, listing, quote
+from icdgen.icd.rules.wording import count, line_of, quote
 
 ACKNOWLEDGE_ROLES = ("id", "error")
 # what is sent in each direction with data -> the keys of its message types, and those of messages of several packets
@@ -79,19 +79,12 @@ def acknowledge_is_whole(ctx: Context) -> Iterator[Fault]:
         rows = section.get("data")
         if not isinstance(rows, Seq):
             continue
-        roles: set[object] = set()
+        yield from roles_stand_once(section, "data", ACKNOWLEDGE_ROLES, "the acknowledge has no part for")
         for row in mappings(rows):
             role, size = row.get("role"), row.get("bytes")
-            if role in ACKNOWLEDGE_ROLES and role in roles:
-                yield Fault(row, row.at("role"), f"a second {role}", "each role stands once")
-            elif role in ACKNOWLEDGE_ROLES and isinstance(size, int) and size > 1:
+            if role in ACKNOWLEDGE_ROLES and isinstance(size, int) and size > 1:
                 message = f"the {role} has {count(size, 'byte')}, but one is read"
                 yield Fault(row, row.at("bytes"), message, "correct `bytes`, or leave the section out")
-            roles.add(role)
-        missing = [f"`{role}`" for role in ACKNOWLEDGE_ROLES if role not in roles]
-        if missing:
-            message = f"the acknowledge has no part for {listing(missing)}"
-            yield Fault(section, section.at("data"), message, "give the parts their `role`")
 
 
 @rule("ICD106", whole=True)

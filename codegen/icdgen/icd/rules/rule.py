@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from icdgen.icd.rules.fault import Fault
 
@@ -16,8 +15,7 @@ if TYPE_CHECKING:
 Check = Callable[["Context"], Iterator[Fault]]
 
 
-@dataclass(frozen=True, slots=True)
-class Rule:
+class Rule(NamedTuple):
     """A rule. ``check`` is None where the finding is raised while reading. Its words stand in ``<theme>.md``."""
 
     code: str

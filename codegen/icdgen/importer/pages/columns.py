@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from bisect import bisect_left, bisect_right
 from typing import NamedTuple
 
 from icdgen.importer import headings
@@ -10,7 +11,7 @@ from icdgen.importer.document import Header
 from icdgen.importer.pages.extract import Word
 from icdgen.importer.pages.lines import Line, runs, text_of
 from icdgen.importer.profile import Profile
-from icdgen.importer.words import join
+from icdgen.importer.words import folded, join
 
 MOST_LINES = 4  # of a heading row
 
@@ -25,6 +26,8 @@ class Columns(NamedTuple):
 
 def find(lines: list[Line], profile: Profile, loose: bool = True) -> Columns | None:
     """The heading row that begins with the first of ``lines``; None if none does. ``loose``: one without offsets is one, too."""
+    if not lines or profile.heading_words.isdisjoint(folded(lines[0].text)):
+        return None
     best: Columns | None = None
     for count in range(1, min(MOST_LINES, len(lines)) + 1):
         block = lines[:count]
@@ -36,7 +39,7 @@ def find(lines: list[Line], profile: Profile, loose: bool = True) -> Columns | N
             if header and (best is None or _known(header) > _known(best.header)):
                 spans = [(min(w.x0 for w in cell), max(w.x1 for w in cell)) for cell in cells]
                 best = Columns(header, spans, count)
-    if best is None and lines and loose:
+    if best is None and loose:
         for cells in filter(None, (_in_one_line(lines[0], profile), _clustered(lines[:1]))):
             header = headings.match([_text(cell) for cell in cells], profile, loose=True)
             if header and header.kind == "fields" and all(header.roles) and header.titles[0][:1].isupper():
@@ -100,28 +103,34 @@ def _river(
 ) -> float:
     """The middle of the gap that the fewest words cross: one with words on both sides of it, then one that ends where
     the heading begins, then where most words begin, then the widest."""
-    middles = [(w.x0 + w.x1) / 2 for w in words]
-    near = [(w.x0, w.x1) for w in words if w.x1 > low and w.x0 < high]
-    points = sorted({low, high, *(x for span in near for x in span if low < x < high)})
-    best, key = guess, None
+    middles = sorted((w.x0 + w.x1) / 2 for w in words)
+    begins = sorted(w.x0 for w in words)
+    near = [w for w in words if w.x1 > low and w.x0 < high]
+    starts, ends = sorted(w.x0 for w in near), sorted(w.x1 for w in near)
+    points = sorted({low, high, *(x for x in starts + ends if low < x < high)})
     pieces: list[list[float]] = []  # [from, to, crossings], neighbours with the same count put together
     for a, b in itertools.pairwise(points):
-        middle = (a + b) / 2
-        crossings = sum(1 for x0, x1 in near if x0 < middle < x1)
+        crossings = bisect_left(starts, (a + b) / 2) - bisect_right(ends, (a + b) / 2)
         if pieces and pieces[-1][2] == crossings:
             pieces[-1][1] = b
         else:
             pieces.append([a, b, crossings])
+    best, key = guess, None
     for a, b, count in pieces:
         middle = (a + b) / 2
-        empty = not any(before < x < middle for x in middles) or not any(middle < x < beyond for x in middles)
-        begin = sum(1 for w in words if abs(w.x0 - b) < 1)  # words that begin together, as a column's do
+        empty = not _any_between(middles, before, middle) or not _any_between(middles, middle, beyond)
+        begin = bisect_left(begins, b + 1) - bisect_right(begins, b - 1)  # words that begin together, as a column's do
         headed = abs(b - heading) < 1.5
         narrow = bool(words) and b - a < 0.5 * words[0].size
         this = (count, not headed, empty, narrow, -begin if begin > 2 else 0, -(b - a))
         if key is None or this < key:
             best, key = middle, this
     return best
+
+
+def _any_between(values: list[float], low: float, high: float) -> bool:
+    """Whether one of the sorted values lies between."""
+    return bisect_right(values, low) < bisect_left(values, high)
 
 
 def cells(line: Line, edges: list[float]) -> list[str]:

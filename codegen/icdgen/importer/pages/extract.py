@@ -1,4 +1,4 @@
-"""One page of a PDF -> its words, ruling lines and shaded areas. The only place that knows pdfplumber.
+"""One page of a PDF -> its words, ruling lines and shaded areas. The only place that knows pdfplumber's pages.
 
 Runs in worker processes, so what it returns is small and plain.
 """
@@ -6,7 +6,7 @@ Runs in worker processes, so what it returns is small and plain.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -70,54 +70,95 @@ class Page:
 
 def extract(page: Any) -> Page:
     """What ``page``, a page of pdfplumber, shows."""
+    from pdfminer.layout import LTChar, LTCurve, LTImage, LTLine, LTRect
+    from pdfplumber.utils.text import extract_words
+
     left, top, right, bottom = (float(edge) for edge in page.cropbox)
-    made = Page(page.page_number, right - left, bottom - top, images=len(page.images))
-    shift = _Shift(left, top)
-    words = page.extract_words(
-        x_tolerance_ratio=GAP, y_tolerance=2.5, keep_blank_chars=False, use_text_flow=False, return_chars=True
-    )
-    for word in words:
-        text = _text(word)
-        if not text:
-            continue
-        if not word.get("upright", True):
-            made.turned += 1
-            continue
-        x0, above, x1, below = shift.box(word)
-        if not (0 <= (x0 + x1) / 2 <= made.width and 0 <= (above + below) / 2 <= made.height):
-            made.unseen += 1
-            continue
-        made.words.append(Word(text, x0, above, x1, below, _size(word["chars"]), _style(word)))
-        made.unmapped += text.count("(cid:") + text.count("\ufffd")
-    for line in page.lines:
-        _line(made, *shift.box(line))
-    for rect in page.rects:
-        _rectangle(made, rect, *shift.box(rect))
-    for curve in page.curves:
-        _curve(made, curve, shift)
+    made = Page(page.page_number, right - left, bottom - top)
+    shift = _Shift(page.mediabox[0] - left, page.mediabox[1] + page.height - top)
+    chars = []
+    for thing in _drawn(page):
+        if isinstance(thing, LTChar):
+            chars.append(_char(thing, shift))
+        elif isinstance(thing, LTLine):
+            _line(made, *shift.box(thing))
+        elif isinstance(thing, LTRect):
+            _rectangle(made, thing, *shift.box(thing))
+        elif isinstance(thing, LTCurve):
+            _curve(made, thing, shift)
+        elif isinstance(thing, LTImage):
+            made.images += 1
+    for word in extract_words(chars, x_tolerance_ratio=GAP, y_tolerance=2.5, return_chars=True):
+        _word(made, word)
     return made
 
 
+def _drawn(page: Any) -> Iterator[Any]:
+    """Characters, lines, curves and pictures, those of forms too. pdfplumber's own ``objects`` hold the same as
+    dictionaries of some twenty entries each, which takes as long as reading the page."""
+    from pdfminer.converter import PDFPageAggregator
+    from pdfminer.layout import LTContainer
+    from pdfminer.pdfinterp import PDFPageInterpreter
+
+    device = PDFPageAggregator(page.pdf.rsrcmgr, pageno=page.page_number)
+    PDFPageInterpreter(page.pdf.rsrcmgr, device).process_page(page.page_obj)
+    waiting = [iter(device.get_result())]
+    while waiting:
+        thing = next(waiting[-1], None)
+        if thing is None:
+            waiting.pop()
+        elif isinstance(thing, LTContainer):
+            waiting.append(iter(thing))
+        else:
+            yield thing
+
+
 class _Shift(NamedTuple):
-    """From the coordinates of a PDF's sheet to those of its visible part."""
+    """From the coordinates of a PDF's sheet, y upwards, to those of its visible part."""
 
     x: float
     y: float
 
-    def box(self, thing: Mapping[str, Any]) -> tuple[float, float, float, float]:
-        return thing["x0"] - self.x, thing["top"] - self.y, thing["x1"] - self.x, thing["bottom"] - self.y
+    def box(self, thing: Any) -> tuple[float, float, float, float]:
+        return thing.x0 + self.x, self.y - thing.y1, thing.x1 + self.x, self.y - thing.y0
+
+
+def _char(thing: Any, shift: _Shift) -> dict[str, Any]:
+    """A character as pdfplumber puts them together to words."""
+    x0, top, x1, bottom = shift.box(thing)
+    return {"text": thing.get_text(), "x0": x0, "x1": x1, "top": top, "bottom": bottom, "doctop": top,
+            "upright": thing.upright, "size": thing.size, "from": thing}  # fmt: skip
+
+
+def _word(made: Page, word: Mapping[str, Any]) -> None:
+    text = _text(word)
+    if not text:
+        return
+    if not word["upright"]:
+        made.turned += 1
+        return
+    x0, top, x1, bottom = word["x0"], word["top"], word["x1"], word["bottom"]
+    if not (0 <= (x0 + x1) / 2 <= made.width and 0 <= (top + bottom) / 2 <= made.height):
+        made.unseen += 1
+        return
+    made.words.append(Word(text, x0, top, x1, bottom, _size(word["chars"]), _style(word["chars"][0]["from"])))
+    made.unmapped += text.count("(cid:") + text.count("\ufffd")
 
 
 def _size(chars: list[dict[str, Any]]) -> float:
     return max(float(char["size"]) for char in chars)
 
 
-def _style(word: Mapping[str, Any]) -> str:
-    first = word["chars"][0]
-    colour = first.get("non_stroking_color")
-    values = colour if isinstance(colour, (tuple, list)) else (colour,)
-    shade = " ".join(f"{v:.2f}" for v in values if isinstance(v, (int, float)))
-    return f"{first['fontname'].rsplit('+', 1)[-1]} {shade}"
+def _style(char: Any) -> str:
+    name = char.fontname
+    if isinstance(name, bytes):
+        name = name.decode("utf-8", "replace")
+    shade = " ".join(f"{v:.2f}" for v in _values(char.graphicstate.ncolor) if isinstance(v, (int, float)))
+    return f"{name.rsplit('+', 1)[-1]} {shade}"
+
+
+def _values(colour: Any) -> tuple[Any, ...]:
+    return tuple(colour) if isinstance(colour, (tuple, list)) else (colour,)
 
 
 def _text(word: Mapping[str, Any]) -> str:
@@ -140,22 +181,22 @@ def _line(made: Page, x0: float, top: float, x1: float, bottom: float) -> None:
         made.down.append(Rule((x0 + x1) / 2, top, bottom))
 
 
-def _rectangle(made: Page, rect: Mapping[str, Any], x0: float, top: float, x1: float, bottom: float) -> None:
+def _rectangle(made: Page, rect: Any, x0: float, top: float, x1: float, bottom: float) -> None:
     if x1 - x0 <= THIN or bottom - top <= THIN:
         _line(made, x0, top, x1, bottom)
         return
-    if rect.get("fill") and not _white(rect.get("non_stroking_color")):
+    if rect.fill and not _white(rect.non_stroking_color):
         made.fills.append(Fill(x0, top, x1, bottom))
-    if rect.get("stroke") and rect.get("linewidth", 1) is not None:
+    if rect.stroke:
         for y in (top, bottom):
             made.across.append(Rule(y, x0, x1))
         for x in (x0, x1):
             made.down.append(Rule(x, top, bottom))
 
 
-def _curve(made: Page, curve: Mapping[str, Any], shift: _Shift) -> None:
+def _curve(made: Page, curve: Any, shift: _Shift) -> None:
     """Rules drawn as paths: the straight pieces of them."""
-    points = [(x - shift.x, y - shift.y) for x, y in curve.get("pts") or ()]
+    points = [(x + shift.x, shift.y - y) for x, y in curve.pts]
     for (xa, ya), (xb, yb) in itertools.pairwise(points):
         _line(made, min(xa, xb), min(ya, yb), max(xa, xb), max(ya, yb))
 
@@ -163,7 +204,7 @@ def _curve(made: Page, curve: Mapping[str, Any], shift: _Shift) -> None:
 def _white(colour: object) -> bool:
     if colour is None:
         return False
-    values = colour if isinstance(colour, (tuple, list)) else (colour,)
+    values = _values(colour)
     if not all(isinstance(v, (int, float)) for v in values):
         return False
     return all(v <= 0.01 for v in values) if len(values) == 4 else all(v >= 0.99 for v in values)

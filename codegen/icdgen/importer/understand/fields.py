@@ -18,6 +18,10 @@ from icdgen.importer.words import grows, number, tidy_unit
 
 MOST_BITS = 64  # of a number
 _NONE = ("", "-", "–", "n/a", "na", "none")
+_READABLE_UNIT = re.compile(r"(?:[^\W\d_]|[%°'\"′″‰(]|1\s*/|10\s*\^)[\w\s%°'\"′″‰^*/·.,()\[\]⁻⁺+-]*\Z")
+_NAMED = re.compile(
+    r"(?P<name>[^,;]+?)\s*[,;]\s*(?:unit:?\s*)?(?P<factor>[0-9]*\.?[0-9]+)?\s*(?P<unit>[^\W\d][^\s,;]*|[%°]\S*)\Z"
+)
 _SCALED_UNIT = re.compile(r"(?P<factor>[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[^0-9\s].*)?\Z")
 
 
@@ -152,6 +156,9 @@ def _line(entry: Entry, header: Header, table: Table, profile: Profile, troubles
             return None
         if not at_unit and not entry.get("at"):
             at_unit = 8
+        if entry.get("at") and "at_bytes" in header.roles and number(entry.get("at_bytes")) is None:
+            _refuse(entry.get("at_bytes"), "the byte of the offset", line, table, troubles)
+            return None
     for role in ("bits", "bits_bytes"):
         text = entry.get(role)
         if not text:
@@ -210,15 +217,18 @@ def _fields(
 ) -> list[ReadField]:  # fmt: skip
     """The field of a row; for an array one for each element."""
     entry, name = line.entry, line.entry.get("name")
+    has_scale = any(role in table.header.roles for role in ("unit", "formula")) if table.header else False
+    name, scale = (name, "") if has_scale else scaled_name(name)
     kind = _kind(line, bits, "type" in (table.header.roles if table.header else ()), troubles)
     if not name:
         troubles.append(Trouble("IMP025", f"{table.title}: the field at bit {at} has no name", entry.spot,
                                 "name it in the ICD, or by an erratum", "error"))  # fmt: skip
         name = f"Unnamed {at}"
     described = _described(entry, profile, kind == "enum")
+    _unit(scale, described)
     for problem in described.problems:
-        text = entry.get("description")
-        troubles.append(Trouble("IMP040", f"{line.where}: {problem}: `{text[-160:]}`", entry.spot, "read the page"))
+        text = f": `{entry.get('description')[-160:]}`" if entry.get("description") else ""
+        troubles.append(Trouble("IMP040", f"{line.where}: {problem}{text}", entry.spot, "read the page"))
     count = line.type.times if line.type else 1
     if count > 1 and kind != "bytes":
         troubles.append(Trouble("IMP029", f"{line.where}: its {count} elements are held as {count} fields", entry.spot,
@@ -276,6 +286,22 @@ def _described(entry: Entry, profile: Profile, is_enum: bool) -> descriptions.De
     return made
 
 
+def scaled_name(text: str) -> tuple[str, str]:
+    """A cell that names a field, and its unit with a factor if it has one: ``voltage, 10 mV``."""
+    match = _NAMED.match(text)
+    unit = tidy_unit(match["unit"]) if match else ""
+    if match and (match["factor"] or unit in STANDARD or unit in SPELLINGS):
+        return match["name"], f"{match['factor'] or ''} {unit}".strip()
+    return text, ""
+
+
+def scaled(text: str) -> descriptions.Described:
+    """What a unit says, with a factor or without."""
+    made = descriptions.Described()
+    _unit(text, made)
+    return made
+
+
 def _unit(text: str, made: descriptions.Described) -> None:
     """A cell of units: a unit, a factor (``0.01``), or both (``10 mV``)."""
     if text.casefold() in _NONE:
@@ -287,6 +313,9 @@ def _unit(text: str, made: descriptions.Described) -> None:
         text = tidy_unit(match["unit"] or "")
         if not text:
             return
+    if not _READABLE_UNIT.match(text):
+        made.problems.append(f"the unit `{text}` cannot be read")
+        return
     if made.unit and made.unit != text:
         made.problems.append(f"its unit is `{text}` in one column and `{made.unit}` in another")
     made.unit = text

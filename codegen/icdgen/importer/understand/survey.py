@@ -9,8 +9,9 @@ from icdgen.icd.model import CONFIGURATION
 from icdgen.importer.document import Document, Heading, Spot, Table, Text, Trouble
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import around, grids, lists, messages
-from icdgen.importer.understand.around import Around, kind_of
+from icdgen.importer.understand.around import Around, Said, kind_of
 from icdgen.importer.understand.model import ReadEnum, ReadList, ReadLog, ReadMessage, Thing
+from icdgen.importer.words import grows
 
 BACKGROUND, UNKNOWN = "background", "not understood"
 T = TypeVar("T", ReadEnum, ReadList, ReadLog, ReadMessage)
@@ -48,9 +49,10 @@ def survey(document: Document, profile: Profile) -> Survey:
     prose: list[str] = []
     used: set[str] = set()  # headings whose id a table has
     bare = False  # whether no table stands below the last heading
-    for block in (*document.blocks, Heading("", "")):
+    for block in document.blocks:
         if isinstance(block, Heading):
-            made.troubles += _without_table(sections, profile) if bare else []
+            if bare and not _holds(sections[-1], block):
+                made.troubles += _without_table(sections, profile)
             bare = True
             sections = [s for s in sections if _holds(s, block)] + [block]
             prose = []
@@ -80,8 +82,9 @@ def survey(document: Document, profile: Profile) -> Survey:
         if what == UNKNOWN and block.number is None and not _is_grid(block):
             continue  # a figure, a listing, a box: nobody called it a table
         made.found.append(Found(block, what, thing, run, titles))
-        if what == UNKNOWN:
-            made.troubles.append(_not_understood(block))
+        if what == UNKNOWN and not _is_repeated(block, made):
+            made.troubles.append(_not_understood(block, around.read(about, profile)))
+    made.troubles += _without_table(sections, profile) if bare else []
     return made
 
 
@@ -105,6 +108,17 @@ def classify(
     if kind == "list":
         return "list", lists.listing(table, profile, troubles)
     return "loggable frames", lists.log(table, troubles)
+
+
+def _is_repeated(table: Table, made: Survey) -> bool:
+    """Whether rows without headings are the repeated block of the message before, which then cannot be held."""
+    messages = made.of(ReadMessage)
+    cells = [cell for row in (*table.head, *table.rows)[:1] for cell in row.cells]
+    figure = next((cell for cell in cells if grows(cell)), "")
+    if not figure or not messages:
+        return False
+    messages[-1][1].lacks = f"its rows from `{figure}` on depend on a count, which the ICD format cannot hold"
+    return True
 
 
 def _is_grid(table: Table) -> bool:
@@ -139,14 +153,16 @@ def _without_table(sections: list[Heading], profile: Profile) -> list[Trouble]:
     )]  # fmt: skip
 
 
-def _not_understood(table: Table) -> Trouble:
+def _not_understood(table: Table, said: Said) -> Trouble:
+    """That nobody knows what a table is; where an id stands above it, a message is missing."""
     rows = [row for row in (*table.head, *table.rows) if any(row.cells)]
     cells = [cell for cell in rows[0].cells if cell] if rows else []
     begins = f"; it begins with `{' | '.join(cells)[:100]}`" if cells else ""
+    id = f", though what stands above it gives the id {' '.join(said.ids)}" if said.ids else ""
     return Trouble(
-        "IMP030", f"{table.title}: none of the tables that icdgen knows{begins}", table.spot,
+        "IMP030", f"{table.title}: none of the tables that icdgen knows{id}{begins}", table.spot,
         "if it describes a message or an enumeration add its headings to the profile, else name it under `background:`",
-        "note" if table.number is None else "warning",
+        "error" if id else "note" if table.number is None else "warning",
     )  # fmt: skip
 
 

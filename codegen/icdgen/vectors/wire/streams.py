@@ -121,6 +121,9 @@ def _kinds(known: Facts, source: Random) -> Iterator[tuple[str, bytes]]:
             ) + source.randbytes(size + more)
     for id, message in list(known.telemetry.items())[:3]:
         yield f"telemetry {id}", bytes([id]) + source.randbytes(message.length)
+    first, last = known.telemetry_ids.first, known.telemetry_ids.last
+    for id in sorted({first - 1, first, last, last + 1} & set(range(256))):
+        yield f"id {id}, where those of telemetry begin or end", bytes([id, 0])
     if known.log_message and known.mask:
         for mask in masks(known)[:4]:
             data = [source.randbytes(slot.length) for slot in known.mask.selected(mask)]

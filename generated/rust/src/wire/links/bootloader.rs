@@ -29,7 +29,6 @@ pub static LINK: link::Link = link::Link {
     longest: 23,
     longest_data: 22,
     little: true,
-    telecommand_ids: link::Ids { first: 0, last: 127 },
     telemetry_ids: link::Ids { first: 128, last: 255 },
     telecommands: &[
         link::Form { id: 1, length: 1, acknowledged: false, repeatable: false },

@@ -33,8 +33,6 @@ pub struct Link {
     pub longest_data: usize,
     /// Whether the least significant byte of a number comes first.
     pub little: bool,
-    /// Ids of telecommands.
-    pub telecommand_ids: Ids,
     /// Ids of telemetry.
     pub telemetry_ids: Ids,
     /// The telecommands.

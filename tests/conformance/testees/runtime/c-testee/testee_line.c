@@ -14,7 +14,7 @@ typedef struct {
     size_t capacity;
 } text_t;
 
-static text_t request, answer;
+static text_t line_in, line_out;
 static char *rest; /* of the request; NULL at its end */
 
 static void *checked(void *found)
@@ -122,7 +122,7 @@ static void forget_all(void)
 
 static void put(const char *text)
 {
-    append(&answer, text, strlen(text));
+    append(&line_out, text, strlen(text));
 }
 
 static void put_key(const char *key)
@@ -144,14 +144,14 @@ static void put_hex(const uint8_t *data, size_t length)
     static const char digits[] = "0123456789abcdef";
     size_t i;
     for (i = 0; i < length; i++) {
-        append(&answer, &digits[data[i] >> 4], 1);
-        append(&answer, &digits[data[i] & 15u], 1);
+        append(&line_out, &digits[data[i] >> 4], 1);
+        append(&line_out, &digits[data[i] & 15u], 1);
     }
 }
 
 void put_row(const char *word)
 {
-    put(answer.length != 0u ? " " : "");
+    put(line_out.length != 0u ? " " : "");
     put(word);
 }
 
@@ -217,7 +217,7 @@ void put_octets_item(const void *data, size_t length)
 
 void refuse(const char *error)
 {
-    answer.length = 0;
+    line_out.length = 0;
     put_row("refused");
     put_row(error);
 }
@@ -246,13 +246,13 @@ static bool read_line(void)
 {
     int c;
     char one;
-    request.length = 0;
+    line_in.length = 0;
     while ((c = getc(stdin)) != EOF && c != '\n') {
         one = (char)c;
-        append(&request, &one, 1);
+        append(&line_in, &one, 1);
     }
-    append(&request, "", 1);
-    rest = request.at;
+    append(&line_in, "", 1);
+    rest = line_in.at;
     return c != EOF;
 }
 
@@ -274,16 +274,16 @@ static void answer_line(void)
 int main(void)
 {
     while (read_line()) {
-        answer.length = 0;
+        line_out.length = 0;
         answer_line();
         forget_all();
         put("\n");
-        if (fwrite(answer.at, 1, answer.length, stdout) != answer.length || fflush(stdout) != 0) {
+        if (fwrite(line_out.at, 1, line_out.length, stdout) != line_out.length || fflush(stdout) != 0) {
             return 1;
         }
     }
-    free(request.at);
-    free(answer.at);
+    free(line_in.at);
+    free(line_out.at);
     free(taken);
     return 0;
 }

@@ -1,0 +1,160 @@
+"""The manual of icdgen as pages of the site: ``docs/*.md``, with links between them and what they show as files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cache
+from itertools import count
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from icdgen import shipped
+from icdgen.backends.html.texts import clip
+
+if TYPE_CHECKING:
+    from markdown_it.token import Token
+
+FOLDER = "icdgen-docs"  # no node can be called so
+HOME = f"{FOLDER}/index.html"
+_LONG = 12_000  # characters of a page whose sections are folded
+
+
+@dataclass
+class Section:
+    """What stands below a heading, as plain text."""
+
+    title: str
+    anchor: str
+    level: int
+    text: str = ""
+
+
+@dataclass
+class Page:
+    """``html`` is safe: it was made from Markdown in which HTML is but text."""
+
+    name: str
+    html: str
+    sections: list[Section] = field(default_factory=list)
+
+    @property
+    def title(self) -> str:
+        return self.sections[0].title if self.sections else self.name
+
+    @property
+    def url(self) -> str:
+        """``icdgen-docs/wire.html``"""
+        return f"{FOLDER}/{self.name}.html"
+
+    @property
+    def about(self) -> str:
+        """How it begins."""
+        return clip(self.sections[0].text, 160) if self.sections else ""
+
+
+@cache
+def pages() -> tuple[Page, ...]:
+    """All pages, by name; none where the manual is not there."""
+    return tuple(_page(path) for path in sorted(shipped.docs().glob("*.md")))
+
+
+def files() -> Iterator[tuple[str, str]]:
+    """What the pages show and lead to: path on the site and text."""
+    folder = shipped.docs()
+    for path in sorted(folder.glob("*/**/*")):
+        if path.is_file() and path.suffix in (".yaml", ".c", ".h", ".py", ".toml", ".txt"):
+            yield f"{FOLDER}/{path.relative_to(folder).as_posix()}", path.read_text("utf-8")
+
+
+def anchor_of(title: str) -> str:
+    """``the-errata-overlays``, as forges make them."""
+    return re.sub(r"\s", "-", re.sub(r"[^\w\s-]", "", title.strip().lower()))
+
+
+def _anchors(title: str) -> Iterator[str]:
+    yield anchor_of(title)
+    yield from (f"{anchor_of(title)}-{number}" for number in count(1))
+
+
+def _page(path: Path) -> Page:
+    from markdown_it import MarkdownIt
+
+    reader = MarkdownIt("commonmark", {"html": False}).enable(["table", "strikethrough"])
+    tokens = reader.parse(path.read_text("utf-8"))
+    page = Page(path.stem, "")
+    taken: set[str] = set()
+    for number, token in enumerate(tokens):
+        if token.type == "heading_open":
+            title = _plain(tokens[number + 1])
+            anchor = next(one for one in _anchors(title) if one not in taken)
+            taken.add(anchor)
+            token.attrSet("id", anchor)
+            page.sections.append(Section(title, anchor, int(token.tag[1:])))
+        elif token.type == "inline":
+            _mend_links(token, path)
+            if page.sections and tokens[number - 1].type != "heading_open":
+                page.sections[-1].text += f" {_plain(token)}"
+        elif token.type in ("fence", "code_block"):
+            token.type, token.info = "code_block", ""
+            if page.sections:
+                page.sections[-1].text += f" {token.content}"
+    for section in page.sections:
+        section.text = " ".join(section.text.split())
+    page.html = _folded(_tables_in_reach(reader.renderer.render(tokens, reader.options, {})))
+    return page
+
+
+def _tables_in_reach(html: str) -> str:
+    """Tables and code that are too wide for a screen scroll, by the keyboard too."""
+    numbers = count(1)
+    html = html.replace("<pre>", '<pre tabindex="0" data-copy>').replace("<th>", '<th scope="col">')
+    html = re.sub(
+        "<table>",
+        lambda _: f'<section class="scroll wide-table" tabindex="0" aria-label="Table {next(numbers)}, scrollable"><table>',
+        html,
+    )
+    return html.replace("</table>", "</table></section>")
+
+
+def _folded(html: str) -> str:
+    """The sections of a long page are folded."""
+    if len(html) < _LONG:
+        return html
+    first, *others = re.split(r"(?=<h2 )", html)
+    made = [re.sub(r"\A(<h2 .*?</h2>)", r"<summary>\1</summary>", one, flags=re.DOTALL) for one in others]
+    return first + "".join(f'<details class="fold">{one}</details>\n' for one in made)
+
+
+def _plain(token: Token) -> str:
+    return "".join(child.content if child.type in ("text", "code_inline") else " " for child in token.children or ())
+
+
+def _mend_links(token: Token, path: Path) -> None:
+    """Links to other pages lead to what was made of them; what is not on the site becomes text."""
+    kept: list[bool] = []
+    children = []
+    for child in token.children or ():
+        if child.type == "link_open":
+            target = _target(str(child.attrGet("href") or ""), path)
+            kept.append(bool(target))
+            if not target:
+                continue
+            child.attrSet("href", target)
+        elif (child.type == "link_close" and not kept.pop()) or child.type == "image":
+            continue
+        children.append(child)
+    token.children = children
+
+
+def _target(href: str, path: Path) -> str:
+    """Where a link leads from a page of the manual; empty for what is not on the site."""
+    name, hash, anchor = href.partition("#")
+    if ":" in name or name.startswith(("/", "..")):
+        return ""
+    if not name:
+        return href
+    if not (path.parent / name).is_file():
+        return ""
+    return re.sub(r"\.md$", ".html", name) + hash + anchor

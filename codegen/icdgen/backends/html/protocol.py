@@ -1,0 +1,250 @@
+"""The page that says how a node talks: lines, framing, checksums, identifiers, errors, who sends what when, and what is assumed."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Any, NamedTuple
+
+from icdgen.backends.html import sequences
+from icdgen.backends.html.relations import Place, Relations
+from icdgen.icd.model import Enum, Node
+from icdgen.protocol import facts
+from icdgen.protocol.declared import Fact, Kind, facts_of
+from icdgen.protocol.facts import Facts
+from icdgen.protocol.sections import CanPart, Crc, Step
+
+_BUSES = {"uart": "UART", "i2c": "I²C", "can": "CAN"}
+_WIDTH = 720
+
+
+class Row(NamedTuple):
+    """A fact: what it is, its value, and why that is assumed, if it is."""
+
+    about: str
+    value: str
+    why: str = ""
+    url: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A table of facts; ``anchor`` is unique in the page."""
+
+    anchor: str
+    title: str
+    rows: list[Row]
+
+
+class Box(NamedTuple):
+    """A piece of a drawing: two lines of text in a box at ``x``; ``above`` it are the numbers of its bits."""
+
+    x: float
+    width: float
+    text: str
+    about: str
+    above: str = ""
+
+
+def has_page(relations: Relations, node: Node) -> bool:
+    """Whether the ICD says anything about how the node talks."""
+    return bool(relations.icd.protocol_of(node))
+
+
+def values(relations: Relations, node: Node) -> dict[str, object]:
+    """Values of the page."""
+    known, section = facts.of(relations.icd, node), relations.icd.protocol_of(node)
+    checks = _checks(known, section)
+    return {
+        "node": node,
+        "lines": lines(section),
+        "framing": _framing(known),
+        "escaped": known.framing and f"{known.framing.escape:02X}",
+        "escaped_as": known.framing and f"{known.framing.escape:02X} {known.framing.escaped:02X}",
+        "checks": [(name, _crc_rows(crc), f"0x{check:X}" if check is not None else "") for name, crc, check in checks],
+        "calculator": json.dumps([{"name": name, **_plain(crc)} for name, crc, _ in checks], separators=(",", ":")),
+        "identifier": _identifier(known, section),
+        "types": section.get("can", {}).get("message_types", {}).get("values", []),
+        "errors": errors(relations, node, known, section),
+        "acknowledges": sequences.acknowledges(relations, node, known),
+        "procedures": sequences.procedures(relations, node, known),
+        "times": [(part, row) for part in parts(relations, known) for row in part.rows if row.value.endswith(" ms")],
+        "parts": parts(relations, known),
+        "assumptions": [
+            Row(f"{one.section}: {one.key.replace('_', ' ')}", _text(one.value), one.why) for one in known.assumptions
+        ],
+    }
+
+
+def lines(section: dict[str, Any]) -> list[tuple[str, list[Row]]]:
+    """The settings of each bus."""
+    found = []
+    for key, title in _BUSES.items():
+        rows = list(_settings(section.get(key, {}), ""))
+        if rows:
+            found.append((title, rows))
+    return found
+
+
+def _settings(given: dict[str, Any], prefix: str) -> Iterator[Row]:
+    for key, value in given.items():
+        label = f"{prefix}{key.replace('_', ' ')}"
+        if isinstance(value, int) and not isinstance(value, bool):
+            yield Row(label, f"0x{value:02X}" if "address" in key else f"{value:,}")
+        elif isinstance(value, str):
+            yield Row(label, value)
+        elif isinstance(value, list) and all(isinstance(one, str) for one in value):
+            yield Row(label, " or ".join(value))
+        elif key in ("write", "read") and isinstance(value, dict):
+            yield from _settings(value, f"{key}, ")
+
+
+def _framing(known: Facts) -> list[Box]:
+    form = known.framing
+    if form is None:
+        return []
+    pieces = [(f"{form.escape:02X}", "escape", 1), (f"{form.start:02X}", "start", 1), ("id", "", 1.4), ("data", "", 4)]
+    pieces += [("CRC", "optional", 1.4)] if known.checksum and "uart" in known.checksum.telecommand_buses else []
+    pieces += [(f"{form.escape:02X}", "escape", 1), (f"{form.end:02X}", "end", 1)]
+    return _row([(text, about, share, "") for text, about, share in pieces])
+
+
+def _row(pieces: list[tuple[str, str, float, str]]) -> list[Box]:
+    """Boxes beside each other, as wide as their shares."""
+    whole, x, found = sum(share for _, _, share, _ in pieces), 0.0, []
+    for text, about, share, above in pieces:
+        width = (_WIDTH - 2) * share / whole
+        found.append(Box(round(1 + x, 1), round(width, 1), text, about, above))
+        x += width
+    return found
+
+
+def _identifier(known: Facts, section: dict[str, Any]) -> list[Box]:
+    if known.can is None:
+        return []
+    names = {row.get("role", row["name"]): row["name"] for row in section["can"]["identifier"]}
+    ordered: list[tuple[str, CanPart]] = sorted(known.can.parts.items(), key=lambda item: -item[1].shift)
+    return _row([
+        (names.get(role, role), f"{part.bits} bits", part.bits, f"{part.shift + part.bits - 1} … {part.shift}")
+        for role, part in ordered
+    ])  # fmt: skip
+
+
+def _checks(known: Facts, section: dict[str, Any]) -> list[tuple[str, Crc, int | None]]:
+    found = []
+    if known.checksum:
+        found.append((f"CRC-{known.checksum.crc.width}", known.checksum.crc, section["crc8"].get("check")))
+    if known.crc16:
+        found.append((f"CRC-{known.crc16.width}", known.crc16, section["crc16"].get("check")))
+    return [one for one in found if one[1].width <= 32]
+
+
+def _plain(crc: Crc) -> dict[str, object]:
+    return {key: value for key, value in asdict(crc).items() if value is not None}
+
+
+def _crc_rows(crc: Crc) -> list[Row]:
+    return [
+        Row(fact.about, _value(fact, getattr(crc, fact.name)))
+        for fact in facts_of(Crc)
+        if getattr(crc, fact.name) is not None
+    ]
+
+
+def errors(relations: Relations, node: Node, known: Facts, section: dict[str, Any]) -> list[tuple[int, str, str, str]]:
+    """Code, name, what it is to the protocol, and where the name stands."""
+    enum = _enum(relations, node, section.get("errors", {}).get("enum"))
+    roles = {code: key.replace("_", " ") for key, code in known.errors.items()}
+    if enum is None:
+        return [(code, role, "", "") for code, role in sorted(roles.items())]
+    url = relations.links.enum(enum)
+    return [
+        (m.value, m.name, roles.get(m.value, ""), f"{url}#{relations.links.anchor(enum, str(m.value))}")
+        for m in enum.members
+    ]
+
+
+def _enum(relations: Relations, node: Node, name: object) -> Enum | None:
+    nodes = [node, *relations.icd.included(node)]
+    return next((enum for one in nodes for enum in one.enums if enum.name == name), None)
+
+
+def parts(relations: Relations, known: Facts) -> list[Part]:
+    """Every fact that is declared, by the section of the ICD that it stands in."""
+    why = {(one.section, one.key): one.why for one in known.assumptions}
+    found = []
+    for path, thing in _things(known):
+        rows = []
+        for fact in facts_of(thing):
+            value = getattr(thing, fact.name)
+            if value is None or value == ():
+                continue
+            url = relations.links.message(value.message) if isinstance(value, Step) else ""
+            rows.append(
+                Row(fact.about[:1].upper() + fact.about[1:], _value(fact, value), why.get((path, fact.key), ""), url)
+            )
+        if rows:
+            found.append(Part(f"facts-{path.replace('.', '-')}", path.replace(".", ": ").replace("_", " "), rows))
+    return found
+
+
+def _things(known: Facts) -> Iterator[tuple[str, object]]:
+    named = {
+        "client": known.client, "uart.framing": known.framing, "uart.acknowledge": known.acknowledge, "can": known.can,
+        "can.extended": known.can and known.can.extended, "crc8": known.checksum, "log_mask": known.mask,
+        "telemetry_log": known.log_file, "unsolicited_log": known.log_message, "index_file": known.index,
+        "file_transfer": known.files, "file_transfer.hole_map": known.hole_map,
+    }  # fmt: skip
+    yield from ((path, thing) for path, thing in named.items() if thing is not None)
+    for name, one in (known.files.procedures if known.files else {}).items():
+        yield f"file_transfer.{name}", one
+    for name, operation in (("program_copy", known.program_copy), ("program_information", known.program_information)):
+        if operation is not None:
+            yield name, operation
+
+
+def _value(fact: Fact, value: object) -> str:
+    if fact.kind is Kind.TIME:
+        return f"{value:,} ms"
+    if fact.kind in (Kind.OCTET, Kind.CODE) and isinstance(value, int):
+        return f"0x{value:02X}"
+    if isinstance(value, Step):
+        return value.message.name
+    if fact.kind is Kind.SPAN and isinstance(value, tuple):
+        return f"bytes {value[0]} to {value[0] + value[1] - 1}"
+    return _text(value)
+
+
+def _text(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, (tuple, list)):
+        return ", ".join(_text(one) for one in value)
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_text(one)}" for key, one in value.items() if key != "assumptions")
+    return f"{value:,}" if isinstance(value, int) else "" if value is None else str(value)
+
+
+def entries(relations: Relations, node: Node, url: str) -> Iterator[tuple[str, str, Place]]:
+    """What the search finds of the page: words, title and place of each section."""
+    known, section = facts.of(relations.icd, node), relations.icd.protocol_of(node)
+    for title, rows in lines(section):
+        words = " ".join(f"{row.about} {row.value}" for row in rows)
+        yield f"line bus serial interface {words}", f"{title} settings", Place(node.title, f"{url}#lines")
+    if known.framing:
+        words = "uart framing escape start end of message byte stuffing"
+        yield words, "Framing", Place(node.title, f"{url}#framing")
+    for name, _, _ in _checks(known, section):
+        words = "crc checksum polynomial init reflect calculator " + name.replace("-", "").lower()
+        yield words, f"{name} parameters and calculator", Place(node.title, f"{url}#checksums")
+    if known.can:
+        yield "can identifier bits message types", "CAN identifier", Place(node.title, f"{url}#identifier")
+    if known.errors:
+        yield "error codes reasons nack", "Error codes", Place(node.title, f"{url}#errors")
+    yield "acknowledge ack nack handshake sequence", "Acknowledges", Place(node.title, f"{url}#acknowledges")
+    for one in sequences.procedures(relations, node, known):
+        words = " ".join(arrow.text for arrow in one.arrows)
+        yield f"procedure sequence {words}", one.title, Place(node.title, f"{url}#procedures")
+    yield "timeout time-out retries interval wait", "Time-outs", Place(node.title, f"{url}#times")
+    yield "assumptions assumed reasons", "Assumptions", Place(node.title, f"{url}#assumptions")

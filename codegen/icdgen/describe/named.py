@@ -1,0 +1,29 @@
+"""What the ICD gives a name: how it is called in code and in findings."""
+
+from __future__ import annotations
+
+from typing import Generic, TypeVar
+
+from icdgen import naming
+from icdgen.icd.identifiers import Identifier
+from icdgen.icd.model import Enum, Field, Member, Message
+
+Model = TypeVar("Model", Message, Field, Enum, Member)
+
+
+class Named(Generic[Model]):
+    """Something of the ICD (``model``). ``words`` are those of its identifier, ``name`` is them in snake case."""
+
+    def __init__(self, model: Model, vocabulary: tuple[str, ...]) -> None:
+        self.model: Model = model
+        self.words = naming.words(model.identifier or model.name, vocabulary)
+        self.name = naming.snake(self.words)
+
+    @property
+    def owner(self) -> str:
+        """What a finding calls it."""
+        raise NotImplementedError
+
+    def identifier(self, scope: str, name: str) -> Identifier:
+        """A name that generated code declares for it."""
+        return Identifier(scope, name, self.owner, self.model.source)

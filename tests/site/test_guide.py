@@ -1,0 +1,46 @@
+"""The manual of icdgen as part of the site."""
+
+from __future__ import annotations
+
+import re
+
+from icdgen.backends.html import guide
+from tests.conftest import ROOT
+from tests.site.test_find import found
+
+
+def test_every_page_of_the_manual_is_on_the_site_with_all_its_headings(site):
+    names = sorted(path.stem for path in (ROOT / "docs").glob("*.md"))
+    assert sorted(page.name for page in guide.pages()) == names and len(names) > 7
+    for page in guide.pages():
+        source = re.sub("^```.*?^```", "", (ROOT / "docs" / f"{page.name}.md").read_text("utf-8"), flags=re.S | re.M)
+        assert len(re.findall("^#{1,6} ", source, flags=re.M)) == len(page.sections)
+        assert (site / page.url).is_file()
+
+
+def test_html_in_markdown_is_text(tmp_path):
+    path = tmp_path / "strange.md"
+    path.write_text(
+        "# <script>alert(1)</script>\n\n<img src=x onerror=alert(1)> [x](javascript:alert(1)) ![y](http://z/)\n"
+    )
+    html = guide._page(path).html
+    assert "<script" not in html and "<img" not in html and "href" not in html and "&lt;script&gt;" in html
+
+
+def test_links_lead_to_pages_and_what_is_not_there_is_text(tmp_path):
+    (tmp_path / "b.md").write_text("# B\n")
+    path = tmp_path / "a.md"
+    path.write_text("# A\n\n[to b](b.md#b) [to c](c.md) [away](https://x.org/) [up](../d.md) [here](#a)\n")
+    html = guide._page(path).html
+    assert re.findall('href="([^"]*)"', html) == ["b.html#b", "#a"] and "to c away up" in html
+
+
+def test_the_search_finds_the_manual(site):
+    asked = {
+        "icd format": "icdgen-docs/icd-format.html",
+        "On the wire": "icdgen-docs/wire.html",
+        "Comparing releases": "icdgen-docs/diff.html",
+        "simulator": "icdgen-docs/sim.html",
+        "errata overlays": "icdgen-docs/icd-format.html#errata-overlays",
+    }
+    assert [q for q, r in zip(asked, found(site, list(asked)), strict=True) if asked[q] not in r[:2]] == []
