@@ -10,6 +10,7 @@ from icdgen.importer.profile import Profile
 from icdgen.importer.understand import around, grids, lists, messages
 from icdgen.importer.understand.around import Around, Said, kind_of
 from icdgen.importer.understand.model import ReadEnum, ReadList, ReadLog, ReadMessage, Thing
+from icdgen.importer.words import grows
 
 BACKGROUND, UNKNOWN = "background", "not understood"
 T = TypeVar("T", ReadEnum, ReadList, ReadLog, ReadMessage)
@@ -75,7 +76,7 @@ def survey(document: Document, profile: Profile) -> Survey:
         if what == UNKNOWN and block.number is None and not _is_grid(block):
             continue  # a figure, a listing, a box: nobody called it a table
         made.found.append(Found(block, what, thing, run, titles))
-        if what == UNKNOWN:
+        if what == UNKNOWN and not _is_repeated(block, made):
             made.troubles.append(_not_understood(block, around.read(about, profile)))
     return made
 
@@ -100,6 +101,17 @@ def classify(
     if kind == "list":
         return "list", lists.listing(table, profile, troubles)
     return "loggable frames", lists.log(table, troubles)
+
+
+def _is_repeated(table: Table, made: Survey) -> bool:
+    """Whether rows without headings are the repeated block of the message before, which then cannot be held."""
+    messages = made.of(ReadMessage)
+    cells = [cell for row in (*table.head, *table.rows)[:1] for cell in row.cells]
+    figure = next((cell for cell in cells if grows(cell)), "")
+    if not figure or not messages:
+        return False
+    messages[-1][1].lacks = f"its rows from `{figure}` on depend on a count, which the ICD format cannot hold"
+    return True
 
 
 def _is_grid(table: Table) -> bool:
