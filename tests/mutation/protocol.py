@@ -33,6 +33,7 @@ from tests.mutation.measure import LANGUAGES
 
 REFERENCE = "reference"
 OUTCOMES = ("refused", "killed", "same", "survived")
+TOGETHER = 40  # mutants of one build
 AT_ONCE = 50  # cases that are asked of a mutant before its answers are looked at
 
 
@@ -203,7 +204,9 @@ def main(arguments: list[str] | None = None) -> int:
     if options.sample is not None:
         chosen = random.Random(0).sample(chosen, min(options.sample, len(chosen)))
     with tempfile.TemporaryDirectory() as folder:
-        found = measure(icd, chosen, languages, Path(folder))
+        found: dict[Mutant, dict[str, str]] = {}
+        for start in range(0, len(chosen), TOGETHER):
+            found |= measure(icd, chosen[start : start + TOGETHER], languages, Path(folder))
     print(table(found, languages))
     return int(any("survived" in ends.values() for ends in found.values()))
 

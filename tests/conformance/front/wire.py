@@ -173,6 +173,10 @@ def identify(to: Asking, request: Request) -> Answer:
     return {**facts, "matches": bool(facts["matches"])}
 
 
+def link_data(to: Asking, request: Request) -> Answer:
+    return typed(to.ask("link_data").facts)
+
+
 def _joined(reply: Reply) -> Answer:
     """Bytes that may come in pieces."""
     return {"bytes": "".join(items(reply.facts["bytes"]))}
@@ -187,5 +191,6 @@ OPS: dict[str, Callable[[Asking, Request], Answer]] = {
     for op in (
         crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
         log_encode, log_message_decode, log_message_encode, dos_time, hole_map, index_decode, index_encode, identify,
+        link_data,
     )
 }  # fmt: skip
