@@ -72,6 +72,16 @@ def test_lines_keep_to_the_width_where_names_allow_it(shipped):
             ), f"{path}: {line}"
 
 
+def test_a_very_long_name_leaves_its_value_to_the_next_line():
+    icd = harness.shipped()
+    node = icd.node("cubeacp")
+    message = dataclasses.replace(next(m for m in node.messages if m.telemetry_id), name="Long " * 24, identifier=None)
+    others = (message if m.id == message.id else m for m in node.messages)
+    changed = Icd(tuple(dataclasses.replace(n, messages=tuple(others)) if n is node else n for n in icd.nodes))
+    name = "CUBEACP_" + "LONG_" * 24 + "TELEMETRY"
+    assert f"#define {name} \\\n    CUBEACP_NODE, {message.telemetry_id}u\n" in files(changed)["cubeacp/link.h"]
+
+
 @pytest.mark.skipif(not shutil.which("clang-format"), reason="needs clang-format")
 def test_headers_are_as_clang_format_lays_them_out(shipped, tmp_path):
     for path, text in shipped.items():

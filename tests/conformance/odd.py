@@ -89,6 +89,18 @@ messages:
       - {at: 187, bits: 3, name: Turned Bits, type: uint, bit_order: msb0}
       - {at: 184, bits: 2, name: Straight Bits, type: uint}
       - {at: 192, bits: 64, name: Big Double, type: float, byte_order: big}
+  - name: Keywords
+    id: 0x01020305
+    kind: telecommand
+    length: 12
+    reserved: 3
+    fields:
+      - {at: 0, bits: 16, name: Type, type: int, unit: V, formula: raw*0.1}
+      - {at: 16, bits: 3, name: Match, type: uint}
+      - {at: 19, bits: 1, name: Fn, type: bool}
+      - {at: 20, bits: 12, name: Mod, type: uint, byte_order: big}
+      - {at: 32, bits: 32, name: Loop, type: float}
+      - {at: 64, bits: 8, name: Impl, type: bytes}
   - {name: Lowest byte of it, id: 0x78, kind: telemetry, length: 0}
   - {name: Lowest half of it, id: 0x5678, kind: telemetry, length: 0}
   - {name: Without its highest bit, id: 0x7FFFFFFF, kind: telecommand, length: 0}

@@ -99,6 +99,9 @@ def _icd(draw, name: str, names: Names, ids: Ids, first_id: int) -> dict:
         else:
             message["id"] = ids(first_id + number + (0 if message["kind"] == "telecommand" else 40))
         message["length"] = length
+        if draw(st.integers(0, 4)) == 0:
+            message["reserved"] = draw(st.integers(1, 9))
+            message["length"] += message["reserved"]
         if fields:
             message["fields"] = fields
         messages.append(message)

@@ -83,6 +83,12 @@ def test_a_byte_order_mark_at_the_beginning_moves_nothing():
         ('"010"', "010"),
         ("'on'", "on"),
         ("N.m", "N.m"),
+        ("2D", "2D"),
+        ("8b", "8b"),
+        ("3A", "3A"),
+        ("4e", "4e"),
+        ("1-2", "1-2"),
+        ("10BASE", "10BASE"),
     ],
 )
 def test_plain_values(text, value):
@@ -92,7 +98,7 @@ def test_plain_values(text, value):
 
 
 TREACHEROUS = """
-010 1_0 0b1 0o7 +1 1. .5 1e3 1.5e3 12:30 190:20:30 .inf -.inf .nan .NaN
+010 1_0 0b1 0o7 0B1 0x_1 +1 1. .5 1e3 1E+3 1.5e3 1.2.3 12:30 190:20:30 .inf -.inf .nan .NaN
 on On OFF yes No y N True NULL 2020-11-03
 """
 

@@ -3,28 +3,40 @@
 from __future__ import annotations
 
 import sys
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, cached_property
 from importlib import import_module, invalidate_caches
 from pathlib import Path
 from types import ModuleType
-from typing import NamedTuple
+from typing import Any
 
 from icdgen.backends.python import PythonBackend
 from icdgen.icd.model import Icd
 from icdgen.loading import load
 from icdgen.render import Renderer
+from tests.conformance.front import Front
+from tests.conformance.front.plan import plan
 from tests.conformance.testees.python import PythonTesteeBackend
 from tests.conftest import ROOT
 
 ODD = Path(__file__).with_name("odd")
 
 
-class Package(NamedTuple):
+@dataclass(eq=False)
+class Package:
     """A generated package, where it is, and the ICDs that it was made from."""
 
     icd: Icd
     folder: Path
     name: str
+
+    def answer(self, request: bytes) -> dict[str, Any]:
+        """What the testee answers, by way of the front, within this program."""
+        return self._front.answer(request)
+
+    @cached_property
+    def _front(self) -> Front:
+        return Front(plan(self.icd), self.module("_testee").answer)
 
     def module(self, name: str = "") -> ModuleType:
         """The package, or a module of it."""

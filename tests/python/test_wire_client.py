@@ -94,7 +94,7 @@ def scripts(draw) -> dict:
 @given(request=scripts())
 @settings(max_examples=300, suppress_health_check=[HealthCheck.too_slow])
 def test_whatever_happens_it_does_what_the_reference_does(shipped, request):
-    made = shipped.module("_testee").answer(json.dumps(request).encode())
+    made = shipped.answer(json.dumps(request).encode())
     assert made == ops.answer(packages.shipped(), request)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen import codec
-from icdgen.backends.rust.names import integer_type, type_name
+from icdgen.backends.rust.names import field_name, integer_type, type_name
 from icdgen.describe import describe
 from icdgen.icd.model import Icd
 from tests.rust.tools import Toolchain, run
@@ -34,7 +34,7 @@ def cases(icd: Icd) -> Iterator[str]:
                     node=node.name,
                     type=type_name(message),
                     length=length,
-                    field=one.name,
+                    field=field_name(one),
                     value=widest,
                     name=f'"{one.name}"',
                 )

@@ -5,9 +5,11 @@ The files say that they are laid out by icdgen, so that no formatter need agree.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 
 STEP = "    "
+_BLOCK = re.compile(r"(\d*)([-+*=#]+\Z|[.)]\Z|>)")  # what begins a list, a heading or a quotation
 
 
 def bracketed(head: str, items: Sequence[str], tail: str, width: int, indent: str = "", last: str = ",") -> str:
@@ -41,13 +43,21 @@ def wrapped(text: str, width: int, hang: str = "") -> list[str]:
     return [*lines, line]
 
 
-def bulleted(paragraphs: Iterable[str], width: int, start: str, between: str) -> list[str]:
-    """Lines of paragraphs, each after ``start``; ``between`` is the line between two paragraphs."""
+def commented(paragraphs: Iterable[str], width: int, start: str, is_spaced: bool = False) -> list[str]:
+    """The lines of a comment, each after ``start``; ``is_spaced``: with an empty one between two paragraphs."""
     lines: list[str] = []
     for paragraph in filter(None, paragraphs):
-        lines += [between] if lines else []
-        lines += [start + line for line in wrapped(paragraph, width - len(start))]
+        lines += [start.rstrip()] if lines and is_spaced else []
+        lines += [start + tamed(line) for line in wrapped(paragraph, width - len(start))]
     return lines
+
+
+def tamed(line: str) -> str:
+    """A line that begins no list, heading or quotation of Markdown."""
+    if line[:1].isalpha():
+        return line
+    word, space, rest = line.partition(" ")
+    return _BLOCK.sub(r"\1\\\2", word, count=1) + space + rest if _BLOCK.match(word) else line
 
 
 def in_rows(items: Iterable[str], count: int) -> list[str]:

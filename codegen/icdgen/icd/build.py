@@ -128,6 +128,7 @@ class Builder:
             hazard=item.get("hazard", ""),
             assumptions=tuple((key, str(why)) for key, why in (item.get("assumptions") or {}).items()),
             contains=tuple(self.each("contains", lambda p: model.Part(p["message"], p["at"]), item)),
+            reserved=item.get("reserved", 0),
             node=self.name,
             errata=self.applied.about(item),
             source=item,

@@ -82,11 +82,10 @@ def _apply_entry(tree: Map, entry: Map, applied: Applied, named: _ByName) -> Non
                 continue
             matched += 1
             _change(target, held, entry)
-            if held:
+            if any(key == "name" or isinstance(value, Seq) for key, value in held.items()):
                 named.forget()
             applied.of.setdefault(id(target), []).append(erratum)
-            codes = entry.get("accept") or Seq(entry.place)
-            for code, place in codes.placed():
+            for code, place in entry["accept"].placed() if "accept" in entry else ():
                 applied.accepts.append((code, place, target, erratum.id, target.place))
     if wildcard and matched != entry.get("places"):
         expected = entry.get("places")
@@ -160,7 +159,7 @@ class _ByName:
         return rows.get(name, ())
 
     def forget(self) -> None:
-        """Something was changed, maybe a name."""
+        """A name was changed, or a list."""
         self._rows.clear()
 
 
@@ -184,11 +183,12 @@ def _section(tree: Map, path: str) -> Iterator[Map]:
 
 
 def _matches(target: Map, printed: Map) -> bool:
-    return all(_plain(target.get(key)) == _plain(value) for key, value in printed.items())
+    return all(_same(target.get(key), value) for key, value in printed.items())
 
 
-def _plain(value: object) -> object:
-    return ("bool", value) if isinstance(value, bool) else value
+def _same(one: object, other: object) -> bool:
+    """Whether both are equal, and neither or both a truth value: to Python, True is 1."""
+    return one == other and isinstance(one, bool) == isinstance(other, bool)
 
 
 def _change(target: Map, held: Map, entry: Map) -> None:
@@ -203,7 +203,7 @@ def _change(target: Map, held: Map, entry: Map) -> None:
 
 def _stale(entry: Map, target: Map, printed: Map) -> Finding:
     for key, value in printed.items():
-        if _plain(target.get(key)) != _plain(value):
+        if not _same(target.get(key), value):
             now = target.get(key)
             place = target.at(key)
             message = (

@@ -162,6 +162,7 @@ class Message:
     hazard: str = ""  # what is lost, or cannot be undone, once it is sent
     assumptions: tuple[tuple[str, str], ...] = ()  # key and reason of what is assumed
     contains: tuple[Part, ...] = ()
+    reserved: int = 0  # bytes at the end that are said to be reserved
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)

@@ -27,7 +27,9 @@ _UNPRINTABLE = (
 )
 # What YAML 1.1 or 1.2 reads as something other than the text it looks like.
 _TREACHEROUS = re.compile(
-    r"""(?: [-+.0-9][-+0-9_.:eExXobA-Fa-f]*
+    r"""(?: [-+.][-+0-9_.:eExXobA-Fa-f]*
+          | 0[bBoOxX][0-9A-Fa-f_]+
+          | [0-9][0-9_]* (?: : [0-9_]+ )* (?: \. [0-9_.]* )? (?: e [-+]? [0-9]+ )?
           | [-+]?\.(?:inf|nan)
           | y(?:es)? | no? | on | off | true | false | null
           | [0-9]{4}-[0-9]{1,2}-[0-9]{1,2}(?:[Tt ].*)?

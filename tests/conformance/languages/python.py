@@ -27,6 +27,6 @@ def build(source: Path, out: Path, interpreter: str) -> list[str]:
 
 
 LANGUAGES = [
-    Language("python", BACKENDS, (), partial(build, interpreter=sys.executable), front=False),
-    Language("python3.9", BACKENDS, ("python3.9",), partial(build, interpreter="python3.9"), front=False),
+    Language("python", BACKENDS, (), partial(build, interpreter=sys.executable)),
+    Language("python3.9", BACKENDS, ("python3.9",), partial(build, interpreter="python3.9")),
 ]

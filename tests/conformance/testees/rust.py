@@ -14,6 +14,7 @@ from icdgen.backends import Identifier
 from icdgen.backends.origin import origin
 from icdgen.backends.rust import CRATE, names
 from icdgen.backends.rust.links import longest
+from icdgen.backends.rust.names import field_name
 from icdgen.describe import FieldDescription, MessageDescription, NodeDescription, describe
 from icdgen.describe.links import links_of
 from icdgen.icd.model import Icd
@@ -109,7 +110,7 @@ def _field(field: FieldDescription) -> FieldEntry:
     if field.bounds:
         values = ", ".join(f'("{key}", {name} as f64)' for key, name in names if key != "special")
         limits = f"|| vec![{values}]"
-    return FieldEntry(field.name, scale, special, limits)
+    return FieldEntry(field_name(field), scale, special, limits)
 
 
 class RustTesteeBackend:

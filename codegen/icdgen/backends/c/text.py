@@ -6,13 +6,12 @@ import re
 from collections.abc import Iterable
 from functools import lru_cache
 
-from icdgen.backends.lines import bulleted
+from icdgen.backends.lines import commented, tamed
 from icdgen.describe.comments import Comment
 
 WIDTH = 120
 
 _MARKUP = re.compile(r"[\\@]|<(?=[A-Za-z/!?])|[&#%](?=[\w#:])|(?:(?<![^\s<{(\[,:;]))[*_~](?=\S)|\[(?=[^\]]*\][(\[:])")
-_BLOCK = re.compile(r"(\d*)([-+*=#]+\Z|[.)]\Z|>)")  # begins a list, a heading or a quotation where it begins a line
 _COMMAND = re.compile(r"@file\Z|@note (?=Erratum |Note )")
 
 
@@ -41,22 +40,12 @@ def _spelled(paragraph: str) -> str:
     return start + prose(paragraph[len(start) :])
 
 
-def _tamed(line: str) -> str:
-    """A line that begins no list, heading or quotation."""
-    if line[:1].isalpha():
-        return line
-    word, space, rest = line.partition(" ")
-    return _BLOCK.sub(r"\1\\\2", word, count=1) + space + rest if _BLOCK.match(word) else line
-
-
 def comment(paragraphs: Iterable[str], indent: str = "") -> str:
     """A documentation comment: one line where it fits, else a block."""
     paragraphs = [_spelled(p) for p in paragraphs if p]
     if len(paragraphs) == 1 and len(indent) + len(paragraphs[0]) + 7 <= WIDTH:
-        return f"{indent}/** {_tamed(paragraphs[0])} */"
-    start = f"{indent} * "
-    lines = [start + _tamed(line[len(start) :]) for line in bulleted(paragraphs, WIDTH, start, "") if line]
-    return "\n".join([f"{indent}/**", *lines, f"{indent} */"])
+        return f"{indent}/** {tamed(paragraphs[0])} */"
+    return "\n".join([f"{indent}/**", *commented(paragraphs, WIDTH, f"{indent} * "), f"{indent} */"])
 
 
 def described(one: Comment, indent: str = "") -> str:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from icdgen.backends.c.names import enumerator, stem
 from icdgen.backends.rust import CRATE
+from icdgen.backends.rust.names import field_name
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.naming import camel
 
@@ -39,6 +40,7 @@ def snippets(message: MessageDescription, render: Renderer) -> list[Snippet]:
         "package": _PACKAGE,
         "crate": CRATE,
         "field": field,
+        "rust_field": field_name(field) if field else "",
         "zero": _ZEROS.get(field.model.type, "0") if field else "",
         "member": member,
         "enumerator": enumerator(enum, member) if enum and member else "",

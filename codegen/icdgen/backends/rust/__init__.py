@@ -74,8 +74,9 @@ def _functions() -> dict[str, object]:
     from icdgen.describe.comments import physical_comment, physical_name, sentence, words
 
     found = (
-        names.catch_all, names.message_path, names.raw_type, names.type_name, physical, physical_comment, physical_name,
-        sentence, text.arm, text.assigned, text.described, text.doc, text.integer, text.prose, text.signature, text.string, words,
+        names.catch_all, names.field_name, names.message_path, names.raw_type, names.type_name, physical,
+        physical_comment, physical_name, sentence, text.arm, text.assigned, text.described, text.doc, text.integer,
+        text.prose, text.signature, text.string, words,
     )  # fmt: skip
     return {function.__name__: function for function in found}
 

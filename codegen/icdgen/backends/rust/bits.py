@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.text import mask
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.storage import holding
@@ -99,12 +100,12 @@ def _placed(piece: Piece, size: int) -> str:
 def fitting(field: FieldDescription) -> str:
     """The statement that returns with an error if the raw value of a narrow field does not fit its bits."""
     raw = ".raw()" if field.enum is not None else ""
-    return f"{field.name.upper()}.fit(self.{field.name}{raw})?;"
+    return f"{field.name.upper()}.fit(self.{field_name(field)}{raw})?;"
 
 
 def writing(field: FieldDescription) -> list[str]:
     """Statements that put the raw value into ``bytes``, without the bits that its field has no room for."""
-    one, row, source = field.model, field.pieces, f"self.{field.name}"
+    one, row, source = field.model, field.pieces, f"self.{field_name(field)}"
     if one.type == "bytes":
         return [f"put_array(&mut bytes, {one.at // 8}, &{source});"]
     if one.type == "bool":

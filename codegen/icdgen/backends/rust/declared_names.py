@@ -63,7 +63,7 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     yield from _ours(methods, _METHODS)
     yield from _ours(associated, _CONSTANTS)
     for field in message.fields:
-        yield field.identifier(fields, field.name)
+        yield field.identifier(fields, names.field_name(field))
         if field.steps is not None:
             yield field.identifier(methods, field.physical_name)
             yield field.identifier(methods, f"set_{field.physical_name}")

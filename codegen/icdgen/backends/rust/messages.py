@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from icdgen.backends.rust import bits, constants
+from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.text import integer
 from icdgen.describe import FieldDescription, MessageDescription
 
@@ -68,5 +69,5 @@ def _fresh(field: FieldDescription) -> str:
 
 def _literal(fields: tuple[FieldDescription, ...], values: list[str]) -> str:
     """``Self { ... }`` in the body of a function."""
-    lines = "".join(f"            {field.name}: {value},\n" for field, value in zip(fields, values, strict=True))
+    lines = "".join(f"            {field_name(field)}: {value},\n" for field, value in zip(fields, values, strict=True))
     return f"        Self {{\n{lines}        }}" if fields else "        Self {}"

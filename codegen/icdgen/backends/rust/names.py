@@ -14,6 +14,9 @@ RESERVED = frozenset("""
     abstract become box do final macro override priv typeof unsized virtual yield _
     """.split())
 
+# Those of them that cannot be written with `r#` either.
+NEVER = frozenset(("self", "Self", "super", "crate", "_"))
+
 # Types and traits that the generated modules call by their bare name, in the scope where a message's type stands.
 USED_TYPES = ("Result", "Error", "Default", "Coded", "Scale", "Telemetry", "Telecommand")
 # What stands beside the modules of the nodes.
@@ -30,6 +33,11 @@ CATCH_ALL = ("Unknown", "Unlisted", "Unnamed", "AnyOther")
 def type_name(one: MessageDescription | EnumDescription | MemberDescription) -> str:
     """``EstimatedAttitudeAngles``; of a member, the name of its variant: ``NoControl``."""
     return camel(one.words)
+
+
+def field_name(field: FieldDescription) -> str:
+    """``estimated_roll_angle``; ``r#type`` where the name is a keyword."""
+    return f"r#{field.name}" if field.name in RESERVED - NEVER else field.name
 
 
 def catch_all(enum: EnumDescription) -> str:

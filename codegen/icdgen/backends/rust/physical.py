@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.text import whole_double
 from icdgen.describe import FieldDescription
 
@@ -13,9 +14,9 @@ def physical(field: FieldDescription) -> str:
     """
     assert field.steps is not None
     if field.storage.bits > 32 or not field.steps.exact_in_doubles:
-        return f"{field.name.upper()}.physical(self.{field.name})"
+        return f"{field.name.upper()}.physical(self.{field_name(field)})"
     p, c, q = field.steps.terms
-    raw = f"f64::from(self.{field.name})"
+    raw = f"f64::from(self.{field_name(field)})"
     value = raw if abs(p) == 1 else f"{raw} * {whole_double(abs(p))}"
     if p < 0:
         value = f"{whole_double(c)} - {value}"  # so that a zero comes out positive, whatever the signs

@@ -6,13 +6,12 @@ import re
 from collections.abc import Iterable
 from functools import lru_cache
 
-from icdgen.backends.lines import STEP, bracketed
+from icdgen.backends.lines import STEP, bracketed, commented
 from icdgen.describe.comments import Comment
 
 WIDTH = 100
 
 _MARKDOWN = re.compile(r"[\\`*\[\]<|~$]|(?<![A-Za-z0-9])_|_(?![A-Za-z0-9])|&(?=[#A-Za-z])|(?<=http):|(?<=https):")
-_NUMBERED = re.compile(r"\d+[.)]\Z")
 
 
 def _character(char: str) -> str:
@@ -40,44 +39,12 @@ def prose(text: str) -> str:
 
 def doc(paragraphs: Iterable[str], indent: str = "", mark: str = "///") -> str:
     """A documentation comment of `prose`, wrapped; every line begins with ``indent``."""
-    start = f"{indent}{mark} "
-    lines: list[str] = []
-    for paragraph in paragraphs:
-        if not paragraph:
-            continue
-        if lines:
-            lines.append(indent + mark)
-        if len(start) + len(paragraph) <= WIDTH and paragraph[0].isalpha():
-            lines.append(start + paragraph)
-        else:
-            lines += [start + line for line in _wrapped(paragraph, WIDTH - len(start))]
-    return "\n".join(lines)
+    return "\n".join(commented(paragraphs, WIDTH, f"{indent}{mark} ", is_spaced=True))
 
 
 def described(comment: Comment, indent: str = "") -> str:
     """The comment of a part."""
     return doc(map(prose, comment.paragraphs), indent)
-
-
-def _wrapped(paragraph: str, width: int) -> list[str]:
-    lines, line = [], ""
-    for word in paragraph.split(" "):
-        if line and len(line) + 1 + len(word) > width:
-            lines.append(line)
-            line = ""
-        if not line:
-            line = _tamed(word)
-        else:
-            line += " " + word
-    lines.append(line)
-    return lines
-
-
-def _tamed(word: str) -> str:
-    """A word that begins no list, heading or quotation at the start of a line."""
-    if word[0] == ">" or not word.strip("-+=#"):
-        return "\\" + word
-    return f"{word[:-1]}\\{word[-1]}" if _NUMBERED.match(word) else word
 
 
 _ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}

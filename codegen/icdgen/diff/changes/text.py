@@ -76,6 +76,14 @@ def parts_said_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
         yield Found(text, ("contains",), was, now)
 
 
+@rule("DIF416", "message", severity="note")
+def reserved_said_otherwise(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+    was, now = pair.old.reserved, pair.new.reserved
+    if was != now:
+        text = f"{quote(pair.new.name)} is said to end with {now or 'no'} reserved bytes, was with {was or 'none'}"
+        yield Found(text, ("reserved", "length"), str(was), str(now))
+
+
 @rule("DIF409", "node", severity="note")
 def missing_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
     for key, was, now in differing(pair.old.missing, pair.new.missing, lambda one: (one.kind, one.id)):

@@ -97,7 +97,7 @@ def is_identifier(ctx: Context) -> Iterator[Fault]:
     found = _Clashes()
     for language, _, identifiers in declared(ctx):
         for one in identifiers:
-            text = one.text
+            text = one.text.removeprefix("r#")  # which makes a name of a keyword of Rust
             if not ((text.isidentifier() and text.isascii()) or _is_file(text)):
                 found.add(language, one)
     for one, _, texts in found:

@@ -122,20 +122,35 @@ def order_of_nothing(ctx: Context) -> Iterator[Fault]:
                 yield Fault(field.source, field.source.at(key), message, f"remove `{key}`")
 
 
+def covered_bytes(message: Message) -> int:
+    """Bytes up to the end of the last field."""
+    return max((field.at + field.bits + 7 for field in message.fields), default=0) // 8
+
+
+@rule("ICD027", whole=True)
+def reserved_end(ctx: Context) -> Iterator[Fault]:
+    for message, _ in ctx.messages:
+        free = max(message.length - covered_bytes(message), 0)
+        if message.reserved > free:
+            place = message.source.at("reserved")
+            text = f"{quote(message.name)} has {count(free, 'byte')} after its last field, {message.reserved} are called reserved"
+            yield Fault(message.source, place, text, "correct `reserved` or `length`, or the fields")
+
+
 @rule("ICD024", whole=True)
 def undescribed_end(ctx: Context) -> Iterator[Fault]:
     for message, _ in ctx.messages:
-        covered = max((f.at + f.bits + 7 for f in message.fields), default=0) // 8
-        if covered < message.length:
-            left = message.length - covered
+        covered = covered_bytes(message)
+        if covered + message.reserved < message.length:
+            left = message.length - covered - message.reserved
             what = "the fields describe" if message.fields else "there are no fields:"
             rest = f"{what} {covered:,}" if message.fields else f"{what} what stands in them is unknown"
             yield Fault(
                 message.source,
                 message.source.at("length"),
                 f"{quote(message.name)} has {count(message.length, 'byte')}, {rest}",
-                f"describe the last {count(left, 'byte')} or correct `length`; "
-                "if the manual does say so, an erratum with `accept: [ICD024]` answers it",
+                f"describe {'the last ' if not message.reserved else ''}{count(left, 'byte')} or correct `length`; "
+                f"if the manual calls them reserved: `reserved: {left + message.reserved}`",
             )
 
 
