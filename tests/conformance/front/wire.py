@@ -16,6 +16,7 @@ CAN_BYTES = 8  # of a classic CAN frame
 MOST = (1 << 32) - 1
 DATE = ("year", "month", "day", "hour", "minute", "second")
 ENTRY = ("type", "counter", "checksum", "size", "time")
+USERS = ("boot_ms", "log_file_type", "index_file_type", "index_counter")
 TEXTS = {"bytes", "mask", "meta", "write", "kind", "reason", "result", "error"}
 
 
@@ -174,7 +175,8 @@ def identify(to: Asking, request: Request) -> Answer:
 
 
 def link_data(to: Asking, request: Request) -> Answer:
-    return typed(to.ask("link_data").facts)
+    known = typed(to.ask("link_data").facts)
+    return {key: known.get(key) for key in USERS}
 
 
 def _joined(reply: Reply) -> Answer:

@@ -45,12 +45,10 @@ static void crc16(void)
     }
 }
 
-static void put_known(const char *key, int64_t number)
+void put_known(const char *key, int64_t number)
 {
-    if (number < 0) {
-        put_word(key, "");
-    } else {
-        put_number(key, (uint64_t)number);
+    if (number >= 0) {
+        put_signed(key, number);
     }
 }
 
