@@ -33,9 +33,11 @@ def spoilt(page: Page, index: int) -> Page:
 
 
 def matters(word: Word, result: run.Result, page: Page, names: set[str]) -> bool:
-    """Whether a word stands in a table and is a figure or a heading. Any name is right that the page prints."""
+    """Whether a word stands in a table, or says which byte a line is of, and is a figure or a heading. Any name is right
+    that the page prints."""
     boxes = [box for table in result.document.tables for box in table.boxes if box.page == page.number]
     inside = any(b.x0 - 1 <= word.x0 <= b.x1 + 1 and b.top - 1 <= word.middle <= b.bottom + 1 for b in boxes)
+    inside = inside or word.text.startswith("Byte")
     return inside and word.text not in names and (word.text in HEADS or any(c.isdigit() for c in word.text))
 
 

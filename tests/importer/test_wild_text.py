@@ -224,3 +224,85 @@ def test_a_grid_without_an_id_is_not_guessed(tmp_path):
     result, tree = read(tmp_path, f"Byte0\tByte1\tByte2\tByte3\na\tb\tc\td\n\nState (0x21)\n\nTelemetry\n\n{FIELDS}")
     assert [m["name"] for m in tree["messages"]] == ["State"] or found(result, "IMP031")
     assert "it begins with `Byte0" in found(result, "IMP030")[0]
+
+
+def test_a_heading_that_names_a_message_without_a_table_is_said(tmp_path):
+    text = f"5 Telemetry\n\n5.1 Motor State (0x21)\n\n{FIELDS}\n6 Telecommands\n\n6.1 Halt (0x12)\n\nStops it.\n\n6.2 Notes\n"
+    result, tree = read(tmp_path, text)
+    assert [m["name"] for m in tree["messages"]] == ["Motor State"]
+    (trouble,) = (t for t in result.troubles if t.code == "IMP039")
+    assert "the heading `Halt (0x12)` names a message, and no table follows" in trouble.message and trouble.spot.line
+    assert "{name: Halt, id: 18, kind: telecommand, length: 0}" in trouble.help
+    last, _ = read(tmp_path, text.partition("6.2")[0])
+    assert [t.message for t in last.troubles if t.code == "IMP039"] == [trouble.message]
+    inner, tree = read(tmp_path, f"5 Telemetry\n\n5.1 Motor State (0x21)\n\n5.1.1 Layout\n\n{FIELDS}")
+    assert not [t for t in inner.troubles if t.code == "IMP039"]
+
+
+CHAPTERS = """5 Telemetry
+
+Table {a}1: Motor State Telemetry Format
+
+ID	33	Frame Length (bytes)	1
+Offset (bits)	Length (bits)	Name	Data Type	Description
+0	8	Mode	ENUM	Possible values are in Table {b}1
+
+Table {b}1: Modes Enumeration Values
+
+Numeric Value	Name	Description
+0	Off	off
+1	On	on
+"""
+
+
+@pytest.mark.parametrize(("a", "b"), [("5-", "6-"), ("7.5.", "7.6."), ("A", "B")])
+def test_tables_numbered_by_chapter_are_one_manual_and_are_found_by_their_numbers(tmp_path, a, b):
+    if a == "A":  # a number that goes on
+        a, b = "", "1"
+    result, tree = read(tmp_path, CHAPTERS.format(a=a, b=b))
+    [message] = tree["messages"]
+    assert message["fields"][0]["enum"] == "Modes"
+    assert result.survey.found[0].table.title == f"table {a}1: Motor State Telemetry Format".replace(".", "-")
+    assert message.get("source", {}).get("table") == (None if a else 1)  # what the ICD holds is a whole number
+
+
+@pytest.mark.parametrize("start", ["", "Start of repeated block (Count times)\n"])
+def test_a_repeated_block_below_the_fields_keeps_the_message_out_of_the_icd(tmp_path, start):
+    block = "8 + 6*N\t1\tSystem\tU8\t\n9 + 6*N\t1\tSatellite\tU8\t\n"
+    result, tree = read(
+        tmp_path, f"5 Telemetry\n\nSatellites (0x21)\n\n{FIELDS}{start}\n{block}\nSlow (0x22)\n\n{FIELDS}"
+    )
+    assert [m["name"] for m in tree["messages"]] == (["Slow"] if start else ["Satellites", "Slow"])
+    assert result.failed
+    assert "8 + 6*N" in found(result, "IMP037")[0]
+
+
+def test_a_row_that_begins_a_repeated_block_is_said_and_joined_to_nothing(tmp_path):
+    rows = FIELDS + "Start of repeated block\t\t\t\t\n7\t1\tSystem\tU8\t\n"
+    result, tree = read(tmp_path, f"5 Telemetry\n\nSatellites (0x21)\n\n{rows}")
+    assert "`Start of repeated block`: a repeated block" in found(result, "IMP037")[0]
+    assert tree["messages"][0]["fields"][2]["name"] == "Time"
+
+
+def test_a_length_in_prose_that_depends_on_a_count_keeps_the_message_out(tmp_path):
+    result, _ = read(tmp_path, f"5 Telemetry\n\nSatellites (0x21)\n\nThe length is 8 + 6*N bytes.\n\n{FIELDS}")
+    assert "its length `8 + 6*N` depends on a count" in found(result, "IMP037")[0]
+
+
+LINES = "Byte0~Byte1: voltage, 10 mV\nByte2~Byte3: current, 1 mA\nByte4: state\n"
+FRAME = [(0, 16, "voltage", "raw*10", "mV"), (16, 16, "current", None, "mA"), (32, 8, "state", None, None)]
+
+
+@pytest.mark.parametrize("text", [LINES, "Byte0~Byte1\tByte2~Byte3\tByte4\nvoltage, 10 mV\tcurrent, 1 mA\tstate\n"])
+def test_a_frame_in_lines_or_in_ranges_of_bytes_is_a_message(tmp_path, text):
+    _, tree = read(tmp_path, f"5 Telemetry\n\nPower (0x31)\n\n{text}")
+    [message] = tree["messages"]
+    assert [(f["at"], f["bits"], f["name"], f.get("formula"), f.get("unit")) for f in message["fields"]] == FRAME
+
+
+@pytest.mark.parametrize("wrong", ["Byte1~Byte2", "Byte3~Byte4", "By?te2"])
+def test_a_frame_in_lines_with_a_byte_missing_is_an_error(tmp_path, wrong):
+    text = "5 Telemetry\n\nPower (0x31)\n\n" + LINES.replace("Byte2~Byte3", wrong) + "Byte5: more\n"
+    result, tree = read(tmp_path, text)
+    assert not tree
+    assert "gives the id 0x31" in found(result, "IMP030")[0]

@@ -16,16 +16,22 @@ from icdgen.protocol import crc
 from icdgen.protocol.sections import Crc
 from tests.python.wire import cut, known, link
 
-CRCS = st.builds(
-    Crc,
-    width=st.sampled_from([8, 16, 32]),
-    polynomial=st.integers(0, 255),
-    init=st.integers(0, 255),
-    reflect_in=st.booleans(),
-    reflect_out=st.booleans(),
-    xor_out=st.integers(0, 255),
-    empty=st.none() | st.integers(0, 255),
-)
+
+def crcs_of(width: int) -> st.SearchStrategy[Crc]:
+    numbers = st.integers(0, (1 << width) - 1)
+    return st.builds(
+        Crc,
+        width=st.just(width),
+        polynomial=numbers,
+        init=numbers,
+        reflect_in=st.booleans(),
+        reflect_out=st.booleans(),
+        xor_out=numbers,
+        empty=st.none() | numbers,
+    )
+
+
+CRCS = st.integers(1, 32).flatmap(crcs_of)
 
 
 @pytest.fixture(scope="module")

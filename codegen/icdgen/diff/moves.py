@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from icdgen.diff.pairs import FieldPair, MessagePair
+from icdgen.icd.model import Field
 
 
 @dataclass
@@ -32,25 +34,32 @@ class Moves:
     causes: set[int] = field(default_factory=set)  # id(pair)
 
 
+class _Order:
+    """The fields that are in both ICDs, as they stand in the frame of one."""
+
+    def __init__(self, kept: list[FieldPair], side: Callable[[FieldPair], Field]) -> None:
+        self.rows = sorted(kept, key=lambda pair: (side(pair).at, side(pair).name))
+        self.rank = {id(pair): number for number, pair in enumerate(self.rows)}
+
+    def before(self, pair: FieldPair) -> FieldPair | None:
+        rank = self.rank[id(pair)]
+        return self.rows[rank - 1] if rank else None
+
+
 def moves(message: MessagePair) -> Moves:
     """The moves within a message that is in both ICDs."""
     found = Moves()
-    kept = message.kept
-    shifted = [pair for pair in kept if pair.moved]
-    if not shifted:
+    if not any(pair.moved for pair in message.kept):
         return found
-    by_old = sorted(kept, key=lambda p: (p.old.at, p.old.name))
-    by_new = sorted(kept, key=lambda p: (p.new.at, p.new.name))
-    rank_old = {id(pair): number for number, pair in enumerate(by_old)}
-    rank_new = {id(pair): number for number, pair in enumerate(by_new)}
+    old, new = _Order(message.kept, lambda pair: pair.old), _Order(message.kept, lambda pair: pair.new)
     groups: dict[int, list[FieldPair]] = {}
-    for pair in by_old:
+    for pair in old.rows:
         if pair.moved:
             groups.setdefault(pair.new.at - pair.old.at, []).append(pair)
     for step, rows in groups.items():
-        for run in _runs(rows, rank_old, rank_new):
+        for run in _runs(rows, old, new):
             move = Move(run, step)
-            _causes(message, move, by_old, by_new, rank_old, rank_new)
+            _causes(message, move, old, new)
             found.moves.append(move)
     found.moves.sort(key=lambda move: (move.fields[0].old.at, move.fields[0].new.at))
     for move in found.moves:
@@ -58,41 +67,27 @@ def moves(message: MessagePair) -> Moves:
     return found
 
 
-def _runs(rows: list[FieldPair], rank_old: dict[int, int], rank_new: dict[int, int]) -> list[list[FieldPair]]:
+def _runs(rows: list[FieldPair], old: _Order, new: _Order) -> list[list[FieldPair]]:
     """Split where another field lies between, in the old frame and in the new one."""
     runs: list[list[FieldPair]] = []
     for pair in rows:
         last = runs[-1][-1] if runs else None
-        if last is not None and 1 in (rank[id(pair)] - rank[id(last)] for rank in (rank_old, rank_new)):
+        if last is not None and last in (old.before(pair), new.before(pair)):
             runs[-1].append(pair)
         else:
             runs.append([pair])
     return runs
 
 
-def _causes(
-    message: MessagePair,
-    move: Move,
-    by_old: list[FieldPair],
-    by_new: list[FieldPair],
-    rank_old: dict[int, int],
-    rank_new: dict[int, int],
-) -> None:
-    first = move.fields[0]
-    before_old = by_old[rank_old[id(first)] - 1] if rank_old[id(first)] else None
-    before_new = by_new[rank_new[id(first)] - 1] if rank_new[id(first)] else None
-    move.lost = [
-        pair
-        for pair in message.lost
-        if (before_old.old.at if before_old else -1) <= pair.old.at < first.old.at
-    ]  # fmt: skip
-    move.gained = [
-        pair
-        for pair in message.gained
-        if (before_new.new.at if before_new else -1) <= pair.new.at < first.new.at
-    ]  # fmt: skip
+def _causes(message: MessagePair, move: Move, old: _Order, new: _Order) -> None:
+    first, last = move.fields[0], move.fields[-1]
+    before_old, before_new = old.before(first), new.before(first)
+    start_old = before_old.old.at if before_old else -1
+    start_new = before_new.new.at if before_new else -1
+    move.lost = [pair for pair in message.lost if start_old <= pair.old.at < first.old.at]
+    move.gained = [pair for pair in message.gained if start_new <= pair.new.at < first.new.at]
     if before_old is not None and before_old is before_new and before_old.old.bits != before_old.new.bits:
         move.resized = [before_old]
     longer = (message.new.length - message.old.length) * 8
-    last = move.fields[-1] is by_old[-1] or move.fields[-1] is by_new[-1]
-    move.reserved = not move.is_shift and last and longer == move.by
+    at_the_end = last is old.rows[-1] or last is new.rows[-1]
+    move.reserved = not move.is_shift and at_the_end and longer == move.by

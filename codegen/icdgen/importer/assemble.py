@@ -13,7 +13,7 @@ from icdgen.importer.parts import NodeParts
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand.model import ReadEnum, ReadList, ReadMessage
 from icdgen.importer.understand.survey import Found, Survey
-from icdgen.importer.words import folded, squeezed
+from icdgen.importer.words import folded, squeezed, table_name
 
 
 def assemble(document: Document, survey: Survey, profile: Profile, prose: bool = False) -> dict[str, dict[str, Any]]:
@@ -192,8 +192,8 @@ def _merge_enums(node: NodeParts, survey: Survey) -> None:
         taken[one.name] += 1
         name = f"{one.name} {taken[one.name] + 1}"
         survey.troubles.append(
-            Trouble("IMP052", f"{one.table.title}: table {first.table.number} has an enumeration of this name with other "
-                    "members", one.table.spot, f"held as `{name}`: see which one the fields mean", "error")
+            Trouble("IMP052", f"{one.table.title}: table {table_name(first.table.number)} has an enumeration of this name "
+                    "with other members", one.table.spot, f"held as `{name}`: see which one the fields mean", "error")
         )  # fmt: skip
         one.name = name
         kept[name] = one

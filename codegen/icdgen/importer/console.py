@@ -11,6 +11,7 @@ from icdgen.icd.rules.wording import count
 from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Spot, Trouble
 from icdgen.importer.run import Result
 from icdgen.importer.understand.survey import BACKGROUND, UNKNOWN
+from icdgen.importer.words import table_name
 from icdgen.reports.excerpt import printable
 
 _COLOURS = {"error": "31;1", "warning": "33;1", "note": "36"}
@@ -94,7 +95,7 @@ def as_json(result: Result) -> str:
     """Tables and findings for programs."""
     found = [
         {
-            "table": one.table.number,
+            "table": _table(one.table.number),
             "caption": one.table.caption,
             "page": one.table.page,
             "line": one.table.line,
@@ -109,7 +110,7 @@ def as_json(result: Result) -> str:
             "severity": t.severity,
             "message": t.message,
             "help": t.help,
-            "table": t.spot.table,
+            "table": _table(t.spot.table),
             "page": t.spot.page,
             "line": t.spot.line,
         }
@@ -120,6 +121,12 @@ def as_json(result: Result) -> str:
         {"manual": result.document.file, "pages": result.document.pages, "tables": found, "findings": troubles,
          "files": written}, indent=2, ensure_ascii=False,
     )  # fmt: skip
+
+
+def _table(number: int | None) -> int | str | None:
+    """A table's number for programs; that of a chapter's table is a text, ``4-12``."""
+    name = table_name(number) if number is not None else ""
+    return int(name) if name.isdigit() else name or None
 
 
 def refused_as_json(manual: str, findings: list[Finding]) -> str:

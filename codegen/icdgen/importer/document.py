@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from icdgen.importer.words import table_name
+
 CERTAIN, LIKELY, DOUBTFUL = "certain", "likely", "doubtful"
 
 
@@ -95,7 +97,7 @@ class Table:
     @property
     def title(self) -> str:
         """How a reader finds it: number and caption."""
-        number = f"table {self.number}" if self.number is not None else "a table without number"
+        number = f"table {table_name(self.number)}" if self.number is not None else "a table without number"
         if not self.caption and self.number is None and self.section:
             return f"the table below `{self.section[:60]}`"
         return f"{number}: {self.caption}" if self.caption else number

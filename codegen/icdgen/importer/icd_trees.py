@@ -11,7 +11,7 @@ from icdgen.importer.document import Document, Table, Trouble
 from icdgen.importer.parts import NodeParts
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand.model import Listed, ReadEnum, ReadField, ReadMessage
-from icdgen.importer.words import squeezed
+from icdgen.importer.words import squeezed, table_name
 
 NOT_STATED = "not stated"
 
@@ -63,7 +63,7 @@ def head(node: NodeParts, document: Document, profile: Profile) -> dict[str, Any
 
 def _source(table: Table) -> dict[str, Any]:
     made = {}
-    if table.number is not None:
+    if table.number is not None and table_name(table.number).isdigit():
         made["table"] = table.number
     if table.page is not None:
         made["page"] = table.page
@@ -148,5 +148,5 @@ def _missing(row: Listed) -> dict[str, Any] | None:
     number = row.id if row.id is not None else row.get_id
     if number is None or not row.kind:
         return None
-    where = f"Table {row.spot.table} lists it" if row.spot.table else "A list names it"
+    where = f"Table {table_name(row.spot.table)} lists it" if row.spot.table else "A list names it"
     return {"kind": row.kind, "id": number, "name": row.name, "why": f"{where}, no table describes it."}

@@ -8,7 +8,7 @@ from icdgen.importer.parts import NodeParts
 from icdgen.importer.understand import messages
 from icdgen.importer.understand.model import Listed, ReadEnum, ReadField, ReadMessage
 from icdgen.importer.understand.survey import Found
-from icdgen.importer.words import plain, squeezed
+from icdgen.importer.words import plain, squeezed, table_name
 
 
 def listed(node: NodeParts, troubles: list[Trouble]) -> None:
@@ -31,7 +31,11 @@ def listed(node: NodeParts, troubles: list[Trouble]) -> None:
     for row in rows:
         if not row.used:
             node.missing.append(row)
-            where = f"table {row.table_number} is named for it" if row.table_number else "no table is named for it"
+            where = (
+                f"table {table_name(row.table_number)} is named for it"
+                if row.table_number
+                else "no table is named for it"
+            )
             troubles.append(
                 Trouble("IMP061", f"`{row.name}` is listed, and {where}, but no table describes it", row.spot,
                         "held under `missing:`; was its table not understood?", sure=DOUBTFUL)
@@ -80,7 +84,7 @@ def _compare(message: ReadMessage, row: Listed, troubles: list[Trouble]) -> None
             continue
         message.listed[key] = value
         troubles.append(
-            Trouble("IMP060", f"{message.table.title}: its {_SAID[key]} is `{own}`, the list (table {row.spot.table}) "
+            Trouble("IMP060", f"{message.table.title}: its {_SAID[key]} is `{own}`, the list (table {table_name(row.spot.table)}) "
                     f"says `{value}`", message.table.spot, "the detail table is held, `listed:` keeps the other")
         )  # fmt: skip
 
@@ -117,12 +121,13 @@ def _resolve(
     if numbered and said.enum_title and titled is not None and squeezed(titled.name) != squeezed(numbered.name):
         chosen = titled
         troubles.append(
-            Trouble("IMP051", f"{where}: it points to table {said.enum_table} by number and to "
-                    f"table {titled.table.number} (`{titled.name}`) by title", field.spot, "the title was followed")
+            Trouble("IMP051", f"{where}: it points to table {table_name(said.enum_table)} by number and to "
+                    f"table {table_name(titled.table.number)} (`{titled.name}`) by title", field.spot,
+                    "the title was followed")
         )  # fmt: skip
     if chosen is None:
         if said.enum_table is not None:
-            what = f"it points to table {said.enum_table}, which is not there or no enumeration"
+            what = f"it points to table {table_name(said.enum_table)}, which is not there or no enumeration"
         elif said.enum_title:
             what = f"there is no enumeration `{said.enum_title}`"
         else:
@@ -180,7 +185,9 @@ def complete(node: NodeParts, troubles: list[Trouble], id_bits: int = DEFAULT_BI
                                     "error"))  # fmt: skip
             continue
         if not message.name:
-            message.name = f"Table {message.table.number}" if message.table.number else f"Message {message.id}"
+            message.name = (
+                f"Table {table_name(message.table.number)}" if message.table.number else f"Message {message.id}"
+            )
             troubles.append(
                 Trouble("IMP025", f"{title}: nothing names the message", spot, "name it in the ICD", "error")
             )

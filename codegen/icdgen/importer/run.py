@@ -12,7 +12,7 @@ from icdgen.errors import UserError
 from icdgen.icd.fmt import emit
 from icdgen.importer import assemble, profile, reading, repairs, update
 from icdgen.importer.document import CERTAIN, DOUBTFUL, LIKELY, Document, Table, Trouble
-from icdgen.importer.understand import survey
+from icdgen.importer.understand import byte_lines, survey
 from icdgen.importer.understand.survey import Survey
 
 NOTHING = "IMP004"
@@ -69,6 +69,7 @@ def run(
     """Reads a manual. Raises `Findings` for a file that cannot be read; one that holds nothing to import gives no tree
     and the finding IMP004. ``pages``: the first and the last one to read of a PDF."""
     document = reading.read(manual, words, progress, jobs, pages)
+    byte_lines.tables(document)
     document.count_tables()
     repairs.mend(document, words)
     found = survey.survey(document, words)

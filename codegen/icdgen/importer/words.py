@@ -52,6 +52,17 @@ def grows(text: str) -> bool:
     return _GROWING.fullmatch(plain(text).strip("() ")) is not None
 
 
+_LENGTH = re.compile(
+    r"\b(?:length|size)\b\W{0,3}(?:(?:is|of|in|bytes)\b\W{0,3})*" + f"(?P<figure>{_GROWING.pattern})", re.I
+)
+
+
+def growing_length(text: str) -> str:
+    """The figure of a length that depends on a count, ``Length: 8 + 6*N``; "" if the text has none."""
+    match = _LENGTH.search(plain(text))
+    return match["figure"] if match else ""
+
+
 def growing_squeezed(text: str) -> str:
     """The text with the blanks taken out of such figures."""
     return _GROWING.sub(lambda m: "".join(m.group().split()), text)
@@ -63,6 +74,25 @@ def number(text: str) -> int | None:
     if not _NUMBER.match(text) or len(text) > 24:
         return None
     return int(text, 16) if "x" in text.lower() else int(text)
+
+
+_PART = 1_000_000  # more than the tables of a chapter
+
+
+def table_number(printed: str) -> int:
+    """The number of a table, ``12`` or ``4-12``, as one that keeps their order; `table_name` is the way back."""
+    made = 0
+    for part in re.split("[-.]", printed):
+        made = made * _PART + int(part[:6])
+    return made
+
+
+def table_name(number: int | None) -> str:
+    """``12``, or ``4-12`` for the tables of chapters; "?" for one without a number."""
+    if number is None:
+        return "?"
+    upper, last = divmod(number, _PART)
+    return f"{table_name(upper)}-{last}" if upper else str(last)
 
 
 _SOFT = "\u00ad"

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-
-Changes = Mapping[str, Mapping[str, "int | bytes"]]  # message -> field -> raw value
 
 
 @dataclass

@@ -255,6 +255,44 @@ def lined(path: Path) -> None:
     platypus(path, LETTER, story, "ends")
 
 
+def beside(path: Path) -> None:
+    """Two tables side by side, of different heights, their headings in one line above them."""
+    style = getSampleStyleSheet()
+
+    def cell(message: dict) -> list:
+        rows = [["Offset", "Size", "Field", "Type", "Unit"]]
+        for one in message["fields"]:
+            rows.append([str(one["at"] // 8), str(one["bits"] // 8), one["name"], _size(one), _scaled(one)])
+        table = Table(rows, colWidths=[38, 32, 58, 36, 64], style=[("GRID", (0, 0), (-1, -1), 0.5, colors.black)])
+        return [Paragraph(f"<b>{message['name']} (0x{message['id']:02X})</b>", style["BodyText"]), table]
+
+    first, second, third = (cell(message) for message in MESSAGES)
+    rows = [Table([[first, second]], colWidths=[250, 250], style=[("VALIGN", (0, 0), (-1, -1), "TOP")]), *third]
+    story = [Paragraph("4 Telemetry", style["Heading2"]), Paragraph(PROSE, style["BodyText"]), *rows]
+    SimpleDocTemplate(str(path), pagesize=A4, leftMargin=45, rightMargin=45, invariant=1).build(story)
+
+
+def byte_lines(path: Path) -> None:
+    """Frames as lines, a line for each field, without any table."""
+    pdf = fpdf.FPDF(format="A4")
+    pdf.add_page()
+    pdf.set_font("Helvetica", "B", 15)
+    pdf.cell(0, 12, "Telemetry", new_x="LMARGIN", new_y="NEXT")
+    for message in FRAMES:
+        pdf.set_font("Helvetica", "B", 11)
+        pdf.cell(0, 10, f"{message['name']} (0x{message['id']:02X})", new_x="LMARGIN", new_y="NEXT")
+        pdf.set_font("Helvetica", size=9)
+        for one in message["fields"]:
+            first, last = one["at"] // 8, (one["at"] + one["bits"]) // 8 - 1
+            where = f"Byte{first}" if first == last else f"Byte{first}~Byte{last}"
+            pdf.cell(0, 6, f"{where}: {one['name']}", new_x="LMARGIN", new_y="NEXT")
+        pdf.ln(4)
+    pdf.output(str(path))
+
+
+WILD |= {"beside": Wild(beside, MESSAGES, ""), "byte lines": Wild(byte_lines, FRAMES, "")}
+
+
 UNSEEN = {
     "bare": Wild(bare, MESSAGES, ""),
     "frames": Wild(frames, FRAMES, ""),

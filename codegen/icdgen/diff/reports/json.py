@@ -30,11 +30,7 @@ def document(report: Report) -> dict[str, object]:
         "format": FORMAT,
         "old": report.old.label,
         "new": report.new.label,
-        "version": {
-            "step": report.step.step,
-            "reason": report.step.reason,
-            "deciding": list(report.step.deciding),
-        },
+        "version": report.step._asdict(),
         "counts": report.counts(),
         "compatibility": [_direction(one) for one in report.directions],
         "changes": [_change(c, reasons.get(id(c)), names.get(id(c.pair), ())) for c in report.comparison.changes],
@@ -52,8 +48,8 @@ def _direction(one: Direction) -> dict[str, object]:
         "question": one.question,
         "verdict": one.verdict,
         "frames_total": one.total,
-        "general": list(one.general),
-        "frames": [frame._asdict() | {"reasons": list(frame.reasons)} for frame in one.frames],
+        "general": one.general,
+        "frames": [frame._asdict() for frame in one.frames],
     }
 
 
@@ -70,9 +66,9 @@ def _change(change: Change, reason: str | None, names: tuple[Name, ...]) -> dict
         "now": change.now,
         "old": _place(change.old),
         "new": _place(change.new),
-        "details": list(change.details),
+        "details": change.details,
         "sure": round(change.sure, 3),
-        "errata": list(change.errata),
+        "errata": change.errata,
         "generated": {language: _texts(names, language) for language in dict.fromkeys(n.language for n in names)},
     }
     return found if reason is None else found | {"accepted": reason}
@@ -91,11 +87,4 @@ def _stale(entry: Acceptance) -> dict[str, object]:
 
 
 def _use(use: Use, numbers: dict[int, int]) -> dict[str, object]:
-    return {
-        "file": use.file,
-        "line": use.line,
-        "column": use.column,
-        "name": use.name,
-        "text": use.text,
-        "changes": sorted(numbers[id(change)] for change in use.changes),
-    }
+    return use._asdict() | {"changes": sorted(numbers[id(change)] for change in use.changes)}

@@ -13,7 +13,10 @@ from icdgen.importer.pages.extract import Word
 from icdgen.importer.pages.lines import Line, lines
 from icdgen.importer.words import join
 
-_KEY = re.compile(r"(?:0[xX])?[0-9A-Fa-f]*[0-9][0-9A-Fa-f]*(?:\s*(?:[-–:/]|\.\.\.?|to)\s*[0-9]+)?[⁰¹²³⁴⁵⁶⁷⁸⁹*†]*\Z")
+_UNIT = r"(?:(?:[Bb]its?|[Bb]ytes?|[Oo]ctets?)\s*)?"
+_KEY = re.compile(
+    _UNIT + rf"(?:0[xX])?[0-9A-Fa-f]*[0-9][0-9A-Fa-f]*(?:\s*(?:[-–:/~]|\.\.\.?|to)\s*{_UNIT}[0-9]+)?[⁰¹²³⁴⁵⁶⁷⁸⁹*†]*\Z"
+)
 KEYS = {
     "fields": ("at", "at_bytes"),
     "enumeration": ("value",),

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import re
-
 from icdgen.importer.document import Block, Heading, Table, Text
-from icdgen.importer.pages import guessed
+from icdgen.importer.pages import beside, guessed
 from icdgen.importer.pages.flow import Mark
 from icdgen.importer.profile import Profile
-from icdgen.importer.words import CONTINUED
+from icdgen.importer.words import CONTINUED, table_number
 
 FAR = 4  # lines of text between a caption and its table; more, and it is none
 Items = list[Table | Mark]
@@ -16,7 +14,7 @@ Items = list[Table | Mark]
 
 def attached(items: Items, profile: Profile) -> list[Block]:
     """Headings, text and tables, the tables with number and caption."""
-    items = guessed.made(items)
+    items = beside.parted(guessed.made(items), profile)
     captions = [i for i, item in enumerate(items) if isinstance(item, Mark) and item.kind == "caption"]
     after = {i: _table_from(items, i, 1) for i in captions}
     before = {i: _table_from(items, i, -1) for i in captions}
@@ -82,6 +80,6 @@ def _distance(items: Items, caption: int, index: int | None, step: int) -> float
 def _name(table: Table, mark: Mark, profile: Profile) -> None:
     match = profile.caption.match(mark.text)
     assert match is not None
-    table.number = int(re.split("[-.]", match["number"])[-1])
+    table.number = table_number(match["number"])
     table.caption = CONTINUED.sub("", match["title"]).strip()
     table.page = min(mark.box.page, table.page or mark.box.page)

@@ -164,8 +164,7 @@ class _Flow:
         if heading and self.stands_out(line) and len(line.text) < 120:
             kind, number, text = "heading", heading["number"], heading["text"]
         strong = kind == "text" and self.stands_out(line) and len(text) < 80 and not text.endswith((".", ":", ",", ";"))
-        cells = [(run[0].x0, text_of(run)) for run in runs(line, 0.9)]
-        return 1, Mark(kind, text, _box(page, [line]), line.size, line.style, number, strong, cells)
+        return 1, Mark(kind, text, _box(page, [line]), line.size, line.style, number, strong, _cells(line))
 
     def stands_out(self, line: Line) -> bool:
         return line.size > self.body.size + 0.6 or line.style != self.body.style
@@ -190,7 +189,8 @@ class _Flow:
                 break
             taken += 1
         text = " ".join(line.text for line in rest[:taken])
-        return taken, Mark("caption", text, _box(page, rest[:taken]), rest[0].size, rest[0].style)
+        cells = _cells(rest[0]) if taken == 1 else []
+        return taken, Mark("caption", text, _box(page, rest[:taken]), rest[0].size, rest[0].style, cells=cells)
 
     def head_length(self, rest: list[Line]) -> tuple[int, Columns | None]:
         """How many lines above the headings a table has that begins here, and its headings; (0, None): none begins."""
@@ -352,6 +352,11 @@ class _Flow:
         top = rest[0].top - 1
         piece = Piece(_box(page, rest[:end]), [], ruled=False, lines=body, page=page, top=top, extent=self.extent)
         return end, piece
+
+
+def _cells(line: Line) -> list[tuple[float, str]]:
+    """Where the runs of words of a line begin, and they."""
+    return [(run[0].x0, text_of(run)) for run in runs(line, 0.9)]
 
 
 def _value_column(line: Line) -> float:

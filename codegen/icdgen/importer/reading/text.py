@@ -11,7 +11,7 @@ from icdgen.importer import headings, labels
 from icdgen.importer.document import Block, Document, Header, Heading, Row, Table, Text
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import grids
-from icdgen.importer.words import CONTINUED, plain
+from icdgen.importer.words import CONTINUED, plain, table_number
 
 _RULE = re.compile(r"\s*:?-{2,}:?\s*\Z")
 _HEADING = re.compile(r"(?P<number>[0-9]+(?:\.[0-9]+)*)\.?\s+(?P<text>[A-Z].*)\Z")
@@ -65,9 +65,7 @@ class _Reader:
         heading = _HEADING.match(plain(text))
         if caption and (caption["mark"] or not caption["title"]):
             title = CONTINUED.sub("", caption["title"]).strip()
-            self.blocks.append(
-                _Caption(int(re.split("[-.]", caption["number"])[-1]), title, self.page, number, plain(text))
-            )
+            self.blocks.append(_Caption(table_number(caption["number"]), title, self.page, number, plain(text)))
         elif heading and len(text) < 120:
             self.blocks.append(Heading(heading["number"], heading["text"], self.page, number))
         else:

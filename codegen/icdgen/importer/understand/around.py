@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field
 
 from icdgen.importer.profile import Profile
-from icdgen.importer.words import folded, plain
+from icdgen.importer.words import folded, growing_length, plain
 
 LONGEST = 110  # of a line that is taken for a name: longer ones are sentences
 _NUMBER = re.compile(r"0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]+[hH]\b|[0-9]+")
@@ -78,6 +78,7 @@ def read(around: Around, profile: Profile) -> Said:
             made.length = made.length or (groups.get("length") or "")
         if made.ids and made.length and made.kind:
             break
+    made.length = made.length or next((figure for text in around.texts if (figure := growing_length(text))), "")
     if not made.name:
         made.name = next((text for text in (*around.prose, *around.headings[:1]) if _is_title(text)), "")
     made.kind = made.kind or next(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import formulas
-from icdgen.importer.words import plain, tidy_unit
+from icdgen.importer.words import plain, table_number, tidy_unit
 
 _TABLE = re.compile(r"[0-9]+(?:[-.][0-9]+)*\Z")
 _FORMULA_WORD = re.compile(r"\bformula\b", re.I)
@@ -87,7 +87,7 @@ def _enumeration(text: str, profile: Profile, made: Described, spans: list[tuple
         groups = match.groupdict()
         if groups.get("table"):
             number = _TABLE.search(groups["table"])
-            made.enum_table = int(re.split("[-.]", number.group())[-1]) if number else None
+            made.enum_table = table_number(number.group()) if number else None
         made.enum_title = (groups.get("title") or "").strip()
         spans.append(match.span())
         return
@@ -99,8 +99,10 @@ def _enumeration(text: str, profile: Profile, made: Described, spans: list[tuple
 def profile_caption_in(text: str, profile: Profile) -> tuple[int, str] | None:
     """A table that the text names, whatever the words around it."""
     words = "|".join(re.escape(word) for word in profile.data["captions"])
-    match = re.search(rf"\b(?:{words})\s*(?P<number>[0-9]+)(?:\s*[:–—-]\s*(?P<title>[^.;()]+))?", text, re.I)
-    return (int(match["number"]), (match["title"] or "").strip()) if match else None
+    match = re.search(
+        rf"\b(?:{words})\s*(?P<number>[0-9]+(?:[-.][0-9]+)*)(?:\s*[:–—-]\s*(?P<title>[^.;()]+))?", text, re.I
+    )
+    return (table_number(match["number"]), (match["title"] or "").strip()) if match else None
 
 
 def _const(text: str, profile: Profile, made: Described) -> None:

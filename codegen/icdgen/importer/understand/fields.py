@@ -19,6 +19,9 @@ from icdgen.importer.words import grows, number, tidy_unit
 MOST_BITS = 64  # of a number
 _NONE = ("", "-", "–", "n/a", "na", "none")
 _READABLE_UNIT = re.compile(r"(?:[^\W\d_]|[%°'\"′″‰(]|1\s*/|10\s*\^)[\w\s%°'\"′″‰^*/·.,()\[\]⁻⁺+-]*\Z")
+_NAMED = re.compile(
+    r"(?P<name>[^,;]+?)\s*[,;]\s*(?:unit:?\s*)?(?P<factor>[0-9]*\.?[0-9]+)?\s*(?P<unit>[^\W\d][^\s,;]*|[%°]\S*)\Z"
+)
 _SCALED_UNIT = re.compile(r"(?P<factor>[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[^0-9\s].*)?\Z")
 
 
@@ -214,12 +217,15 @@ def _fields(
 ) -> list[ReadField]:  # fmt: skip
     """The field of a row; for an array one for each element."""
     entry, name = line.entry, line.entry.get("name")
+    has_scale = any(role in table.header.roles for role in ("unit", "formula")) if table.header else False
+    name, scale = (name, "") if has_scale else scaled_name(name)
     kind = _kind(line, bits, "type" in (table.header.roles if table.header else ()), troubles)
     if not name:
         troubles.append(Trouble("IMP025", f"{table.title}: the field at bit {at} has no name", entry.spot,
                                 "name it in the ICD, or by an erratum", "error"))  # fmt: skip
         name = f"Unnamed {at}"
     described = _described(entry, profile, kind == "enum")
+    _unit(scale, described)
     for problem in described.problems:
         text = f": `{entry.get('description')[-160:]}`" if entry.get("description") else ""
         troubles.append(Trouble("IMP040", f"{line.where}: {problem}{text}", entry.spot, "read the page"))
@@ -277,6 +283,22 @@ def _described(entry: Entry, profile: Profile, is_enum: bool) -> descriptions.De
         else:
             _scale(scaled.formula, made)
             _unit(scaled.unit, made)
+    return made
+
+
+def scaled_name(text: str) -> tuple[str, str]:
+    """A cell that names a field, and its unit with a factor if it has one: ``voltage, 10 mV``."""
+    match = _NAMED.match(text)
+    unit = tidy_unit(match["unit"]) if match else ""
+    if match and (match["factor"] or unit in STANDARD or unit in SPELLINGS):
+        return match["name"], f"{match['factor'] or ''} {unit}".strip()
+    return text, ""
+
+
+def scaled(text: str) -> descriptions.Described:
+    """What a unit says, with a factor or without."""
+    made = descriptions.Described()
+    _unit(text, made)
     return made
 
 

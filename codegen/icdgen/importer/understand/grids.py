@@ -10,13 +10,16 @@ from icdgen.importer.document import Row, Table, Trouble
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import around
 from icdgen.importer.understand.around import Around, Said
-from icdgen.importer.understand.descriptions import Described
+from icdgen.importer.understand.fields import scaled, scaled_name
 from icdgen.importer.understand.messages import take
 from icdgen.importer.understand.model import ReadField, ReadMessage
 from icdgen.importer.words import folded, plain
 
 FEWEST = 4  # columns of a grid
-_COLUMN = re.compile(r"(?P<word>bits?|bytes?|octets?|[bBD])?\s*\[?(?P<n>[0-9]{1,3})\]?\Z", re.I)
+_COLUMN = re.compile(
+    r"(?P<word>bits?|bytes?|octets?|[bBD])?\s*\[?(?P<n>[0-9]{1,3})(?:\s*[~:–-]\s*(?:bits?|bytes?|octets?|[bBD])?\s*(?P<m>[0-9]{1,3}))?\]?\Z",
+    re.I,
+)
 _BITS, _BYTES = {"bit", "bits", "d"}, {"byte", "bytes", "octet", "octets"}
 _ADDRESS = re.compile(r"(?:0[xX][0-9A-Fa-f]+|[0-9A-Fa-f]+[hH]|[0-9]+)\Z")
 _INDEX = re.compile(r"\s*[\[(<][0-9]+(?:\s*[:.-]+\s*[0-9]+)?[\])>]\Z")
@@ -28,13 +31,13 @@ class Grid:
     """The heading row of a grid. ``columns`` are the numbers of its bits or bytes by cell, ``unit`` how many bits each is."""
 
     row: Row
-    columns: dict[int, int]
+    columns: dict[int, range]
     unit: int
     roles: dict[str, int]  # of the other cells
 
     @property
     def count(self) -> int:
-        return len(self.columns)
+        return _width(self.columns)
 
 
 def find(table: Table, profile: Profile) -> tuple[Grid, list[Row]] | None:
@@ -42,11 +45,11 @@ def find(table: Table, profile: Profile) -> tuple[Grid, list[Row]] | None:
     rows = [*table.head, *table.rows]
     for index, row in enumerate(rows[:4]):
         columns, words = _columns(row.cells)
-        if len(columns) < FEWEST or index + 1 == len(rows):
+        if _width(columns) < FEWEST or len(columns) < 2 or index + 1 == len(rows):
             continue
         said = {word for above in rows[: index + 1] for cell in above.cells for word in folded(cell)} | words
         numbers = [columns[cell] for cell in sorted(columns)]
-        rises = numbers[0] < numbers[-1]
+        rises = numbers[0].start < numbers[-1].start
         is_bytes = bool(words & _BYTES) or (not words & _BITS and rises and bool(said & _BYTES))
         if not is_bytes and rises and not said & _BITS:
             continue
@@ -58,30 +61,50 @@ def is_heading(row: Row) -> bool:
     """Whether a row of a text is surely the heading row of a grid: numbers in a row behind words, or all of them words."""
     columns, words = _columns(row.cells)
     others = [cell for index, cell in enumerate(row.cells) if cell and index not in columns]
-    return len(columns) >= FEWEST and (
-        bool(words) or (bool(others) and not any(c.isdigit() for cell in others for c in cell))
+    return (
+        _width(columns) >= FEWEST
+        and len(columns) > 1
+        and (bool(words) or (bool(others) and not any(c.isdigit() for cell in others for c in cell)))
     )
 
 
-def _columns(cells: list[str]) -> tuple[dict[int, int], set[str]]:
-    """The longest run of cells that number columns one by one, and the words before the numbers."""
-    best: dict[int, int] = {}
+def _columns(cells: list[str]) -> tuple[dict[int, range], set[str]]:
+    """The longest run of cells that number columns one by one, ``Byte0~Byte1`` two at once, and the words before the
+    numbers."""
+    best: dict[int, range] = {}
     words: set[str] = set()
-    here: dict[int, int] = {}
+    here: dict[int, range] = {}
     for index, cell in enumerate([*cells, ""]):
         match = _COLUMN.match(plain(cell))
-        value = int(match["n"]) if match else None
-        steps = [b - a for a, b in pairwise([*here.values(), value])] if value is not None else []
-        if value is None or (here and (len(set(steps)) > 1 or steps[-1] not in (-1, 1) or max(here) != index - 1)):
-            best = max(best, here, key=len)
+        numbered = _numbers(match)
+        last = here.get(index - 1)
+        if here and (last is None or numbered is None or not _follows(list(here.values()), numbered)):
+            best = max(best, here, key=_width)
             here = {}
-        if value is not None and match is not None:
-            here[index] = value
+        if numbered is not None and match is not None:
+            here[index] = numbered
             words |= {match["word"].casefold()} if match["word"] else set()
     return best, words
 
 
-def _roles(cells: list[str], columns: dict[int, int], profile: Profile) -> dict[str, int]:
+def _numbers(match: re.Match[str] | None) -> range | None:
+    if match is None:
+        return None
+    first, last = sorted((int(match["n"]), int(match["m"] or match["n"])))
+    return range(first, last + 1)
+
+
+def _follows(before: list[range], numbered: range) -> bool:
+    """Whether numbers go on counting up, or down, behind those before."""
+    rises, falls = numbered.start == before[-1].stop, numbered.stop == before[-1].start
+    return (rises or falls) and (len(before) == 1 or rises == (before[-1].start == before[-2].stop))
+
+
+def _width(columns: dict[int, range]) -> int:
+    return sum(len(numbered) for numbered in columns.values())
+
+
+def _roles(cells: list[str], columns: dict[int, range], profile: Profile) -> dict[str, int]:
     made: dict[str, int] = {}
     for role, titles in profile.registers.items():
         for index, cell in enumerate(cells):
@@ -185,15 +208,16 @@ def _fields(
 ) -> list[ReadField]:  # fmt: skip
     made = []
     for first, last, text in _cells(grid, row):
-        name = _INDEX.sub("", plain(text))
-        numbers = [grid.columns[i] for i in range(first, last + 1) if i in grid.columns]
+        name, scale = scaled_name(_INDEX.sub("", plain(text)))
+        over = [grid.columns[i] for i in range(first, last + 1) if i in grid.columns]
+        numbers = [number for numbered in over for number in numbered]
         if not numbers or not name or name in ("-", "–", "0", "1") or folded(name) in profile.reserved:
             continue
-        if len(numbers) != last - first + 1:
+        if len(over) != last - first + 1:
             troubles.append(Trouble("IMP023", f"{table.title}: the cell `{text[:60]}` stands over columns of two kinds",
                                     table.spot_of(row), "the cell was left out", "error"))  # fmt: skip
             continue
-        lowest = min(numbers) - (min(grid.columns.values()) if grid.unit == 8 else 0)
+        lowest = min(numbers) - (min(n.start for n in grid.columns.values()) if grid.unit == 8 else 0)
         bits = len(numbers) * grid.unit
         at = start + lowest * grid.unit
         if grid.unit == 1 and profile.data["node"].get("bit_order") == "msb0":
@@ -202,5 +226,6 @@ def _fields(
             troubles.append(Trouble("IMP037", f"{table.title}: `{name}` has {bits} bits, which no number has",
                                     table.spot_of(row), "the cell was left out", "error"))  # fmt: skip
             continue
-        made.append(ReadField(name, at, bits, "bool" if bits == 1 else "uint", Described(), table.spot_of(row)))
+        kind = "bool" if bits == 1 else "uint"
+        made.append(ReadField(name, at, bits, kind, scaled(scale), table.spot_of(row)))
     return made

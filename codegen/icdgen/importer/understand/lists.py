@@ -9,7 +9,7 @@ from icdgen.importer.profile import Profile
 from icdgen.importer.understand import descriptions, numbers
 from icdgen.importer.understand.model import Listed, LogBit, ReadEnum, ReadList, ReadLog, ReadMember
 from icdgen.importer.understand.rows import entries
-from icdgen.importer.words import number, plain
+from icdgen.importer.words import number, plain, table_name
 
 _MASK = re.compile(r"(?:0x)?(?:[0-9A-Fa-f]{2}\s*)+\Z")
 
@@ -56,7 +56,7 @@ def enumeration(table: Table, profile: Profile, troubles: list[Trouble]) -> Read
     """An enumeration."""
     name = enum_name(table.caption, profile)
     if not name:
-        name = f"Table {table.number}" if table.number else f"Values of page {table.page or 1}"
+        name = f"Table {table_name(table.number)}" if table.number else f"Values of page {table.page or 1}"
         troubles.append(Trouble("IMP025", f"{table.title}: nothing names the enumeration", table.spot,
                                 f"held as `{name}`: name it in the ICD", "error"))  # fmt: skip
     made = ReadEnum(name, [], table)

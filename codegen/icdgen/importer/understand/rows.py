@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -43,6 +44,10 @@ def entries(table: Table, troubles: list[Trouble], stands_alone: StandsAlone | N
                 troubles.append(Trouble("IMP021", f"a row of {table.title}: {row.mended}", spot, _LOOK, "note"))
         elif not any(row.cells):
             continue
+        elif header.kind == "fields" and _REPEATS.search(text := " ".join(cell for cell in row.cells if cell)):
+            table.doubts.append("it has a repeated block")
+            troubles.append(Trouble("IMP037", f"{table.title}: `{text[:80]}`: a repeated block, which the ICD format cannot hold",
+                                    spot, "hold the message by hand, or leave it out", "error"))  # fmt: skip
         elif header.kind == "list" and (title := _group(row, header, made, last_page)):
             group = title
         elif made:
@@ -73,6 +78,9 @@ def _unread_columns(table: Table, header: Header, troubles: list[Trouble]) -> No
             )  # fmt: skip
 
 
+_REPEATS = re.compile(
+    r"\b(?:start|begin|beginning) of (?:the )?repeat|\brepeated (?:block|group|for)\b|\brepeats? \w+ times\b", re.I
+)
 _LOOK = "compare with the page"
 StandsAlone = Callable[[dict[str, str]], bool]
 

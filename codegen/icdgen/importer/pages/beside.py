@@ -1,0 +1,89 @@
+"""Tables that stand side by side and were read as one: their headings repeat from left to right."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from icdgen.importer import headings
+from icdgen.importer.document import Row, Table
+from icdgen.importer.pages.flow import Mark
+from icdgen.importer.profile import Profile
+from icdgen.importer.words import squeezed
+
+Items = list[Table | Mark]
+
+
+def parted(items: Items, profile: Profile) -> Items:
+    """The items, such tables parted; tables side by side each stand behind their part of the lines above them."""
+    made: Items = []
+    index = 0
+    while index < len(items):
+        item = items[index]
+        index += 1
+        if isinstance(item, Mark):
+            made.append(item)
+            continue
+        tables = _parts(item, profile)
+        if not tables:
+            tables = [item]
+            while (
+                index < len(items) and isinstance(following := items[index], Table) and _beside(tables[-1], following)
+            ):
+                tables.append(following)
+                index += 1
+            tables.sort(key=lambda table: table.boxes[0].x0)
+        above: list[list[Mark]] = []
+        while (
+            len(tables) > 1
+            and made
+            and isinstance(made[-1], Mark)
+            and (lines := _lines(made[-1], len(tables), profile))
+        ):
+            above.insert(0, lines)
+            made.pop()
+        for place, table in enumerate(tables):
+            made += [*(lines[place] for lines in above), table]
+    return made
+
+
+def _beside(one: Table, other: Table) -> bool:
+    """Whether two tables stand side by side on a page, and on none besides."""
+    if len(one.boxes) != 1 or len(other.boxes) != 1:
+        return False
+    a, b = one.boxes[0], other.boxes[0]
+    apart = a.x1 <= b.x0 or b.x1 <= a.x0
+    return a.page == b.page and apart and min(a.bottom, b.bottom) > max(a.top, b.top)
+
+
+def _parts(table: Table, profile: Profile) -> list[Table]:
+    """The tables side by side; none where the headings do not repeat."""
+    if table.header is not None or len(table.head) < 2:
+        return []
+    titles = [squeezed(cell) for cell in table.head[0].cells]
+    starts = [index for index, title in enumerate(titles) if title and title == titles[0]]
+    parts = [titles[a:b] for a, b in zip(starts, [*starts[1:], len(titles)], strict=True)]
+    width = len(parts[-1]) if parts else 0
+    if len(parts) < 2 or any(part[:width] != parts[-1] or any(part[width:]) for part in parts):
+        return []
+    made = []
+    for start in starts:
+        header = headings.match(table.head[0].cells[start : start + width], profile, loose=True)
+        if header is None:
+            return []
+        rows = [_cut(row, start, width) for row in table.head[1:]]
+        rows = [row for row in rows if any(row.cells)]
+        made.append(Table(header=header, rows=rows, boxes=list(table.boxes), page=table.page))
+    return made
+
+
+def _cut(row: Row, start: int, width: int) -> Row:
+    return Row(row.cells[start : start + width], row.page, edges=row.edges[start : start + width + 1])
+
+
+def _lines(mark: Mark, count: int, profile: Profile) -> list[Mark]:
+    """A line above the tables as one line for each; none where it has not as many parts."""
+    if len(mark.cells) != count or mark.kind == "heading":
+        return []
+    if mark.kind == "caption" and not all(profile.caption.match(text) for _, text in mark.cells):
+        return []
+    return [replace(mark, text=text, cells=[(x, text)]) for x, text in mark.cells]
