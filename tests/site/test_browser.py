@@ -193,7 +193,7 @@ def test_the_chosen_language_is_remembered(browser, served):
     context = browser.new_context()
     page = context.new_page()
     page.goto(served + KINDS["numbers"])
-    page.click("text=Rust")
+    page.click("label:text-is('Rust')")
     page.goto(served + KINDS["message"])
     assert page.is_visible(".snippet.rust") and not page.is_visible(".snippet.c")
     context.close()
@@ -246,7 +246,7 @@ def test_without_javascript_everything_but_search_and_decoder_is_there(browser, 
     with opened(browser, site.as_uri() + "/", KINDS["message"], java_script_enabled=False) as page:
         assert not page.is_visible("#search") and not page.is_visible("#decoder")
         assert page.is_visible("svg.layout") and page.is_visible(".fields") and page.is_visible(".snippet.c")
-        page.click("text=Python")
+        page.click("label:text-is('Python')")
         assert page.is_visible(".snippet.python") and not page.is_visible(".snippet.c")
         page.click("svg.layout .k5")
         assert page.url.endswith("#field-cubecontrol_signal_enabled")
