@@ -293,3 +293,10 @@ def test_a_frame_in_lines_with_a_byte_missing_is_an_error(tmp_path, wrong):
     result, tree = read(tmp_path, text)
     assert not tree
     assert "gives the id 0x31" in found(result, "IMP030")[0]
+
+
+def test_a_heading_with_an_id_and_no_table_is_said(tmp_path):
+    result, _ = read(
+        tmp_path, f"5 Telemetry\n\n5.1 Motor State (0x21)\n\n{FIELDS}\n5.2 Pump State (0x22)\n\nIn a figure.\n"
+    )
+    assert found(result, "IMP030") == ["the heading `Pump State (0x22)` gives an id, and no table below it was found"]

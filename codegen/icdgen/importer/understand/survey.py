@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from icdgen.importer.document import Document, Heading, Table, Text, Trouble
+from icdgen.importer.document import Document, Heading, Spot, Table, Text, Trouble
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import around, grids, lists, messages
 from icdgen.importer.understand.around import Around, Said, kind_of
@@ -46,9 +46,11 @@ def survey(document: Document, profile: Profile) -> Survey:
     run, last = 1, -1
     sections: list[Heading] = []
     prose: list[str] = []
+    announced: list[tuple[Heading, Said]] = []
     used: set[str] = set()  # headings whose id a table has
     for block in document.blocks:
         if isinstance(block, Heading):
+            announced.append((block, around.read(Around(headings=[block.text]), profile)))
             sections = [s for s in sections if _holds(s, block)] + [block]
             prose = []
         elif isinstance(block, Text):
@@ -78,7 +80,19 @@ def survey(document: Document, profile: Profile) -> Survey:
         made.found.append(Found(block, what, thing, run, titles))
         if what == UNKNOWN and not _is_repeated(block, made):
             made.troubles.append(_not_understood(block, around.read(about, profile)))
+    _without_table(announced, made)
     return made
+
+
+def _without_table(announced: list[tuple[Heading, Said]], made: Survey) -> None:
+    """Says which headings give an id that no table has: of a message without a table, or whose table was not seen."""
+    known = {value for _, message in made.of(ReadMessage) for value in message.ids}
+    missed = {text for trouble in made.troubles if trouble.code == "IMP030" for text in trouble.message.split("`")}
+    for heading, said in announced:
+        if said.ids and said.name and said.id not in known and heading.text[:60] not in missed:
+            spot = Spot(heading.page, heading.line)
+            message = f"the heading `{heading.text[:80]}` gives an id, and no table below it was found"
+            made.troubles.append(Trouble("IMP030", message, spot, "look at the page"))
 
 
 def classify(
