@@ -77,8 +77,8 @@ def _resident(pid: int) -> int:
 def where(manual: Path, profile: str | None) -> None:
     """The share of each stage, in one process, under a profiler."""
     from icdgen.icd.fmt import emit
-    from icdgen.importer import run
     from icdgen.importer import profile as profiles
+    from icdgen.importer import run
 
     words = profiles.load(profiles.find(profile))
     profiler = cProfile.Profile()
