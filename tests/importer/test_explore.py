@@ -22,6 +22,12 @@ def test_the_kinds_of_tables_are_named_with_headings_count_and_pages(tmp_path):
     assert data["kinds"][0]["count"] == 2
 
 
+def test_a_register_map_is_named_by_its_headings(tmp_path):
+    WILD["registers"].draw(tmp_path / "motor.pdf")
+    shown = icdgen("import", "motor.pdf", "--explore", cwd=tmp_path).stdout
+    assert ": 1 kind of tables." in shown and "#   Addr | Register | R/W | 7 | 6 | 5 | 4 | 3 | 2 | 1 | 0\n" in shown
+
+
 def test_the_proposed_profile_reads_the_fields_of_a_manual_with_words_of_its_own(tmp_path):
     zephyr.draw(tmp_path / "zephyr.pdf")
     (tmp_path / "words.yaml").write_text(

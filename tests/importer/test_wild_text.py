@@ -226,6 +226,19 @@ def test_a_grid_without_an_id_is_not_guessed(tmp_path):
     assert "it begins with `Byte0" in found(result, "IMP030")[0]
 
 
+def test_a_heading_that_names_a_message_without_a_table_is_said(tmp_path):
+    text = f"5 Telemetry\n\n5.1 Motor State (0x21)\n\n{FIELDS}\n6 Telecommands\n\n6.1 Halt (0x12)\n\nStops it.\n\n6.2 Notes\n"
+    result, tree = read(tmp_path, text)
+    assert [m["name"] for m in tree["messages"]] == ["Motor State"]
+    (trouble,) = (t for t in result.troubles if t.code == "IMP039")
+    assert "the heading `Halt (0x12)` names a message, and no table follows" in trouble.message and trouble.spot.line
+    assert "{name: Halt, id: 18, kind: telecommand, length: 0}" in trouble.help
+    last, _ = read(tmp_path, text.partition("6.2")[0])
+    assert [t.message for t in last.troubles if t.code == "IMP039"] == [trouble.message]
+    inner, tree = read(tmp_path, f"5 Telemetry\n\n5.1 Motor State (0x21)\n\n5.1.1 Layout\n\n{FIELDS}")
+    assert not [t for t in inner.troubles if t.code == "IMP039"]
+
+
 CHAPTERS = """5 Telemetry
 
 Table {a}1: Motor State Telemetry Format
@@ -293,10 +306,3 @@ def test_a_frame_in_lines_with_a_byte_missing_is_an_error(tmp_path, wrong):
     result, tree = read(tmp_path, text)
     assert not tree
     assert "gives the id 0x31" in found(result, "IMP030")[0]
-
-
-def test_a_heading_with_an_id_and_no_table_is_said(tmp_path):
-    result, _ = read(
-        tmp_path, f"5 Telemetry\n\n5.1 Motor State (0x21)\n\n{FIELDS}\n5.2 Pump State (0x22)\n\nIn a figure.\n"
-    )
-    assert found(result, "IMP030") == ["the heading `Pump State (0x22)` gives an id, and no table below it was found"]

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+import re
 from datetime import datetime
 
 import pytest
@@ -152,7 +153,11 @@ messages:
 """
 
 
-def test_every_type_in_both_byte_orders(tmp_path):
+TURNED = re.sub(r"(name: [bdefgij], type: \w+)", r"\1, byte_order: little", ODD)
+
+
+@pytest.mark.parametrize("text_of_icd", [ODD, TURNED], ids=["as the node", "of their own"])
+def test_every_type_in_both_byte_orders(tmp_path, text_of_icd):
     from random import Random
 
     import pyarrow.parquet as pq
@@ -160,7 +165,7 @@ def test_every_type_in_both_byte_orders(tmp_path):
     from icdgen.loading import load
     from icdgen.protocol import facts, logs
 
-    (tmp_path / "odd.yaml").write_text(ODD)
+    (tmp_path / "odd.yaml").write_text(text_of_icd)
     loaded = load([tmp_path / "odd.yaml"])
     icd = loaded.icd
     assert icd is not None and loaded.ok, loaded.findings
@@ -175,6 +180,13 @@ def test_every_type_in_both_byte_orders(tmp_path):
     rows = zip(*(table[column.name].to_pylist() for column in found.plan.columns), strict=True)
     got = [[v.hex() if isinstance(v, bytes) else v for v in row] for row in rows]
     assert [list(map(_same, row)) for row in got] == [list(map(_same, row)) for row in wanted]
+    file = io.StringIO()
+    text.to_json_lines(found, file, None, lambda size: None)
+    lines = [list(json.loads(line).values())[1:] for line in file.getvalue().splitlines()]
+    numbers = [
+        index for index, column in enumerate(found.plan.columns) if column.kind != "float"
+    ]  # floats are printed short
+    assert [[row[index] for index in numbers] for row in lines] == [[row[index] for index in numbers] for row in wanted]
 
 
 def _same(value: object) -> object:

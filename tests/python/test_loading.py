@@ -27,6 +27,14 @@ def test_importing_a_node_loads_no_message(shipped):
     assert run(shipped, f"import icdgen_messages.cubeacp\n{LOADED}") == "['_errors', '_lazy', 'cubeacp']"
 
 
+def test_a_star_brings_all_that_a_node_has(shipped):
+    code = "from icdgen_messages.cubeacp import *\nfrom icdgen_messages import cubeacp\n"
+    told = run(shipped, f"{code}print(EstimatedAttitudeAngles.ID, TELEMETRY[146] is EstimatedAttitudeAngles, NAME)")
+    assert told == "146 True cubeacp"
+    missing = "print([n for n in dir(cubeacp) if n[0] != '_' and n not in globals()])"
+    assert run(shipped, f"{code}{missing}") == "['LINK', 'TYPE_CHECKING', 'annotations']"
+
+
 def test_the_wire_layer_is_loaded_when_it_is_used(shipped):
     code = "from icdgen_messages import cubeacp, wire\n"
     assert "wire.link" not in run(shipped, f"{code}{LOADED}")

@@ -1,4 +1,4 @@
-"""``python -m tests.site.pictures FOLDER``: each kind of page light, dark, on a phone and on paper, to be looked at."""
+"""``python -m tests.site.pictures FOLDER``: each kind of page on a desk, a tablet and a phone, light and dark, and on paper."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ from tests.conftest import ROOT
 from tests.site.conftest import program
 from tests.site.pages import KINDS
 
+WIDTHS = {1440: 1000, 768: 1000, 390: 844}
 LOOKS = {
-    "light": {"viewport": {"width": 1280, "height": 1000}, "color_scheme": "light"},
-    "dark": {"viewport": {"width": 1280, "height": 1000}, "color_scheme": "dark"},
-    "phone": {"viewport": {"width": 390, "height": 844}, "device_scale_factor": 2, "is_mobile": True},
+    f"{width}-{scheme}": {"viewport": {"width": width, "height": height}, "color_scheme": scheme}
+    for width, height in WIDTHS.items()
+    for scheme in ("light", "dark")
 }
 README = {"viewport": {"width": 1180, "height": 900}, "device_scale_factor": 1.5}
 
@@ -38,6 +39,13 @@ def main() -> None:
             page.evaluate("scrollTo(0, 0)")
             page.screenshot(path=target)
             return
+        for look, settings in LOOKS.items():
+            page = browser.new_page(**settings)
+            page.goto((site / KINDS["home"]).as_uri())
+            page.fill("#search", "attitude")
+            page.wait_for_selector("#results a")
+            page.screenshot(path=options.folder / f"search-{look}.png")
+            page.close()
         for kind, name in KINDS.items():
             if not (site / name).is_file():
                 continue

@@ -193,7 +193,7 @@ def test_the_chosen_language_is_remembered(browser, served):
     context = browser.new_context()
     page = context.new_page()
     page.goto(served + KINDS["numbers"])
-    page.click("text=Rust")
+    page.click("label:text-is('Rust')")
     page.goto(served + KINDS["message"])
     assert page.is_visible(".snippet.rust") and not page.is_visible(".snippet.c")
     context.close()
@@ -209,9 +209,17 @@ def test_axe_finds_nothing(browser, site, path, scheme):
 
 
 @pytest.mark.parametrize("path", KINDS.values(), ids=KINDS.keys())
-def test_a_phone_needs_no_sideways_scrolling(browser, site, path):
-    with opened(browser, site.as_uri() + "/", path, viewport={"width": 390, "height": 844}) as page:
-        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+@pytest.mark.parametrize("width", [1440, 768, 390])
+def test_nothing_is_cut_and_nothing_endless(browser, site, path, width):
+    """No page is wider than the screen, or longer than 8,000 pixels before anything is unfolded."""
+    outside = """() => [...document.querySelectorAll("body *")].filter((one) => {
+        const box = one.getBoundingClientRect();
+        const hidden = one.closest(".scroll, pre, .hidden, .skip, legend, details:not([open]) > :not(summary), svg, .local, .tabs");
+        return !hidden && box.width > 0 && box.right > innerWidth + 1;
+    }).map((one) => one.outerHTML.slice(0, 80))"""
+    with opened(browser, site.as_uri() + "/", path, viewport={"width": width, "height": 900}) as page:
+        wide, high = page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
+        assert wide <= width and page.evaluate(outside) == [] and high <= 8000
 
 
 def test_dark_mode_follows_the_system_and_the_button(browser, served):
@@ -238,7 +246,7 @@ def test_without_javascript_everything_but_search_and_decoder_is_there(browser, 
     with opened(browser, site.as_uri() + "/", KINDS["message"], java_script_enabled=False) as page:
         assert not page.is_visible("#search") and not page.is_visible("#decoder")
         assert page.is_visible("svg.layout") and page.is_visible(".fields") and page.is_visible(".snippet.c")
-        page.click("text=Python")
+        page.click("label:text-is('Python')")
         assert page.is_visible(".snippet.python") and not page.is_visible(".snippet.c")
         page.click("svg.layout .k5")
         assert page.url.endswith("#field-cubecontrol_signal_enabled")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 from collections import Counter
 from html import unescape
@@ -154,3 +155,22 @@ def test_a_page_lists_the_frames_of_the_golden_vectors(site, shipped):
             listed = text.partition('<dl class="frames">')[2].partition("</dl>")[0]
             shown = [part.partition('"')[0] for part in listed.split('href="#try=')[1:]]
             assert shown == [vector["bytes"] for vector in data["vectors"] if message.length], message.name
+
+
+def test_the_page_of_changes_draws_both_layouts_as_the_diff_does(tmp_path):
+    from icdgen.diff import report
+    from icdgen.diff.inputs import one_side
+    from icdgen.diff.reports import html
+
+    old = tmp_path / "icd"
+    shutil.copytree(ROOT / "icd", old)
+    acp = old / "cubeacp.yaml"
+    text = acp.read_text("utf-8")
+    assert "at: 0,  bits: 16, name: X Magnetorquer Command" in text
+    acp.write_text(
+        text.replace("at: 0,  bits: 16, name: X Magnetorquer Command", "at: 0,  bits: 15, name: X Magnetorquer Command")
+    )
+    page = make([ROOT / "icd"], str(old)).files["changes.html"]
+    whole = html.report(report.make(one_side(str(old), []), one_side(str(ROOT / "icd"), [])))
+    drawings = [part.partition("</svg>")[0] for part in page.split('<svg class="layouts"')[1:]]
+    assert drawings and drawings == [part.partition("</svg>")[0] for part in whole.split('<svg class="layouts"')[1:]]

@@ -46,11 +46,11 @@ def directions(comparison: Comparison) -> tuple[Direction, ...]:
     wires, logs = _facts(comparison)
     return (
         _answer("telemetry", "Can an old ground station read the new device's telemetry?",
-                _frames(comparison, "telemetry_id", _old_reads_new), wires),
+                _frames(comparison, "telemetry_id", lambda pair: _read(pair, pair.new, pair.old)), wires),
         _answer("telecommands", "Can old telecommands still be sent?",
                 _frames(comparison, "telecommand_id", _new_obeys_old), wires),
         _answer("logs", "Can new software read old log files?",
-                _frames(comparison, "telemetry_id", _new_reads_old, logged=True), logs),
+                _frames(comparison, "telemetry_id", lambda pair: _read(pair, pair.old, pair.new), logged=True), logs),
     )  # fmt: skip
 
 
@@ -115,14 +115,6 @@ def _verdict(
     if not pair.changed:
         return YES, ()
     return judge(pair)
-
-
-def _old_reads_new(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
-    return _read(pair, pair.new, pair.old)
-
-
-def _new_reads_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
-    return _read(pair, pair.old, pair.new)
 
 
 def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple[str, ...]]:

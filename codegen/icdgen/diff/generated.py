@@ -138,8 +138,8 @@ class Generated:
         """Language, old and new type of the raw value, where they differ."""
         if not _is_sound(pair.old) or not _is_sound(pair.new):
             return []
-        message_old, message_new = pair.owner.old, self._under_old_owners.message_of(pair.owner)
-        field_new = self._under_old_owners.field_of(pair)
+        message_old, message_new = pair.owner.old, self._under_old_owners.messages[id(pair.owner)]
+        field_new = self._under_old_owners.fields[id(pair)]
         found = []
         for language in LANGUAGES:
             before = self._types[0](language, pair.owner.old_node, message_old, pair.old)
@@ -229,7 +229,7 @@ class _Cut:
         self.marks: dict[int, IdentifiedPair] = {}
         self.alive: list[Map] = []  # marks go by identity
         self.enums: dict[int, Enum] = {}
-        self.messages: dict[int, Message] = {}
+        self.messages: dict[int, Message] = {}  # id(pair) -> what it has become
         self.fields: dict[int, Field] = {}
         icd = match.new if side else match.old
         names = {one.name: self.name_of(pair) for pair in match.nodes if (one := self.side_of(pair)) is not None}
@@ -294,12 +294,6 @@ class _Cut:
         made = self.marked(message, pair, fields=tuple(own), node=names.get(message.node, message.node))
         self.messages[id(pair)] = made
         return made
-
-    def message_of(self, pair: MessagePair) -> Message:
-        return self.messages[id(pair)]
-
-    def field_of(self, pair: FieldPair) -> Field:
-        return self.fields[id(pair)]
 
     def names(self, icd: Icd) -> Names:
         found: dict[int, dict[Name, None]] = {}

@@ -32,6 +32,8 @@ _KEYS = {
     "width": "`bits:`", "description": "`summary:`", "comment": "`summary:`", "values": "`enum:`, with the members under `enums:`",
 }  # fmt: skip
 
+_REPEATED = frozenset({"count", "repeat", "array", "times", "elements"})
+
 
 def of_syntax(problem: str, line: str, column: int) -> str:
     """What to do where the YAML breaks off, at a column (from 0) of a line; nothing if there is no telling."""
@@ -67,5 +69,7 @@ def of_value(key: str, value: object) -> str:
 
 def of_key(key: str, known: list[str]) -> str:
     """What is written instead of a key that the format does not know; nothing if there is no telling."""
+    if key.lower() in _REPEATED:
+        return "what is repeated cannot be described: write a field for each element"
     meant = _KEYS.get(key.lower(), "")
     return f"write {meant}" if meant and re.search(r"`(\w+):", meant)[1] in known else ""  # type: ignore[index]

@@ -13,6 +13,7 @@ from icdgen.importer.document import Table
 from icdgen.importer.profile import Profile
 from icdgen.importer.propose import Column, proposal
 from icdgen.importer.run import Result
+from icdgen.importer.understand import grids
 from icdgen.importer.understand.model import ReadMessage
 from icdgen.importer.understand.survey import UNKNOWN
 from icdgen.importer.words import folded, plain, squeezed
@@ -64,6 +65,8 @@ def kinds(result: Result) -> list[Kind]:
 def _titles(table: Table) -> list[str]:
     if table.header is not None:
         return table.header.titles
+    if grid := next((row for row in table.head if grids.is_heading(row)), None):
+        return grid.cells
     return max(table.head[:4], key=_words, default=None).cells if table.head else []  # type: ignore[union-attr]
 
 

@@ -9,7 +9,7 @@ are all made from that line. After a change, `python -m scripts.protocol_facts` 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import Field, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from enum import Enum, auto
 from functools import cache
 from typing import Any, Final
@@ -160,11 +160,6 @@ def telemetry(key: str, about: str) -> Any:
     return _declare(Kind.STEP, key, about, direction="telemetry")
 
 
-def _fact(one: Field[Any]) -> Fact:
-    kind, key, about, default, more = one.metadata["fact"]
-    return Fact(one.name, kind, key, about, default=default, **more)
-
-
 def facts_of(part: Any) -> tuple[Fact, ...]:
     """The facts that a dataclass, or one of its objects, declares, in order. What it holds beside them is made by code."""
     return _facts(part if isinstance(part, type) else type(part))
@@ -173,7 +168,8 @@ def facts_of(part: Any) -> tuple[Fact, ...]:
 @cache
 def _facts(part: Hashable) -> tuple[Fact, ...]:
     assert isinstance(part, type)
-    return tuple(_fact(one) for one in fields(part) if "fact" in one.metadata)
+    found = ((one.name, *one.metadata["fact"]) for one in fields(part) if "fact" in one.metadata)
+    return tuple(Fact(name, kind, key, about, default=it, **more) for name, kind, key, about, it, more in found)
 
 
 def read(

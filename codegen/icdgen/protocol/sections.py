@@ -113,10 +113,6 @@ class CanPart:
     shift: int
 
 
-def _all_packets(known: dict[str, Any]) -> int:
-    return int(known["data_bytes"] * known["packets"])
-
-
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Extended:
     """CAN messages of several packets."""
@@ -127,7 +123,9 @@ class Extended:
         "packets_left_in_last", "what that byte counts in the last packet", 0, default=0, holds=BYTE
     )
     packets: int = number("max_packets", "most packets of a message", 1, default=CAN_PACKETS)
-    bytes: int = octets("max_bytes", "most bytes of a message", 1, U32, _all_packets)
+    bytes: int = octets(
+        "max_bytes", "most bytes of a message", 1, U32, lambda known: known["data_bytes"] * known["packets"]
+    )
     fill: int = octet("fill", "value of the bytes of the last packet that hold no data", 0)
     packet_timeout: int = time("packet_timeout_ms", "longest time between two packets of a message", 1000)
 
@@ -224,23 +222,24 @@ class Index:
     fields: dict[str, IndexField]
 
 
-def _share(known: dict[str, Any]) -> int:
-    return int(known["bytes"] // len(known["messages"]))
-
-
-def _received(known: dict[str, Any]) -> bool:
-    return bool(known["received"])
-
-
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class HoleMap:
     """A bit for each packet of a block."""
 
     bytes: int = octets("bytes", "length of the map")
-    message_bytes: int = octets("message_bytes", "bytes of the map in each message", default=_share)
+    message_bytes: int = octets(
+        "message_bytes",
+        "bytes of the map in each message",
+        default=lambda known: known["bytes"] // len(known["messages"]),
+    )
     msb0: bool = flag("bit_order", _MSB0, False, _BITS, key_about="which bit of byte 0 stands for packet 0")
     received: bool = flag("received", "value of the bit of a received packet", True, (0, 1))
-    beyond_end: bool = flag("beyond_end", "value of the bits of packets beyond the end of the block", _received, (0, 1))
+    beyond_end: bool = flag(
+        "beyond_end",
+        "value of the bits of packets beyond the end of the block",
+        lambda known: known["received"],
+        (0, 1),
+    )
     messages: tuple[Message, ...]
     field: str
 

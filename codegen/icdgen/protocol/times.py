@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from calendar import monthrange
 from collections.abc import Mapping
 
 from icdgen.protocol.errors import RangeError
 from icdgen.protocol.facts import Facts, need
 
 PARTS = ("year", "month", "day", "hour", "minute", "second")
-MONTH_DAYS = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)
 
 
 def unpack(facts: Facts, value: int) -> dict[str, int]:
@@ -40,14 +40,8 @@ def wrong(parts: Mapping[str, int]) -> str | None:
     limits = {"month": (1, 12), "hour": (0, 23), "minute": (0, 59), "second": (0, 59)}
     for name in PARTS:
         if name == "day":
-            limits["day"] = 1, days(parts["year"], parts["month"])
+            limits["day"] = 1, monthrange(parts["year"], parts["month"])[1]
         low, high = limits.get(name, (parts[name], parts[name]))
         if not low <= parts[name] <= high:
             return name
     return None
-
-
-def days(year: int, month: int) -> int:
-    """Days of a month."""
-    leap = month == 2 and ((year % 4 == 0 and year % 100 != 0) or year % 400 == 0)
-    return MONTH_DAYS[month - 1] + leap

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
-from icdgen.protocol import can
+from icdgen_runtime.wire.can import CanEvent, CanJoiner, CanMessage, CanPacket
+
 from icdgen.protocol.sections import CAN_WITH_DATA
 from icdgen.recognize import match
 from icdgen.recognize.packets import Printed
@@ -23,7 +25,7 @@ def readings(speakers: Sequence[Speaker], packets: Sequence[Printed]) -> list[Re
         raise NotFound(
             "a packet has an 11-bit identifier, those of the ICD have 29 bits", "candump prints them with 8 digits"
         )
-    sent = [can.Packet(packet.id, packet.data) for packet in packets]
+    sent = [CanPacket(packet.id, packet.data) for packet in packets]
     able = [speaker for speaker in speakers if speaker.facts.can]
     found = [_of_speaker(speaker, sent) for speaker in able]
     most = max(len(one) for one in found)
@@ -39,8 +41,8 @@ def readings(speakers: Sequence[Speaker], packets: Sequence[Printed]) -> list[Re
     )
 
 
-def _of_speaker(speaker: Speaker, packets: list[can.Packet]) -> list[Reading]:
-    joiner, found = can.Joiner(speaker.facts, senders=len(packets)), []
+def _of_speaker(speaker: Speaker, packets: list[CanPacket]) -> list[Reading]:
+    joiner, found = CanJoiner(speaker.link, senders=len(packets)), []
     for packet in packets:
         for event in joiner.feed(0, packet):
             read = _reading(speaker, event.message) if event.message else None
@@ -49,7 +51,7 @@ def _of_speaker(speaker: Speaker, packets: list[can.Packet]) -> list[Reading]:
     return found
 
 
-def _reading(speaker: Speaker, told: can.Message) -> Reading | None:
+def _reading(speaker: Speaker, told: CanMessage) -> Reading | None:
     sends = told.kind in ("telecommand", "acknowledge", "refusal")
     message = (speaker.facts.telecommands if sends else speaker.facts.telemetry).get(told.id)
     if message is None or (told.kind in CAN_WITH_DATA and len(told.data) != message.length):
@@ -58,11 +60,25 @@ def _reading(speaker: Speaker, told: can.Message) -> Reading | None:
     return Reading(speaker, _WHAT[told.kind], message, told.id, told.data, remarks=(way,))
 
 
-def _left_out(speaker: Speaker, packets: list[can.Packet]) -> int:
+def _left_out(speaker: Speaker, packets: list[CanPacket]) -> int:
     """All messages that the packets begin, known or not."""
-    joiner = can.Joiner(speaker.facts, senders=len(packets))
-    events = [event.event for packet in packets for event in joiner.feed(0, packet)]
-    return len([e for e in events if e != can.DUPLICATE]) + sum(one.completed_by is None for one in joiner.open)
+    told, waiting = _told(speaker, packets)
+    return len([event for event in told if event.event != "duplicate"]) + len(waiting)
+
+
+def _told(speaker: Speaker, packets: list[CanPacket]) -> tuple[list[CanEvent], list[CanEvent]]:
+    """What the packets make, and which messages then wait for more of them."""
+    joiner = CanJoiner(speaker.link, senders=len(packets))
+    return [event for packet in packets for event in joiner.feed(0, packet)], joiner.expire(math.inf)
+
+
+def _came(speaker: Speaker, packets: list[CanPacket]) -> int:
+    """Packets of the first message that waits for more; all of one have the same identifier."""
+    for id in dict.fromkeys(packet.id for packet in packets):
+        own = list(dict.fromkeys(packet for packet in packets if packet.id == id))
+        if _told(speaker, own)[1]:
+            return len(own)
+    return 0
 
 
 def _chosen(found: list[Reading]) -> Reading:
@@ -71,15 +87,13 @@ def _chosen(found: list[Reading]) -> Reading:
     return match.decided(list(different.values()), f"a CAN message with id {found[0].id}")
 
 
-def _why_none(speaker: Speaker, packets: list[can.Packet]) -> BadLength | NotFound:
-    joiner = can.Joiner(speaker.facts, senders=len(packets))
-    events = [event for packet in packets for event in joiner.feed(0, packet)]
-    event = events[0] if events else None
-    if joiner.open and not any(e.message for e in events):
-        waiting = joiner.open[0]
-        missing = waiting.count - len(waiting.packets)
-        text = f"{missing} of {waiting.count} packets of the message with id {waiting.key[1]} are missing"
-        return BadLength(text, waiting.count, len(waiting.packets), "give all packets of the message")
+def _why_none(speaker: Speaker, packets: list[CanPacket]) -> BadLength | NotFound:
+    told, waiting = _told(speaker, packets)
+    event = told[0] if told else None
+    if waiting and not any(one.message for one in told):
+        came, missing = _came(speaker, packets), waiting[0].missing
+        text = f"{missing} of {came + missing} packets of the message with id {waiting[0].id} are missing"
+        return BadLength(text, came + missing, came, "give all packets of the message")
     if event and event.message:
         return match.why_none([speaker], bytes([event.message.id]) + event.message.data)
     text = event.event.replace("_", " ") if event else "no message"

@@ -25,7 +25,7 @@ def of_message(icd: Icd, speaker: Speaker, message: Message, data: bytes) -> Rea
                 return _reading(speaker, message, id, rest[: message.length], *taken, "CRC is right")
         if id is not None and len(rest) == message.length:
             return _reading(speaker, message, id, rest, *taken)
-    right = match.checksum(speaker.facts, plain, message, data)
+    right = match.checksum(speaker, plain, message, data)
     if right is not None:
         raise match.wrong_checksum(message, right, data)
     help = f"`icdgen show {speaker.node.name} {shlex.quote(message.name)}` shows what it holds"
@@ -38,7 +38,7 @@ def _reading(speaker: Speaker, message: Message, id: int | None, data: bytes, *r
     return Reading(speaker, what, message, id, data, remarks=remarks)
 
 
-def _talking(icd: Icd, speaker: Speaker, message: Message) -> list[facts.Facts]:
+def _talking(icd: Icd, speaker: Speaker, message: Message) -> list[Speaker]:
     """How all talk that have the message: those that include it may add a checksum."""
     others = [node for node in icd.nodes if node is not speaker.node and message in icd.messages_of(node)]
-    return [speaker.facts, *(facts.of(icd, node) for node in others)]
+    return [speaker, *(Speaker(icd, node, facts.of(icd, node)) for node in others)]

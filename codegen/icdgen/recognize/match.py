@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from icdgen_runtime.wire.i2c import i2c_write
+
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Message
-from icdgen.protocol import i2c, uart
 from icdgen.protocol.facts import Facts
 from icdgen.recognize.reading import ACKNOWLEDGE, REQUEST, TELECOMMAND, TELEMETRY, Reading, Speaker
 from icdgen.values.errors import Ambiguous, BadLength, NotFound
@@ -47,7 +48,7 @@ def _of_speaker(speaker: Speaker, body: bytes) -> Iterator[Reading]:
             yield Reading(speaker, REQUEST, message, id)
     form = facts.acknowledge
     if form and len(body) == form.length and id not in facts.telemetry:
-        told, error = uart.acknowledged(facts, body)
+        told, error = body[form.id_at], body[form.error_at]
         if told in facts.telecommands:
             yield Reading(speaker, ACKNOWLEDGE, facts.telecommands[told], told, error=error)
 
@@ -60,18 +61,18 @@ def _with_checksum(speaker: Speaker, what: str, id: int, message: Message, data:
     """The message, if the bytes are as many as it has, or the right checksum follows them."""
     if len(data) == message.length:
         return Reading(speaker, what, message, id, data)
-    right = checksum(speaker.facts, id, message, data)
+    right = checksum(speaker, id, message, data)
     if right is not None and data[message.length :] == right:
         return Reading(speaker, what, message, id, data[: message.length], checked=True, remarks=("CRC is right",))
     return None
 
 
-def checksum(facts: Facts, id: int, message: Message, data: bytes) -> bytes | None:
+def checksum(speaker: Speaker, id: int, message: Message, data: bytes) -> bytes | None:
     """The checksum that must follow the message's data; None if there is none, or no room for it."""
-    form = facts.checksum
+    form = speaker.facts.checksum
     if form is None or len(data) != message.length + form.bytes:
         return None
-    return facts.bytes_of(i2c.checksum(facts, id, data[: message.length]), form.bytes)
+    return i2c_write(speaker.link, id, data[: message.length], crc=True)[-form.bytes :]
 
 
 def decided(found: Sequence[Reading], of: str) -> Reading:
@@ -103,7 +104,7 @@ def why_none(speakers: Sequence[Speaker], body: bytes) -> BadLength | NotFound:
         ids = " or ".join(dict.fromkeys(f"{id} (0x{id:02X})" for _, (id, _) in apart))
         return NotFound(f"no message of {names} has the id {ids}", "`icdgen show NODE` lists what there is")
     for speaker, message, id, data in known.values():
-        right = checksum(speaker.facts, id, message, data)
+        right = checksum(speaker, id, message, data)
         if right is not None:
             return wrong_checksum(message, right, data)
     told = " or ".join(f"`{m.name}` ({describe(m)}) has {m.length} bytes" for _, m, _, _ in known.values())

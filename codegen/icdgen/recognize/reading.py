@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
+from icdgen_runtime.wire.link import Link
+
+from icdgen.backends.python.objects.links import link_of
 from icdgen.icd import wire_ids
-from icdgen.icd.model import Message, Node
+from icdgen.icd.model import Icd, Message, Node
 from icdgen.protocol.facts import Facts
 from icdgen.values.find import KINDS, describe
 from icdgen.values.frame import Frame
@@ -13,12 +17,18 @@ from icdgen.values.frame import Frame
 TELECOMMAND, TELEMETRY, REQUEST, ACKNOWLEDGE, REFUSAL = "telecommand", "telemetry", "request", "acknowledge", "refusal"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Speaker:
-    """A node, and how it talks."""
+    """A node of a set, and how it talks."""
 
+    icd: Icd = field(repr=False, compare=False)
     node: Node
     facts: Facts
+
+    @cached_property
+    def link(self) -> Link:
+        """What the wire layer has to know of it."""
+        return link_of(self.icd, self.facts)
 
     def taken_apart(self, body: bytes) -> tuple[int, bytes] | None:
         """The id that bytes begin with, and the rest; None if there are too few."""

@@ -119,6 +119,7 @@ def _message(icd: Icd, message: Message, width: int | None) -> str:
     facts = [
         f"{describe(message)} (hex {'/'.join(f'{i:0{2 * size(node.id_bits)}X}' for i in message.ids)})",
         f"{message.length} byte{'' if message.length == 1 else 's'}",
+        f"the last {message.reserved} reserved" if message.reserved else "",
         f"table {message.table}" if message.table else "",
         f"page {message.page}" if message.page else "",
         message.group,

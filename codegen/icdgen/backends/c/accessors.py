@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from icdgen.backends.c import physical
-from icdgen.backends.c.prefixes import part_of_unit
 from icdgen.backends.c.statement import call
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.comments import physical_comment, physical_name, words
+from icdgen.describe.wholes import part_of_unit
 
 
 class Accessor(NamedTuple):
@@ -50,11 +50,11 @@ def whole_accessors(message: MessageDescription) -> list[Accessor]:
 
 def whole_name(field: FieldDescription, whole: physical.Whole) -> str:
     """``estimated_roll_angle_mdeg``"""
-    return f"{field.name}_{part_of_unit(field.model, whole.prefix)[0]}"
+    return f"{field.name}_{part_of_unit(field.model, whole.per)[0]}"
 
 
 def _whole(field: FieldDescription, whole: physical.Whole) -> Accessor:
-    what = f"{words(field.model.name)} in {words(part_of_unit(field.model, whole.prefix)[1])}"
+    what = f"{words(field.model.name)} in {words(part_of_unit(field.model, whole.per)[1])}"
     tests = [f"value < {whole.least}"] if whole.least is not None else []
     tests += [f"value > {whole.most}"] if whole.most is not None else []
     return Accessor(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from icdgen.backends.c import bits
-from icdgen.backends.c.member_groups import Flags, Row, member_groups, row_macro
+from icdgen.backends.c.member_groups import Flags, Row, in_groups
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import call
 from icdgen.backends.c.text import WIDTH
@@ -18,25 +18,19 @@ def statements(message: MessageDescription) -> list[str]:
     """One statement a field or a group, in the order of the struct."""
     if not message.fields:
         return ["(void)buffer;", f"message->{EMPTY} = 0u;"]
-    groups = member_groups(message.fields)
-    found = []
-    index = 0
-    while index < len(message.fields):
-        group = groups.get(index)
-        found.append(_group(group, message) if group else _one(message.fields[index]))
-        index += group.count if group else 1
-    return found
+    return [
+        _one(one) if isinstance(one, FieldDescription) else _group(one, message) for one in in_groups(message.fields)
+    ]
 
 
 def _group(group: Flags | Row, message: MessageDescription) -> str:
-    members = message.fields[group.first : group.first + group.count]
-    names = [field.name for field in members]
+    names = [field.name for field in group.members]
     target = f"{stem(message)}_t", "message"
     if isinstance(group, Flags):
         value = f"buffer[{group.byte}]" + (f" >> {group.shift}" if group.shift else "")
         return call(f"ICDGEN_READ_{group.macro}", (*target, value, *names))
     value = f"&buffer[{group.byte}]"
-    return call(f"ICDGEN_READ_{row_macro(members[0])}", (*target, value, f"{group.count}u", names[0], names[-1]))
+    return call(f"ICDGEN_READ_{group.macro}", (*target, value, f"{len(names)}u", names[0], names[-1]))
 
 
 def _one(field: FieldDescription) -> str:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from icdgen.backends.c import bits
-from icdgen.backends.c.member_groups import Flags, Row, member_groups, row_macro
+from icdgen.backends.c.member_groups import Flags, Row, in_groups
 from icdgen.backends.c.names import stem
 from icdgen.backends.c.statement import assigned_byte, call
 from icdgen.describe import FieldDescription, MessageDescription
@@ -28,15 +26,11 @@ class _Frame:
         self.whole: dict[int, tuple[int, str]] = {}  # first byte -> number of bytes, statement
         self.parts: dict[int, list[tuple[int, str]]] = {}  # byte -> (shift, term)
         self.joined: dict[int, list[str]] = {}  # byte -> statements that its terms need
-        groups = member_groups(message.fields)
-        index = 0
-        while index < len(message.fields):
-            group = groups.get(index)
-            if group is None:
-                self._one(message.fields[index])
+        for one in in_groups(message.fields):
+            if isinstance(one, FieldDescription):
+                self._one(one)
             else:
-                self._group(group, message.fields[index : index + group.count])
-            index += group.count if group else 1
+                self._group(one)
 
     def _add(self, byte: int, shift: int, term: str) -> None:
         self.parts.setdefault(byte, []).append((shift, term))
@@ -52,15 +46,15 @@ class _Frame:
             for piece in field.pieces:
                 self._add(piece.byte, piece.shift, bits.put(field, piece))
 
-    def _group(self, group: Flags | Row, members: Sequence[FieldDescription]) -> None:
-        names = [field.name for field in members]
+    def _group(self, group: Flags | Row) -> None:
+        names = [field.name for field in group.members]
         byte, source = group.byte, (f"{stem(self.message)}_t", "message")
         if isinstance(group, Row):
-            arguments = (*source, f"&buffer[{byte}]", f"{group.count}u", names[0], names[-1])
-            self.whole[byte] = group.length, call(f"ICDGEN_WRITE_{row_macro(members[0])}", arguments)
+            arguments = (*source, f"&buffer[{byte}]", f"{len(names)}u", names[0], names[-1])
+            self.whole[byte] = group.length, call(f"ICDGEN_WRITE_{group.macro}", arguments)
             return
         macro = f"ICDGEN_JOIN_{group.macro}"
-        if group.count == 8:
+        if len(names) == 8:
             self.whole[byte] = 1, call(f"buffer[{byte}] = {macro}", (*source, *names))
             return
         name = f"flags_{byte}" if group.shift == 0 else f"flags_{byte}_{group.shift}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from icdgen.backends.c.bits import is_word, order
@@ -11,13 +11,14 @@ from icdgen.describe import FieldDescription
 LONG_ENOUGH = 8
 """From this many words on, a row is moved as one."""
 
+Members = tuple[FieldDescription, ...]
+
 
 @dataclass(frozen=True, slots=True)
 class Flags:
-    """``count`` members of the struct from ``first`` on are bits of ``byte``, from bit ``shift`` up (falling: down to it)."""
+    """Members that are bits of ``byte``, from bit ``shift`` up (falling: down to it)."""
 
-    first: int
-    count: int
+    members: Members
     byte: int
     shift: int
     falling: bool
@@ -25,35 +26,39 @@ class Flags:
     @property
     def macro(self) -> str:
         """The end of the macro's name."""
-        return f"{self.count}_FLAGS{'_FALLING' if self.falling else ''}"
+        return f"{len(self.members)}_FLAGS{'_FALLING' if self.falling else ''}"
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """``count`` members of the struct from ``first`` on are words of ``bits`` bits, in the frame from ``byte`` on."""
+    """Members that are words of one size, in the frame one after the other."""
 
-    first: int
-    count: int
-    byte: int
-    bits: int
+    members: Members
+
+    @property
+    def byte(self) -> int:
+        """The first byte of the frame."""
+        return self.members[0].model.at // 8
 
     @property
     def length(self) -> int:
         """Bytes of the frame."""
-        return self.count * self.bits // 8
+        return len(self.members) * self.members[0].model.bits // 8
+
+    @property
+    def macro(self) -> str:
+        """The end of the macro's name."""
+        return f"ROW_{order(self.members[0]).upper()}"
 
 
-def member_groups(fields: Sequence[FieldDescription]) -> dict[int, Flags | Row]:
-    """The groups of a message by the index of their first member; none overlap."""
-    found: dict[int, Flags | Row] = {}
+def in_groups(fields: Members) -> Iterator[Flags | Row | FieldDescription]:
+    """The fields of a message in order, those of a group as one."""
     positions = [_position(field) for field in fields]
     index = 0
     while index < len(fields):
-        group = _flags(positions, index) or _row(fields, index)
-        if group is not None:
-            found[index] = group
-        index += group.count if group else 1
-    return found
+        group = _flags(fields, positions, index) or _row(fields[index:])
+        yield group or fields[index]
+        index += len(group.members) if group else 1
 
 
 def _position(field: FieldDescription) -> tuple[int, int] | None:
@@ -63,7 +68,7 @@ def _position(field: FieldDescription) -> tuple[int, int] | None:
     return piece.byte, piece.shift
 
 
-def _flags(positions: Sequence[tuple[int, int] | None], first: int) -> Flags | None:
+def _flags(fields: Members, positions: Sequence[tuple[int, int] | None], first: int) -> Flags | None:
     start = positions[first]
     if start is None:
         return None
@@ -73,23 +78,16 @@ def _flags(positions: Sequence[tuple[int, int] | None], first: int) -> Flags | N
             last = shift + step * (count - 1)
             wanted = [(byte, shift + step * i) for i in range(count)]
             if 0 <= last <= 7 and list(positions[first : first + count]) == wanted:
-                return Flags(first, count, byte, min(shift, last), step < 0)
+                return Flags(fields[first : first + count], byte, min(shift, last), step < 0)
     return None
 
 
-def _row(fields: Sequence[FieldDescription], first: int) -> Row | None:
-    bits, start = fields[first].model.bits, fields[first].model.at
-    count = 0
-    for field in fields[first:]:
-        one = field.model
-        if not is_word(field) or one.bits != bits or one.at != start + count * bits or field.storage.bits != bits:
-            break
-        if field.byte_order != fields[first].byte_order:
+def _row(fields: Members) -> Row | None:
+    first, count = fields[0], 0
+    bits = first.model.bits
+    for field in fields:
+        is_next = field.model.bits == bits and field.model.at == first.model.at + count * bits
+        if not (is_next and is_word(field) and field.storage.bits == bits and field.byte_order == first.byte_order):
             break
         count += 1
-    return Row(first, count, start // 8, bits) if count >= LONG_ENOUGH else None
-
-
-def row_macro(first: FieldDescription) -> str:
-    """The end of the macro's name."""
-    return f"ROW_{order(first).upper()}"
+    return Row(fields[:count]) if count >= LONG_ENOUGH else None

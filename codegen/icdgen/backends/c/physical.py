@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.backends.c.types import cast
-from icdgen.describe import FieldDescription
+from icdgen.describe import FieldDescription, wholes
 from icdgen.describe.steps import Steps
 from icdgen.describe.storage import Storage
 
@@ -18,7 +17,7 @@ INT32, INT64 = (1 << 31) - 1, (1 << 63) - 1
 class Whole(NamedTuple):
     """Integer accessors: ``getter`` over ``{raw}``; ``setter``, the raw value of a ``value`` from ``least`` to ``most``."""
 
-    prefix: str  # "milli" | "micro"
+    per: int  # of the unit: 1000 | 1_000_000
     type: str  # "int32_t" | "int64_t"
     low: int  # of the getter, over all raw values that fit
     high: int
@@ -99,40 +98,27 @@ def _limit(value: int, storage: Storage) -> str:
 
 
 def _whole(steps: Steps, storage: Storage) -> Whole | None:
-    """In thousandths where every raw value gives a whole number of them, else in millionths, else None."""
-    for per, prefix in ((1000, "milli"), (1_000_000, "micro")):
-        factor, offset = Fraction(steps.p * per, steps.q), Fraction(steps.c * per, steps.q)
-        if factor.denominator == offset.denominator == 1:
-            return _parts(prefix, int(factor), int(offset), steps, storage)
-    return None
-
-
-def _parts(prefix: str, factor: int, offset: int, steps: Steps, storage: Storage) -> Whole | None:
+    """None where there are no whole numbers, or some step would overflow."""
+    found = wholes.whole(steps)
+    if found is None:
+        return None
+    factor, offset = found.factor, found.offset
     bits, most_of_type = (32, INT32) if _computable(storage, factor, offset, INT32) else (64, INT64)
-    ends = sorted((raw * factor + offset, raw) for raw in (steps.raw_min, steps.raw_max))
-    least, most = _accepted(abs(factor), *ends)
-    least, most = max(least, -most_of_type - 1), min(most, most_of_type)
+    least, most = max(found.least, -most_of_type - 1), min(found.most, most_of_type)
     differences = least - offset, most - offset
     if not (_computable(storage, factor, offset, most_of_type) and _within(INT64, *differences)):
         return None
     wide = 32 if bits == 32 and _within(INT32, *differences) else 64
     return Whole(
-        prefix=prefix,
+        per=found.per,
         type=f"int{bits}_t",
-        low=ends[0][0],
-        high=ends[1][0],
+        low=found.low,
+        high=found.high,
         getter=_whole_getter(factor, offset, bits, storage),
         least=None if least == -most_of_type - 1 else int64(least),
         most=None if most == most_of_type else int64(most),
         setter=_whole_setter(factor, offset, wide, storage),
     )
-
-
-def _accepted(size: int, low: tuple[int, int], high: tuple[int, int]) -> tuple[int, int]:
-    """The least and the most value whose nearest raw value (ties to even) there is, from the ends and their raw values."""
-    bottom, top = low[0] - Fraction(size, 2), high[0] + Fraction(size, 2)
-    least, most = -int(-bottom // 1), int(top // 1)
-    return least + (least == bottom and low[1] % 2), most - (most == top and high[1] % 2)
 
 
 def _whole_getter(factor: int, offset: int, bits: int, storage: Storage) -> str:

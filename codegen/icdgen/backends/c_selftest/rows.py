@@ -15,8 +15,8 @@ from icdgen.describe import FieldDescription, MessageDescription, NodeDescriptio
 from icdgen.describe.description import Direction
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
-from icdgen.vectors import MessageVectors, Row, make
 from icdgen.vectors.ids import worth_asking
+from icdgen.vectors.make import MessageVectors, Row, make
 from icdgen.vectors.patterns import values
 from icdgen.vectors.settings import NEVER
 
@@ -170,11 +170,10 @@ def _whole(field: FieldDescription) -> Accessors | None:
     whole = physical.scaled(field).whole if field.steps else None
     if whole is None or field.steps is None:
         return None
-    per = {"milli": 1000, "micro": 1_000_000}[whole.prefix]
     lines = []
     for raw in values(field.model):
         assert isinstance(raw, int)
-        exact = field.steps.physical(raw) * per
+        exact = field.steps.physical(raw) * whole.per
         assert exact.denominator == 1
         lines.append(f"{{{_unsigned(raw)}, {physical.int64(int(exact))}}},")
     return _accessors(field, whole_name(field, whole), whole.type, lines)

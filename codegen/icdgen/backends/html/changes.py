@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import re
-
 from icdgen.backends.html.relations import Relations
 from icdgen.diff import report
 from icdgen.diff.change import Change
 from icdgen.diff.inputs.side import Side
 from icdgen.diff.layers import ABOUT, LAYERS
 from icdgen.diff.reports.groups import Group, groups, notes
+from icdgen.diff.reports.html import LEGEND, coded, layouts
 from icdgen.icd.model import Enum, Message, Node
-
-_CODE = re.compile(r"`([^`]*)`")
-
-Words = list[tuple[str, bool]]  # parts of a sentence, and whether each is code
 
 
 def values(relations: Relations, previous: Side) -> dict[str, object]:
@@ -30,13 +25,9 @@ def values(relations: Relations, previous: Side) -> dict[str, object]:
             (one.question, one.verdict, [coded(line) for line in one.general], len(one.frames), one.total)
             for one in made.directions
         ],
+        "legend": LEGEND,
         "sections": [_section(relations, group) for group in groups(made.changes)],
     }
-
-
-def coded(text: str) -> Words:
-    """The text split at its back-ticks."""
-    return [(part, bool(number % 2)) for number, part in enumerate(_CODE.split(text)) if part]
 
 
 def _section(relations: Relations, group: Group) -> dict[str, object]:
@@ -44,6 +35,7 @@ def _section(relations: Relations, group: Group) -> dict[str, object]:
         "title": group.title,
         "about": group.about if group.about == "node" else f"{group.about} · {group.node}",
         "url": _url(relations, group.owner.new),
+        "drawing": layouts(group),
         "lines": [_line(change) for change in group.changes],
     }
 

@@ -57,6 +57,8 @@ def values(relations: Relations, node: Node, message: Message, render: Renderer)
 def _facts(relations: Relations, node: Node, message: Message) -> list[tuple[str, str, str]]:
     """Label, text, and where a link leads."""
     facts = [("Length", texts.count(message.length, "byte"), ""), ("Fields", str(len(message.fields)), "")]
+    if message.reserved:
+        facts.append(("Reserved", f"last {texts.count(message.reserved, 'byte')}", ""))
     if message.group:
         facts.append(("Group", message.group, ""))
     if message.telecommand_id is not None:

@@ -6,6 +6,7 @@ from icdgen.backends.html import examples, protocol, texts, wire
 from icdgen.backends.html.relations import Place, Relations, document, manual
 from icdgen.describe.errata import errata_of_message
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Erratum, Loggable, Message, Node
+from icdgen.icd.wire_ids import DEFAULT_BITS
 
 _KINDS = {TELECOMMAND: "Telecommands", TELEMETRY: "Telemetry", CONFIGURATION: "Configuration"}
 _CONFIDENCE = ("certain", "likely", "open")
@@ -74,6 +75,8 @@ def _facts(node: Node) -> list[tuple[str, str]]:
         facts.append(("Node type", str(node.node_type)))
     if node.interface_version is not None:
         facts.append(("Interface version", str(node.interface_version)))
+    if node.id_bits != DEFAULT_BITS:
+        facts.append(("Ids", f"{node.id_bits} bits"))
     firmware = dict(node.document).get("version")
     if firmware:
         facts.append(("Firmware", firmware))

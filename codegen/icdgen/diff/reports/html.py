@@ -57,7 +57,7 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
     import jinja2
 
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(shipped.templates() / "diff"),
+        loader=jinja2.FileSystemLoader([shipped.templates() / "diff", shipped.templates() / "html"]),
         autoescape=True,
         finalize=lambda value: printable(value) if type(value) is str else value,
         undefined=jinja2.StrictUndefined,
@@ -101,11 +101,11 @@ def _section(group: Group, number: int) -> Section:
     layers = [layer for layer in LAYERS if any(change.layer == layer for change in group.changes)]
     lines = [_line(change) for change in group.changes]
     about = f"{group.about}, {group.node}" if group.about != "node" else "node"
-    return Section(group.title, about, f"s{number}", " ".join(layers), lines, _drawing(group))
+    return Section(group.title, about, f"s{number}", " ".join(layers), lines, layouts(group))
 
 
-def _drawing(group: Group) -> Drawing | None:
-    """The layouts, where any bit of them changed its place or its sense."""
+def layouts(group: Group) -> Drawing | None:
+    """Both layouts of a message, where any bit of them changed its place or its sense."""
     owner = group.owner
     if not isinstance(owner, MessagePair):
         return None

@@ -59,8 +59,8 @@ class _Reader:
 
         steps = {
             events.ScalarEvent: self.scalar,
-            events.MappingStartEvent: self.open_mapping,
-            events.SequenceStartEvent: self.open_sequence,
+            events.MappingStartEvent: self.open,
+            events.SequenceStartEvent: self.open,
             events.MappingEndEvent: self.close,
             events.SequenceEndEvent: self.close,
         }
@@ -99,14 +99,10 @@ class _Reader:
         self.reached = max(self.reached, end)
         self.last, self.last_end = child, end
 
-    def open_mapping(self, event: Event) -> None:
-        self.open(event, True)
+    def open(self, event: Event) -> None:
+        from yaml.events import MappingStartEvent
 
-    def open_sequence(self, event: Event) -> None:
-        self.open(event, False)
-
-    def open(self, event: Event, mapping: bool) -> None:
-        branch = Branch(mapping, bool(event.flow_style), event.start_mark.column)
+        branch = Branch(isinstance(event, MappingStartEvent), bool(event.flow_style), event.start_mark.column)
         if not self.stack:
             self.root = branch
         else:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TypeVar
 
+from icdgen.icd.model import CONFIGURATION
 from icdgen.importer.document import Document, Heading, Spot, Table, Text, Trouble
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import around, grids, lists, messages
@@ -46,17 +47,20 @@ def survey(document: Document, profile: Profile) -> Survey:
     run, last = 1, -1
     sections: list[Heading] = []
     prose: list[str] = []
-    announced: list[tuple[Heading, Said]] = []
     used: set[str] = set()  # headings whose id a table has
+    bare = False  # whether no table stands below the last heading
     for block in document.blocks:
         if isinstance(block, Heading):
-            announced.append((block, around.read(Around(headings=[block.text]), profile)))
+            if bare and not _holds(sections[-1], block):
+                made.troubles += _without_table(sections, profile)
+            bare = True
             sections = [s for s in sections if _holds(s, block)] + [block]
             prose = []
         elif isinstance(block, Text):
             prose = [block.text, *prose][:NEAR]
         if not isinstance(block, Table):
             continue
+        bare = False
         if block.number is not None:
             if block.number <= last:
                 run += 1
@@ -80,19 +84,8 @@ def survey(document: Document, profile: Profile) -> Survey:
         made.found.append(Found(block, what, thing, run, titles))
         if what == UNKNOWN and not _is_repeated(block, made):
             made.troubles.append(_not_understood(block, around.read(about, profile)))
-    _without_table(announced, made)
+    made.troubles += _without_table(sections, profile) if bare else []
     return made
-
-
-def _without_table(announced: list[tuple[Heading, Said]], made: Survey) -> None:
-    """Says which headings give an id that no table has: of a message without a table, or whose table was not seen."""
-    known = {value for _, message in made.of(ReadMessage) for value in message.ids}
-    missed = {text for trouble in made.troubles if trouble.code == "IMP030" for text in trouble.message.split("`")}
-    for heading, said in announced:
-        if said.ids and said.name and said.id not in known and heading.text[:60] not in missed:
-            spot = Spot(heading.page, heading.line)
-            message = f"the heading `{heading.text[:80]}` gives an id, and no table below it was found"
-            made.troubles.append(Trouble("IMP030", message, spot, "look at the page"))
 
 
 def classify(
@@ -143,6 +136,21 @@ def _holds(outer: Heading, inner: Heading) -> bool:
 
 def _by_section(sections: tuple[str, ...], profile: Profile) -> str:
     return next((kind for title in reversed(sections) if (kind := kind_of(title, profile))), "")
+
+
+def _without_table(sections: list[Heading], profile: Profile) -> list[Trouble]:
+    """What is to be said of a heading below which no table stands, if it gives a message's name and id."""
+    *_, heading = sections
+    said = around.read(Around(headings=[heading.text]), profile)
+    kind = said.kind or _by_section(tuple(s.text for s in sections), profile) or profile.data["defaults"]["kind"]
+    if not (said.ids and said.name and kind):
+        return []
+    ids = f"set_id: {said.id}, get_id: {said.id}" if kind == CONFIGURATION else f"id: {said.id}"
+    return [Trouble(
+        "IMP039", f"the heading `{heading.text[:80]}` names a message, and no table follows; it was left out",
+        Spot(heading.page, heading.line),
+        f"if it is one without fields, add it to the ICD: `{{name: {said.name}, {ids}, kind: {kind}, length: 0}}`",
+    )]  # fmt: skip
 
 
 def _not_understood(table: Table, said: Said) -> Trouble:

@@ -1,0 +1,67 @@
+"""Physical values as whole numbers of thousandths or millionths of a unit, for programs that do without floating point."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import NamedTuple
+
+from icdgen.describe.steps import Steps
+from icdgen.icd.model import Field
+
+# Units that already carry a prefix: (a thousandth, a millionth). Empty where that has no name.
+_PREFIXED = {
+    "km": ("m", "mm"), "mm": ("um", "nm"), "km_per_s": ("m_per_s", "mm_per_s"), "ms": ("us", "ns"), "us": ("ns", ""),
+    "khz": ("hz", ""), "kg": ("g", "mg"), "ma": ("ua", "na"), "mv": ("uv", "nv"), "mw": ("uw", "nw"),
+    "mn": ("un", "nn"), "mn_m": ("un_m", "nn_m"), "mnms": ("unms", "nnms"), "ut": ("nt", ""), "kpa": ("pa", "mpa"),
+    "mah": ("uah", "nah"),
+}  # fmt: skip
+# Units that take a prefix. Hz does not: mhz is megahertz to most readers.
+_PREFIXABLE = frozenset(
+    """deg rad m s g n a v w j wh ah ohm t k c pa bar rpm n_m nms deg_per_s rad_per_s m_per_s deg_per_s2 rad_per_s2
+    m_per_s2 a_m2""".split()
+)
+
+
+class Whole(NamedTuple):
+    """value = raw*factor + offset, in ``1 / per`` of the unit."""
+
+    per: int  # 1000 | 1_000_000
+    factor: int
+    offset: int
+    low: int  # over all raw values that fit
+    high: int
+    least: int  # whose nearest raw value there is
+    most: int
+
+
+def whole(steps: Steps) -> Whole | None:
+    """In thousandths where every raw value gives a whole number of them, else in millionths, else None."""
+    for per in (1000, 1_000_000):
+        factor, offset = Fraction(steps.p * per, steps.q), Fraction(steps.c * per, steps.q)
+        if factor.denominator == offset.denominator == 1:
+            return _whole(per, int(factor), int(offset), steps)
+    return None
+
+
+def _whole(per: int, factor: int, offset: int, steps: Steps) -> Whole:
+    low, high = sorted((raw * factor + offset, raw) for raw in (steps.raw_min, steps.raw_max))
+    bottom, top = low[0] - Fraction(abs(factor), 2), high[0] + Fraction(abs(factor), 2)
+    least, most = -int(-bottom // 1), int(top // 1)
+    least += least == bottom and low[1] % 2  # ties go to the even raw value
+    most -= most == top and high[1] % 2
+    return Whole(per, factor, offset, low[0], high[0], least, most)
+
+
+def part_of_unit(field: Field, per: int) -> tuple[str, str]:
+    """The end of an accessor's name, and the unit in words: ``mdeg`` and ``thousandths of deg``."""
+    prefix, part = ("milli", "thousandths") if per == 1000 else ("micro", "millionths")
+    if field.unit is None:
+        return prefix, part
+    unit = field.unit.identifier
+    words = f"{part} of {field.unit.symbol}"
+    if unit in _PREFIXED:
+        shifted = _PREFIXED[unit][per > 1000]
+        return (shifted or f"{prefix}_{unit}"), words
+    if unit in _PREFIXABLE:
+        return f"{'m' if per == 1000 else 'u'}{unit}", words
+    return f"{prefix}_{unit}", words

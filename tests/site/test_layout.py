@@ -1,0 +1,119 @@
+"""Finding one's way: the sidebar, what stays in sight, what is folded, marked and copied."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.site.pages import KINDS
+from tests.site.test_browser import opened
+
+DESK, PHONE = {"width": 1440, "height": 900}, {"width": 390, "height": 844}
+
+
+def test_all_messages_of_the_node_stand_beside_a_page(browser, site, shipped):
+    node = shipped.node("cubeacp")
+    with opened(browser, site.as_uri() + "/", KINDS["message"], viewport=DESK) as page:
+        assert page.is_visible("#sidebar") and page.inner_text("#sidebar li [aria-current]") == "Current ADCS State"
+        listed = page.locator("#sidebar li a").all_text_contents()
+        assert {message.name for message in shipped.messages_of(node)} <= set(listed)
+        page.click("#sidebar a:text-is('Estimated Attitude Angles')")
+        assert page.url.endswith("estimated_attitude_angles.html")
+
+
+def test_on_a_phone_it_is_a_drawer_which_needs_no_script(browser, site):
+    with opened(browser, site.as_uri() + "/", KINDS["message"], viewport=PHONE, java_script_enabled=False) as page:
+        assert not page.is_visible("#sidebar")
+        page.click(".drawer")
+        assert page.is_visible("#sidebar") and page.is_visible("#sidebar .everywhere a:text-is('CubeWheel')")
+        page.click("#sidebar a:text-is('Errata')")
+        assert page.url.endswith("errata.html")
+
+
+def test_section_links_and_heads_of_tables_stay_in_sight(browser, site):
+    at = "(s) => document.querySelector(s).getBoundingClientRect().top"
+    with opened(browser, site.as_uri() + "/", KINDS["composite"], viewport=DESK) as page:
+        row = page.locator(".fields tbody tr").nth(3)
+        row.evaluate("(one) => scrollTo(0, one.getBoundingClientRect().top + scrollY - 250)")
+        assert 0 <= page.evaluate(at, ".local") < 80 and 80 <= page.evaluate(at, ".fields thead th") < 140
+
+
+@pytest.mark.parametrize(
+    ("address", "marked"),
+    [
+        ("cubeacp/estimated_attitude_angles.html#field-estimated_pitch_angle", "tr:has(#bit-16) > th"),
+        ("cubeacp/estimated_attitude_angles.html#bit-16", "tr:has(#bit-16) > th"),
+        ("cubeacp/index.html#telemetry-146", "tr:has(#telemetry-146) > th"),
+        ("cubeacp/enum-con_mode_select.html#value-3", "tr:has(#value-3) > th"),
+        ("cubeacp/enum-con_mode_select.html#member-no_control", "#member-no_control > th"),
+        ("cubeacp/current_adcs_state.html#field-cubesense1_enabled", "#field-cubesense1_enabled"),
+        ("cubeacp/adcs_configuration.html#field-css_threshold", "tr#field-css_threshold > th"),
+        ("units.html#unit-deg", "#unit-deg"),
+        ("errata.html#ACP-066", "#ACP-066 > summary"),
+    ],
+)  # fmt: skip
+def test_what_a_link_leads_to_is_in_sight_and_marked(browser, site, address, marked):
+    with opened(browser, site.as_uri() + "/", address, viewport=DESK) as page:
+        lit = page.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--lit').trim()")
+        colour = page.evaluate(
+            """([selector, lit]) => {
+                const probe = document.createElement("i");
+                probe.style.setProperty("background-color", lit);
+                document.body.append(probe);
+                const [is, wanted] = [document.querySelector(selector), probe].map((one) => getComputedStyle(one).backgroundColor);
+                probe.remove();
+                return [is, wanted];
+            }""",
+            [marked, lit],
+        )
+        assert colour[0] == colour[1]
+        assert page.locator(marked).first.is_visible()
+        assert 0 < page.locator(marked).first.bounding_box()["y"] < DESK["height"]
+
+
+def test_errata_are_filtered_by_words_node_message_and_confidence(browser, site):
+    with opened(browser, site.as_uri() + "/", KINDS["errata"], viewport=DESK) as page:
+        entries = page.locator("details.erratum:visible")
+        page.fill("[name=message]", "Estimated Attitude Angles")
+        some = entries.count()
+        assert 0 < some < 40 and "ACP-066" in page.inner_text("main")
+        page.select_option("[name=confidence]", "open")
+        assert 0 < entries.count() <= some
+        page.select_option("[name=node]", "cubewheel")
+        assert entries.count() == 0
+        page.fill("[name=message]", "")
+        page.select_option("[name=confidence]", "")
+        assert entries.count() > 0
+
+
+def test_flags_stand_in_a_grid_with_their_values(browser, site):
+    with opened(browser, site.as_uri() + "/", KINDS["message"] + "#try=0000ffffffff", viewport=DESK) as page:
+        boxes = page.locator("#decoder .flag-grid input")
+        assert boxes.count() == 36 and sum(boxes.nth(n).is_checked() for n in range(36)) == 32
+        assert page.locator("#decoder .flag-grid").bounding_box()["height"] < 500
+
+
+def test_bytes_code_and_names_are_copied(browser, served):
+    context = browser.new_context(permissions=["clipboard-read", "clipboard-write"])
+    page = context.new_page()
+    page.goto(served + KINDS["numbers"])
+    for selector, expected in {
+        ".names dd >> nth=0": "cubeacp_estimated_attitude_angles_t",
+        ".buses dd >> nth=0": "1F 7F 92 1F FF",
+        ".snippet.c": '#include "cubeacp.h"',
+    }.items():
+        frame = page.locator(selector)
+        button = (frame.locator("..") if selector == ".snippet.c" else frame).locator("button.copy")
+        button.click()
+        page.wait_for_selector(".copy.done")
+        assert page.evaluate("navigator.clipboard.readText()").startswith(expected)
+        page.wait_for_selector(".copy.done", state="detached")
+    context.close()
+
+
+def test_results_of_the_search_stay_on_the_screen_of_a_phone(browser, site):
+    with opened(browser, site.as_uri() + "/", KINDS["home"], viewport=PHONE) as page:
+        page.fill("#search", "attitude")
+        page.wait_for_selector("#results a")
+        box = page.locator("#results").bounding_box()
+        assert box["x"] >= 0 and box["x"] + box["width"] <= 390 and box["y"] + box["height"] <= 844
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
