@@ -25,10 +25,11 @@ from pathlib import Path
 ROOT = Path(__file__).parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "codegen")]
 
-from icdgen import vectors  # noqa: E402
 from icdgen.diff import report  # noqa: E402
 from icdgen.diff.inputs.side import Side  # noqa: E402
 from icdgen.loading import load  # noqa: E402
+from icdgen.vectors.make import make  # noqa: E402
+from icdgen.vectors.write import text  # noqa: E402
 
 PER_MESSAGE = 40
 PER_NODE = 250  # messages: an id is a byte
@@ -116,7 +117,7 @@ def main() -> None:
                 print(f"diff, {fields} fields: {spent:.2f} s, {len(made[0].changes)} changes", flush=True)
             if options.vectors or everything:
                 icd = sides[0].icd
-                spent = seconds(lambda icd=icd: [vectors.text(vectors.make(icd, node)) for node in icd.nodes])
+                spent = seconds(lambda icd=icd: [text(make(icd, node)) for node in icd.nodes])
                 print(f"vectors, {fields} fields: {spent:.2f} s, {spent / fields * 1e3:.2f} ms a field", flush=True)
 
 

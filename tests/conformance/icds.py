@@ -6,9 +6,10 @@ import json
 from functools import cache
 from pathlib import Path
 
-from icdgen import vectors
 from icdgen.icd.model import Icd
 from icdgen.loading import load
+from icdgen.vectors.make import make
+from icdgen.vectors.write import text
 from tests.conformance import ROOT
 
 SHIPPED = ROOT / "icd"
@@ -40,7 +41,7 @@ def read(*paths: Path) -> Icd:
 
 def vectors_of(icd: Icd) -> dict[str, dict]:
     """The content of each node's vector file, made now."""
-    return {node.name: json.loads(vectors.text(vectors.make(icd, node))) for node in icd.nodes}
+    return {node.name: json.loads(text(make(icd, node))) for node in icd.nodes}
 
 
 def read_vectors(folder: Path) -> dict[str, dict]:

@@ -13,7 +13,7 @@ from icdgen.diff import report, reports
 from icdgen.diff.inputs import shown
 from icdgen.diff.inputs.side import Side, from_paths
 from icdgen.loading import load
-from icdgen.show import to_json
+from icdgen.show.machine import to_json
 from tests.conftest import ROOT
 
 VALUES = [

@@ -12,7 +12,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from icdgen.icd.model import Icd
-from icdgen.vectors import make, protocol
+from icdgen.vectors import protocol
+from icdgen.vectors.make import make
 from tests.conformance.build import BuildError, cache_folder, execute, generated
 from tests.conformance.icds import icd_of
 from tests.conformance.languages import Language

@@ -11,7 +11,7 @@ import pytest
 import icdgen.shipped
 from icdgen.icd.model import Icd
 from icdgen.loading import load
-from icdgen.show import SCHEMA, to_json
+from icdgen.show.machine import SCHEMA, to_json
 
 BASE = """\
 icdgen: 1

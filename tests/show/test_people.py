@@ -7,7 +7,7 @@ from collections import Counter
 import pytest
 
 from icdgen.loading import load
-from icdgen.show import to_text
+from icdgen.show.people import to_text
 from icdgen.values.errors import NotFound
 from tests.show.test_machine import BASE, OVERLAY, TOP
 

@@ -13,11 +13,11 @@ import jsonschema_rs
 import pytest
 
 import icdgen
-from icdgen import vectors
 from icdgen.icd.formula import Scale
 from icdgen.icd.model import Field
+from icdgen.vectors.make import make
 from icdgen.vectors.settings import settings
-from icdgen.vectors.write import decimal
+from icdgen.vectors.write import decimal, text
 from tests.conformance import odd
 from tests.conformance.icds import icd_of, vectors_of
 
@@ -53,8 +53,8 @@ def test_files_follow_the_published_schema(icd, odd_icd, files):
 
 
 def test_the_text_is_the_same_on_every_run_and_small_enough_to_commit(icd):
-    texts = [vectors.text(vectors.make(icd, node)) for node in icd.nodes]
-    assert texts == [vectors.text(vectors.make(icd, node)) for node in icd.nodes]
+    texts = [text(make(icd, node)) for node in icd.nodes]
+    assert texts == [text(make(icd, node)) for node in icd.nodes]
     assert sum(map(len, texts)) < 2_000_000
 
 

@@ -19,14 +19,15 @@ class VectorsBackend:
 
     def files(self, icd: Icd, render: object) -> Iterator[tuple[PurePosixPath, str]]:
         """``<node>.json`` for each node, in their order, and ``protocol.json`` if a node has a protocol."""
-        from icdgen import vectors
         from icdgen.vectors import protocol
+        from icdgen.vectors.make import make
+        from icdgen.vectors.write import text
 
         for node in icd.nodes:
-            yield PurePosixPath(f"{node.name}.json"), vectors.text(vectors.make(icd, node))
-        text = protocol.text(icd)
-        if text:
-            yield PurePosixPath(f"{FILE}.json"), text
+            yield PurePosixPath(f"{node.name}.json"), text(make(icd, node))
+        asked = protocol.text(icd)
+        if asked:
+            yield PurePosixPath(f"{FILE}.json"), asked
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """Only those of the files: JSON strings may hold any name."""

@@ -24,14 +24,15 @@ def show(node: str | None, item: str | None, icds: tuple[Path, ...], kind: str |
 
     --format json prints everything, in a stable form for programs (schema: show.schema.json in the package).
     """
-    from icdgen import show as forms
     from icdgen import tables
+    from icdgen.show.machine import to_json
+    from icdgen.show.people import to_text
 
     icd = load_or_exit(icds).icd
     if form == "json":
         if node is not None:
             raise click.UsageError("--format json shows everything: leave NODE out")
-        click.echo(json.dumps(forms.to_json(icd), indent=1))
+        click.echo(json.dumps(to_json(icd), indent=1))
         return
     selection = [word for word in (node, item) if word is not None]
-    click.echo(forms.to_text(icd, selection, tables.width_of(sys.stdout), kind), nl=False)
+    click.echo(to_text(icd, selection, tables.width_of(sys.stdout), kind), nl=False)

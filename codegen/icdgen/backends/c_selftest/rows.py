@@ -15,8 +15,8 @@ from icdgen.describe import FieldDescription, MessageDescription, NodeDescriptio
 from icdgen.describe.description import Direction
 from icdgen.icd.model import Icd
 from icdgen.render import Renderer
-from icdgen.vectors import MessageVectors, Row, make
 from icdgen.vectors.ids import worth_asking
+from icdgen.vectors.make import MessageVectors, Row, make
 from icdgen.vectors.patterns import values
 from icdgen.vectors.settings import NEVER
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from icdgen import __version__, show
+from icdgen import __version__
 from icdgen.backends.html import (
     drawing,
     enums,
@@ -25,6 +25,7 @@ from icdgen.backends.html import (
 from icdgen.backends.html.links import CHANGES, ERRATA, HOME, UNITS
 from icdgen.backends.html.relations import Relations
 from icdgen.icd.model import Icd
+from icdgen.show.machine import to_json
 
 if TYPE_CHECKING:
     from icdgen.diff.inputs.side import Side
@@ -92,7 +93,7 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
     yield PurePosixPath("highlight.css"), render("highlight.css.j2", most=most)
     yield PurePosixPath("search-index.js"), search.script(relations)
     yield PurePosixPath("frame-index.js"), recognition.script(relations)
-    yield PurePosixPath("icd.json"), json.dumps(show.to_json(icd), indent=1) + "\n"
+    yield PurePosixPath("icd.json"), json.dumps(to_json(icd), indent=1) + "\n"
     yield PurePosixPath("llms.txt"), llms.text(relations, compared)
 
 
