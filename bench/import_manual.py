@@ -18,8 +18,8 @@ from pathlib import Path
 
 STAGES = {
     "pdfminer: content streams": ("pdfinterp.py", "execute"),
-    "pdfplumber: objects": ("page.py", "iter_layout_objects"),
     "pdfplumber: words": ("text.py", "extract_words"),
+    "pages to words and rules, those two included": ("extract.py", "extract"),
     "pages to pieces of tables": ("flow.py", "items"),
     "pieces to tables": ("tables.py", "run"),
     "tables to messages": ("survey.py", "survey"),
@@ -76,8 +76,9 @@ def _resident(pid: int) -> int:
 
 def where(manual: Path, profile: str | None) -> None:
     """The share of each stage, in one process, under a profiler."""
-    from icdgen.importer import emit, run
+    from icdgen.icd.fmt import emit
     from icdgen.importer import profile as profiles
+    from icdgen.importer import run
 
     words = profiles.load(profiles.find(profile))
     profiler = cProfile.Profile()

@@ -147,3 +147,17 @@ def test_a_group_heading_that_ends_a_page_below_the_rules_of_its_list_is_one(tmp
     sheet.page()
     sheet.canvas.save()
     assert groups(tmp_path / "pump.pdf") == {"Pump Setting": None, "Valve Setting": "Access"}
+
+
+def test_a_table_whose_first_cell_is_empty_is_read_or_reported(tmp_path):
+    sheet = Sheet(tmp_path / "pump.pdf")
+    formats(sheet, 60)
+    for y, row in ((250, ("", "Shade", "Hue")), (262, ("", "dark", "red"))):
+        sheet.line(y, *row)
+        sheet.across(y - 9, 36, 236)
+    sheet.across(265, 36, 236)
+    sheet.down(241, 265, 36, 86, 136, 236)
+    sheet.page()
+    sheet.canvas.save()
+    result, _ = imported(tmp_path / "pump.pdf")
+    assert [t.message for t in result.troubles if t.code == "IMP030" and "`Shade | Hue`" in t.message]

@@ -11,16 +11,20 @@ from icdgen.importer.pages.extract import Page, Word, extract
 from icdgen.importer.reading import pdf
 from tests.importer.compare import differences
 from tests.importer.manuals import browser
+from tests.importer.manuals.typeset import TYPESET
 from tests.importer.manuals.wild import UNSEEN, WILD
 
-LAYOUTS = WILD | UNSEEN
-BY_BROWSER = ("prose", "ranges", "frames")
+LAYOUTS = WILD | UNSEEN | TYPESET
+BY_BROWSER = ("prose", "ranges", "frames", "sheet")
+BY_TYPST = ("article", "two columns")
 HEADS = {"Offset", "Size", "Bits", "Type", "Unit", "Scale", "Field", "Name", "Byte", "Position"}
 
 
 def drawn(layout: str, path):
     if layout in BY_BROWSER and browser.program() is None:
         pytest.skip("Chromium is not at hand")
+    if layout in BY_TYPST:
+        pytest.importorskip("typst")
     LAYOUTS[layout].draw(path)
     return path
 
@@ -72,8 +76,8 @@ def test_a_spoilt_cell_is_a_finding_on_its_page_wherever_the_icd_differs(layout,
     assert silent == []
 
 
-# What differs with the profile that --explore proposes, unchanged. `bit tables` needs a pattern for its headings.
-PROPOSED = {layout: 3 if layout == "bit tables" else 0 for layout in LAYOUTS}
+# What differs with the profile that --explore proposes, unchanged. Two need a pattern for their headings.
+PROPOSED = {layout: 3 if layout in ("bit tables", "sheet") else 0 for layout in LAYOUTS}
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)

@@ -7,14 +7,17 @@ import pytest
 from icdgen.importer import profile, run
 from tests.importer.compare import differences
 from tests.importer.manuals import browser
+from tests.importer.manuals.typeset import TYPESET
 from tests.importer.manuals.wild import UNSEEN, WILD
 
 
-@pytest.mark.parametrize("layout", [*WILD, *UNSEEN])
+@pytest.mark.parametrize("layout", [*WILD, *UNSEEN, *TYPESET])
 def test_a_document_in_the_wild_comes_back(layout, tmp_path):
-    wild = (WILD | UNSEEN)[layout]
-    if browser.program() is None and layout in ("prose", "ranges", "frames"):
+    wild = (WILD | UNSEEN | TYPESET)[layout]
+    if browser.program() is None and layout in ("prose", "ranges", "frames", "sheet"):
         pytest.skip("Chromium is not at hand")
+    if layout in ("article", "two columns"):
+        pytest.importorskip("typst")
     wild.draw(tmp_path / "motor.pdf")
     words = None
     if wild.profile:

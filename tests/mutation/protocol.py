@@ -15,11 +15,11 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from icdgen.icd.model import Icd, Node
+from icdgen.icd.model import Icd, Message, Node
 from icdgen.loading import load
 from icdgen.protocol import facts
 from tests.conformance.build import build
@@ -33,6 +33,7 @@ from tests.mutation.measure import LANGUAGES
 
 REFERENCE = "reference"
 OUTCOMES = ("refused", "killed", "same", "survived")
+TOGETHER = 40  # mutants of one build
 AT_ONCE = 50  # cases that are asked of a mutant before its answers are looked at
 
 
@@ -164,7 +165,16 @@ def measure(icd: Icd, chosen: list[Mutant], languages: list[str], folder: Path) 
 
 def _facts(icd: Icd, node: Node) -> object:
     """The facts that code is made from, but for the node that they are of, and for remarks."""
-    return replace(facts.of(icd, node), node=icd.nodes[0], assumptions=())
+    return _values(replace(facts.of(icd, node), node=icd.nodes[0], assumptions=()))
+
+
+def _values(known: Any) -> object:
+    """Facts as values that can be compared; nodes and messages are themselves."""
+    if is_dataclass(known) and not isinstance(known, Node | Message):
+        return {one.name: _values(getattr(known, one.name)) for one in fields(known)}
+    if isinstance(known, dict):
+        return {key: _values(value) for key, value in known.items()}
+    return [_values(value) for value in known] if isinstance(known, tuple) else known
 
 
 def _kills(testee: Answering, cases: list[dict[str, Any]], name: str) -> bool:
@@ -203,7 +213,9 @@ def main(arguments: list[str] | None = None) -> int:
     if options.sample is not None:
         chosen = random.Random(0).sample(chosen, min(options.sample, len(chosen)))
     with tempfile.TemporaryDirectory() as folder:
-        found = measure(icd, chosen, languages, Path(folder))
+        found: dict[Mutant, dict[str, str]] = {}
+        for start in range(0, len(chosen), TOGETHER):
+            found |= measure(icd, chosen[start : start + TOGETHER], languages, Path(folder))
     print(table(found, languages))
     return int(any("survived" in ends.values() for ends in found.values()))
 

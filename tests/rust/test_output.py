@@ -113,4 +113,4 @@ def test_what_clashes_in_rust_is_announced_in_one_scope(tmp_path):
         for one in backends.get("rust").identifiers(harness.read(path))
         if one.text in backends.get("rust").reserved
     }
-    assert words == {"field `Type` of `Twins`", "member `Self` of `Words`"}
+    assert words == {"member `Self` of `Words`"}

@@ -21,12 +21,8 @@ class FieldDescription(Named[Field]):
     """A field of ``message``."""
 
     def __init__(self, field: Field, message: MessageDescription, enum: EnumDescription | None) -> None:
-        super().__init__(field, message.node.vocabulary)
+        super().__init__(field, message.node.vocabulary, f"field `{field.name}` of `{message.model.name}`")
         self.message, self.enum = message, enum
-
-    @property
-    def owner(self) -> str:
-        return f"field `{self.model.name}` of `{self.message.model.name}`"
 
     @cached_property
     def storage(self) -> Storage:
@@ -100,12 +96,8 @@ class MessageDescription(Named[Message]):
     """A message that ``node`` declares."""
 
     def __init__(self, description: Description, message: Message, node: Node) -> None:
-        super().__init__(message, node.vocabulary)
+        super().__init__(message, node.vocabulary, f"message `{message.name}`")
         self._description, self.node = description, node
-
-    @property
-    def owner(self) -> str:
-        return f"message `{self.model.name}`"
 
     @cached_property
     def fields(self) -> tuple[FieldDescription, ...]:

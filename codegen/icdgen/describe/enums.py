@@ -29,12 +29,8 @@ class EnumDescription(Named[Enum]):
     """An enumeration of ``node``; ``storage`` holds every value of it, named or not."""
 
     def __init__(self, enum: Enum, node: Node, bits: int) -> None:
-        super().__init__(enum, node.vocabulary)
+        super().__init__(enum, node.vocabulary, f"enumeration `{enum.name}`")
         self.node, self.storage = node, Storage(holding(bits))
-
-    @property
-    def owner(self) -> str:
-        return f"enumeration `{self.model.name}`"
 
     @cached_property
     def members(self) -> tuple[MemberDescription, ...]:
@@ -54,12 +50,7 @@ class MemberDescription(Named[Member]):
     """A value of an enumeration."""
 
     def __init__(self, member: Member, enum: EnumDescription) -> None:
-        super().__init__(member, enum.node.vocabulary)
-        self._enum = enum
-
-    @property
-    def owner(self) -> str:
-        return f"member `{self.model.name}` of `{self._enum.model.name}`"
+        super().__init__(member, enum.node.vocabulary, f"member `{member.name}` of `{enum.model.name}`")
 
     @cached_property
     def comment(self) -> Comment:

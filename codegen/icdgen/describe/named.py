@@ -12,17 +12,16 @@ Model = TypeVar("Model", Message, Field, Enum, Member)
 
 
 class Named(Generic[Model]):
-    """Something of the ICD (``model``). ``words`` are those of its identifier, ``name`` is them in snake case."""
+    """Something of the ICD (``model``). ``words`` are those of its identifier, ``name`` is them in snake case.
 
-    def __init__(self, model: Model, vocabulary: tuple[str, ...]) -> None:
+    ``owner`` is what a finding calls it.
+    """
+
+    def __init__(self, model: Model, vocabulary: tuple[str, ...], owner: str) -> None:
         self.model: Model = model
+        self.owner = owner
         self.words = naming.words(model.identifier or model.name, vocabulary)
         self.name = naming.snake(self.words)
-
-    @property
-    def owner(self) -> str:
-        """What a finding calls it."""
-        raise NotImplementedError
 
     def identifier(self, scope: str, name: str) -> Identifier:
         """A name that generated code declares for it."""

@@ -221,11 +221,22 @@ def identify(known: Facts, request: Request) -> dict[str, Any]:
     return {**found, "matches": matches}
 
 
+def link_data(known: Facts, request: Request) -> dict[str, Any]:
+    """Facts that nothing but a user's own code reads."""
+    download = known.files.procedures.get("download") if known.files else None
+    return {
+        "boot_ms": known.boot_ms,
+        "log_file_type": known.log_file.file_type if known.log_file else None,
+        "index_file_type": known.index.file_type if known.index else None,
+        "index_counter": download.index_counter if download else None,
+    }
+
+
 OPS: dict[str, Callable[[Facts, Request], dict[str, Any]]] = {
     op.__name__: op
     for op in (
         crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
         log_encode, log_message_decode, log_message_encode, dos_time, hole_map, index_decode, index_encode, identify,
-        scripts.client, scripts.file,
+        link_data, scripts.client, scripts.file,
     )
 }  # fmt: skip

@@ -55,6 +55,7 @@ def text(icd: Icd) -> str | None:
 
 def _requests(known: Facts) -> Iterator[tuple[str, dict[str, Any]]]:
     source = random.Random(known.node.name)
+    yield "facts that nothing but a user's own code reads", {"op": "link_data"}
     yield from streams.checksums(known, source)
     if known.framing:
         yield from streams.encoded(known, source)

@@ -461,6 +461,7 @@ static inline const icd_link_t *bootloader_link(void)
         &framing,
         &acknowledge,
         87, /* I2C address */
+        5000, /* boot time in ms */
         &polled,
         &can,
         NULL,

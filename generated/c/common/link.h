@@ -391,6 +391,7 @@ static inline const icd_link_t *common_link(void)
         &framing,
         &acknowledge,
         87, /* I2C address */
+        5000, /* boot time in ms */
         &polled,
         &can,
         NULL,

@@ -16,6 +16,7 @@ CAN_BYTES = 8  # of a classic CAN frame
 MOST = (1 << 32) - 1
 DATE = ("year", "month", "day", "hour", "minute", "second")
 ENTRY = ("type", "counter", "checksum", "size", "time")
+USERS = ("boot_ms", "log_file_type", "index_file_type", "index_counter")
 TEXTS = {"bytes", "mask", "meta", "write", "kind", "reason", "result", "error"}
 
 
@@ -173,6 +174,11 @@ def identify(to: Asking, request: Request) -> Answer:
     return {**facts, "matches": bool(facts["matches"])}
 
 
+def link_data(to: Asking, request: Request) -> Answer:
+    known = typed(to.ask("link_data").facts)
+    return {key: known.get(key) for key in USERS}
+
+
 def _joined(reply: Reply) -> Answer:
     """Bytes that may come in pieces."""
     return {"bytes": "".join(items(reply.facts["bytes"]))}
@@ -187,5 +193,6 @@ OPS: dict[str, Callable[[Asking, Request], Answer]] = {
     for op in (
         crc8, crc16, uart_encode, uart_decode, uart_events, can_split, can_join, i2c_request, i2c_reply, log_decode,
         log_encode, log_message_decode, log_message_encode, dos_time, hole_map, index_decode, index_encode, identify,
+        link_data,
     )
 }  # fmt: skip

@@ -96,6 +96,7 @@ class _Tables:
             Row(self.part("framing", known.framing, "uart.framing")),
             Row(self.part("acknowledge", known.acknowledge, "uart.acknowledge")),
             Row(or_none(known.i2c_address), "I2C address"),
+            Row(or_none(known.boot_ms), "boot time in ms"),
             Row(self.named_step("polled", link.polled)),
             Row(self.can()),
             Row(self.checksum()),

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 FOLDER = "icdgen-docs"  # no node can be called so
 HOME = f"{FOLDER}/index.html"
+_OF_EVERY_PAGE = ("content", "sidebar", "search", "results", "theme")  # ids that headings cannot have
 _LONG = 12_000  # characters of a page whose sections are folded
 
 
@@ -84,7 +85,7 @@ def _page(path: Path) -> Page:
     reader = MarkdownIt("commonmark", {"html": False}).enable(["table", "strikethrough"])
     tokens = reader.parse(path.read_text("utf-8"))
     page = Page(path.stem, "")
-    taken: set[str] = set()
+    taken = set(_OF_EVERY_PAGE)
     for number, token in enumerate(tokens):
         if token.type == "heading_open":
             title = _plain(tokens[number + 1])

@@ -61,9 +61,11 @@ def _parts(table: Table, profile: Profile) -> list[Table]:
         return []
     titles = [squeezed(cell) for cell in table.head[0].cells]
     starts = [index for index, title in enumerate(titles) if title and title == titles[0]]
+    if len(starts) < 2:
+        return []
     parts = [titles[a:b] for a, b in zip(starts, [*starts[1:], len(titles)], strict=True)]
-    width = len(parts[-1]) if parts else 0
-    if len(parts) < 2 or any(part[:width] != parts[-1] or any(part[width:]) for part in parts):
+    width = len(parts[-1])
+    if any(part[:width] != parts[-1] or any(part[width:]) for part in parts):
         return []
     made = []
     for start in starts:

@@ -42,9 +42,15 @@ def find(lines: list[Line], profile: Profile, loose: bool = True) -> Columns | N
     if best is None and loose:
         for cells in filter(None, (_in_one_line(lines[0], profile), _clustered(lines[:1]))):
             header = headings.match([_text(cell) for cell in cells], profile, loose=True)
-            if header and header.kind == "fields" and all(header.roles) and header.titles[0][:1].isupper():
+            if header and header.kind == "fields" and _is_sure(header):
                 return Columns(header, [(min(w.x0 for w in cell), max(w.x1 for w in cell)) for cell in cells], 1)
     return best
+
+
+def _is_sure(header: Header) -> bool:
+    """Whether headings without offsets are no line of prose: all of them are known, or all but one of four or more."""
+    known = sum(map(bool, header.roles))
+    return header.titles[0][:1].isupper() and (known == len(header.roles) or known == len(header.roles) - 1 >= 3)
 
 
 def _known(header: Header) -> int:

@@ -10,7 +10,7 @@ from typing import Any
 
 from icdgen.importer import headings, labels
 from icdgen.importer.document import Box
-from icdgen.importer.pages import columns, furniture
+from icdgen.importer.pages import columns, furniture, gutter
 from icdgen.importer.pages.bands import Band, is_key
 from icdgen.importer.pages.columns import Columns
 from icdgen.importer.pages.extract import Page
@@ -78,7 +78,9 @@ def items(pages: list[Page], profile: Profile) -> list[Item]:
     made: list[Item] = []
     flow = _Flow(profile, body)
     for page in pages:
-        made += flow.page(page, ruled[page.number], kept[page.number])
+        parts = gutter.parts(page, ruled[page.number], kept[page.number])
+        for regions_of, lines_of in parts:
+            made += flow.page(page, regions_of, lines_of)
     return made
 
 

@@ -14,7 +14,7 @@ from icdgen.importer.understand.counting import Extent, Units
 from icdgen.importer.understand.model import ReadField
 from icdgen.importer.understand.rows import Entry, entries
 from icdgen.importer.understand.types import Type
-from icdgen.importer.words import grows, number, tidy_unit
+from icdgen.importer.words import folded, grows, number, tidy_unit
 
 MOST_BITS = 64  # of a number
 _NONE = ("", "-", "–", "n/a", "na", "none")
@@ -88,7 +88,10 @@ def read(table: Table, profile: Profile, length: int | None, troubles: list[Trou
         start = at if implicit else (line.at or 0) * (line.units[0] or units.at) + _within(line, header)
         made += _fields(line, start, bits, table, profile, troubles)
         at = start + bits
-    return _mirrored(made, length, table, profile, troubles) if is_register else made
+    if not is_register:
+        return made
+    made = [one for one in made if folded(one.name) not in profile.reserved]  # as in grids
+    return _mirrored(made, length, table, profile, troubles)
 
 
 def _falls(spans: list[tuple[int | None, int]]) -> bool:

@@ -4,13 +4,6 @@
 
 /* ---- the client ------------------------------------------------------------------------------------------------------- */
 
-static void put_known(const char *key, int64_t number)
-{
-    if (number >= 0) {
-        put_signed(key, number);
-    }
-}
-
 static void on_event(void *context, const icd_event_t *event)
 {
     static const char *const reasons[] = {"", "none", "unknown_id", "length", "parameter", "checksum"};

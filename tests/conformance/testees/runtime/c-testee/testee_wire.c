@@ -45,6 +45,24 @@ static void crc16(void)
     }
 }
 
+void put_known(const char *key, int64_t number)
+{
+    if (number >= 0) {
+        put_signed(key, number);
+    }
+}
+
+static void link_data(void)
+{
+    const icd_link_t *link = next_link();
+    if (answers(link != NULL ? ICD_OK : ICD_ERROR_UNSUPPORTED)) {
+        put_known("boot_ms", link->boot_ms);
+        put_known("log_file_type", link->log_file != NULL ? link->log_file->file_type : -1);
+        put_known("index_file_type", link->index != NULL ? link->index->file_type : -1);
+        put_known("index_counter", link->download != NULL ? link->download->index_counter : -1);
+    }
+}
+
 static void uart_encode(void)
 {
     const icd_link_t *link = next_link();
@@ -386,6 +404,7 @@ static void identify(void)
 const testee_op_t testee_wire_ops[] = {
     {"crc8", crc8},
     {"crc16", crc16},
+    {"link_data", link_data},
     {"uart_encode", uart_encode},
     {"uart_events", uart_events},
     {"i2c_read", i2c_read},

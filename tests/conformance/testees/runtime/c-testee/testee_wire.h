@@ -16,6 +16,7 @@ const icd_link_t *next_link(void);
 icd_bus_t next_bus(void);
 
 const char *event_name(icd_event_kind_t kind);
+void put_known(const char *key, int64_t number); /* A negative one is not known. */
 
 /* Begins the answer and is true, or the answer is a refusal. */
 static inline bool answers(icd_status_t status)

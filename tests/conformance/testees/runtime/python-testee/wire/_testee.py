@@ -212,6 +212,16 @@ def _identify(link: Link, words: Words) -> str:
     return row("ok", **{key: int(value) for key, value in found.items()})
 
 
+def _link_data(link: Link, words: Words) -> str:
+    return row(
+        "ok",
+        boot_ms=link.boot_time,
+        log_file_type=link.log_file.file_type if link.log_file else None,
+        index_file_type=link.index_file.file_type if link.index_file else None,
+        index_counter=link.files.numbers.get("download.index_counter") if link.files else None,
+    )
+
+
 _OPERATIONS = {
     "crc8": _crc8,
     "crc16": _crc16,
@@ -233,6 +243,7 @@ _OPERATIONS = {
     "index_decode": _index_decode,
     "index_encode": _index_encode,
     "identify": _identify,
+    "link_data": _link_data,
     "client": _testee_scripts.client,
     "file": _testee_scripts.file,
 }

@@ -54,6 +54,7 @@ pub fn answer(op: &str, words: &mut Words) -> Answer {
         "index_decode" => index_decode,
         "index_encode" => index_encode,
         "identify" => identity,
+        "link_data" => |link, _| Ok(link_data(link)),
         "client" => scripts::client,
         "file" => scripts::file,
         _ => return Err(Refusal("request".into())),
@@ -67,6 +68,18 @@ pub fn bus(words: &mut Words) -> Bus {
         "i2c" => Bus::I2c,
         _ => Bus::Can,
     }
+}
+
+fn link_data(link: &'static Link) -> String {
+    let text = |number: Option<u32>| number.map_or(String::new(), |known| known.to_string());
+    let download = link.files.and_then(|files| files.download);
+    format!(
+        " boot_ms={} log_file_type={} index_file_type={} index_counter={}",
+        text(link.boot_ms),
+        text(link.log_file.and_then(|form| form.file_type).map(u32::from)),
+        text(link.index.and_then(|form| form.file_type).map(u32::from)),
+        text(download.map(|form| u32::from(form.index_counter))),
+    )
 }
 
 fn uart_encode(link: &'static Link, words: &mut Words) -> Answer {
