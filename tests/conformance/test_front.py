@@ -50,7 +50,7 @@ def test_a_request_becomes_indices_and_hex_and_the_answer_names(known):
         {"op": "encode", **ANGLES, "raw": {}},
         {"op": "decode", "node": "nobody", "kind": "telemetry", "id": 146, "bytes": ""},
         {"op": "can_split", "kind": "no such", "id": 1, "source": 1, "destination": 2, "bytes": ""},
-        {"op": "client", "bus": "uart", "script": [{"at": -1}]},
+        {"op": "uart_events", "chunks": ["0"]},
     ],
 )
 def test_what_is_wrong_with_a_request_is_refused_without_the_program(known, request_):
