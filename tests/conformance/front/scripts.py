@@ -16,8 +16,13 @@ ABSENT = {"refused": {"code": None, "reason": None, "parameter": None}}  # what 
 def client(to: Asking, request: Request) -> Answer:
     bus, checked, address = _bus(request), flag(request, "crc"), number(request, "address", 0, 255, 0)
     settings = _settings(request)
-    words = [word for row in mappings(request, "script") for word in (number(row, "at"), *_row(bus, row))]
-    reply = to.ask("client", bus, int(checked), address, *settings, *words)
+    start = ("client", bus, int(checked), address, *settings)
+    try:
+        words = [word for row in mappings(request, "script") for word in (number(row, "at"), *_row(bus, row))]
+    except Refusal:
+        to.ask(*start)  # a bus that the ICD does not describe is refused before its script is looked at
+        raise
+    reply = to.ask(*start, *words)
     return {"steps": [_client_step(step, rows, to.link["framing"]) for step, rows in _steps(reply)]}
 
 
