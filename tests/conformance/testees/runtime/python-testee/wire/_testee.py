@@ -213,12 +213,13 @@ def _identify(link: Link, words: Words) -> str:
 
 
 def _link_data(link: Link, words: Words) -> str:
+    log, index, files = link.log_file, link.index_file, link.files
     return row(
         "ok",
         boot_ms=link.boot_time,
-        log_file_type=link.log_file.file_type if link.log_file else None,
-        index_file_type=link.index_file.file_type if link.index_file else None,
-        index_counter=link.files.numbers.get("download.index_counter") if link.files else None,
+        log_file_type=log and log.file_type,
+        index_file_type=index and index.file_type,
+        index_counter=files and files.numbers.get("download.index_counter"),
     )
 
 
