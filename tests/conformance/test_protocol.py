@@ -40,7 +40,8 @@ def score(answer, icd, files) -> Result:
 def test_the_reference_answers_every_request_as_it_must(icd, files):
     result = score(Reference(icd).answer, icd, files)
     assert result.differences == 0, result.shown
-    assert result.messages == 6 and result.vectors > 100 and result.requests > 3000
+    assert result.messages >= sum(len(node.messages) for node in icd.nodes)
+    assert result.vectors > 100 and result.requests > 3000
 
 
 @pytest.mark.parametrize(
@@ -133,7 +134,7 @@ def test_what_was_built_from_the_same_source_is_not_built_again(icd, tmp_path):
         return ["true"]
 
     for _ in range(2):
-        assert build(Language("any", ("c",), (), note), icd, tmp_path) == ["true"]
+        assert build(Language("any", ("c",), (), note, front=False), icd, tmp_path) == ["true"]
     assert built == [True]
 
 
@@ -161,4 +162,8 @@ def test_languages_are_found_by_their_modules():
 
 def test_the_table_has_a_line_for_each_language(icd, files):
     results = run([all_languages()["reference"]], icd, files)
-    assert table(results).splitlines()[1].split()[:3] == ["reference", "6", f"{results[0].vectors}"]
+    assert table(results).splitlines()[1].split()[:3] == [
+        "reference",
+        f"{results[0].messages}",
+        f"{results[0].vectors}",
+    ]

@@ -116,6 +116,13 @@ def test_what_an_icd_does_not_describe_is_refused_and_breaks_nothing(files, tmp_
     for node in files["nodes"]:
         for case in node["cases"]:
             answer = ops.answer(bare, {**case["request"], "node": "demo"})
-            if case["request"]["op"] not in ("i2c_request", "i2c_reply", "uart_encode", "uart_events", "file"):
+            if case["request"]["op"] not in (
+                "i2c_request",
+                "i2c_reply",
+                "uart_encode",
+                "uart_events",
+                "file",
+                "link_data",
+            ):
                 assert answer == {"ok": False, "error": "unsupported"}, case
             assert answer["ok"] or answer["error"] in ("unsupported", "unknown-id", "length", "request"), case
