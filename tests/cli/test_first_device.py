@@ -22,7 +22,7 @@ def test_the_first_icd_is_clean_formatted_and_generates_every_language(icdgen, t
     assert (tmp_path / "generated" / "c" / "battery.h").is_file()
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
+@pytest.mark.pty
 def test_the_first_device_answers_in_the_simulator(icdgen, tmp_path):
     icdgen("init", "battery")
     simulator = subprocess.Popen(
