@@ -131,6 +131,7 @@ class Device(threading.Thread):
             return
 
 
+@pytest.mark.pty
 def test_a_serial_port_of_pyserial_will_do(shipped, wire, line):
     acp = shipped.module("cubeacp")
     port, far = line
@@ -141,6 +142,7 @@ def test_a_serial_port_of_pyserial_will_do(shipped, wire, line):
     assert len(talking.get(acp.AdcsConfiguration).to_bytes()) == 504
 
 
+@pytest.mark.pty
 def test_a_serial_port_on_which_nothing_comes_is_not_waited_for_any_longer(shipped, wire, line):
     acp = shipped.module("cubeacp")
     settings = wire.Settings(reply_timeout=40, retries=1, poll_interval=1, poll_timeout=1)
