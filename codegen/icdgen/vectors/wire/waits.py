@@ -11,7 +11,7 @@ from icdgen.protocol import i2c
 from icdgen.protocol.client import TELEMETRY
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.scripts import procedure_of
-from icdgen.protocol.sections import CAN, I2C, UART, Step
+from icdgen.protocol.sections import CAN, I2C, UART
 from icdgen.vectors.wire import Requests
 from icdgen.vectors.wire.node import FileNode
 
@@ -53,7 +53,7 @@ def _held_up(known: Facts, request: dict[str, Any], name: str, told: Told, last:
     step = known.files.steps[name]
     node = FileNode(known, UART, Random(f"{known.node.name} {name}"))
     node.files[2, 0] = bytes(1)
-    waiting = {"event": "done", "bytes": _frame(known, step, told).hex()}
+    waiting = {"event": "done", "bytes": node.frame(step, told).hex()}
     procedure, now, begun = procedure_of(known, request), 0, -1
     script: Script = [{"at": 0}]
     asked = procedure.next(0)
@@ -75,12 +75,6 @@ def _held_up(known: Facts, request: dict[str, Any], name: str, told: Told, last:
                 procedure.event(now, event)
         asked = procedure.next(now)
     return script
-
-
-def _frame(known: Facts, step: Step, told: Told) -> bytes:
-    raw: dict[str, Any] = {f.name: bytes(f.bits // 8) if f.type == "bytes" else 0 for f in step.message.fields}
-    raw |= {step.fields[role]: value for role, value in told.items()}
-    return codec.encode(known.node, step.message, raw)
 
 
 def _clients(known: Facts) -> Requests:
