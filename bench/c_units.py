@@ -2,8 +2,9 @@
 
     python bench/c_units.py [--cc arm-none-eabi-gcc]
 
-The unit includes the header of a node, begins a client on the UART, requests a frame, sends, receives, and decodes what came. It is
-compiled as it is (every unit has functions and tables of its own) and with ICDGEN_SHARED (they are in `icdgen_wire.c` and `link.c`).
+The unit includes the header of a node, begins a client on the UART, requests a frame, sends, receives, and decodes what came.
+It is compiled as it is (every unit has functions and tables of its own) and with ICDGEN_SHARED (they are in `icdgen_wire.c`
+and `link.c`).
 """
 
 from __future__ import annotations

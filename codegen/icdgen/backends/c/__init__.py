@@ -1,4 +1,4 @@
-"""C99: a header a message, one a node, one of the enumerations of a node, one for support; the wire layer and links as sources, too."""
+"""C99: headers of messages, nodes, enumerations and support, and the sources of the wire layer and of links."""
 
 from __future__ import annotations
 
