@@ -99,7 +99,7 @@ class Field:
     name: str
     at: int
     bits: int
-    type: str  # "uint" | "int" | "bool" | "enum" | "float" | "bytes"
+    type: str  # "uint" | "int" | "bool" | "enum" | "float" | "bytes" | "text"
     identifier: str | None = None
     enum: Enum | None = None
     unit: Unit | None = None
@@ -117,6 +117,11 @@ class Field:
     def orders(self, node: Node) -> tuple[str, str]:
         """Byte order and bit order; ``node`` is the one that declares its message."""
         return self.byte_order or node.byte_order, self.bit_order or node.bit_order
+
+    @property
+    def is_bytes(self) -> bool:
+        """Whether the raw value is whole bytes in order, and no number."""
+        return self.type in ("bytes", "text")
 
     @property
     def signed(self) -> bool:

@@ -129,7 +129,7 @@ class Procedure:
         part = self.step(step)
         message, raw = part.message, {}
         for field in message.fields:
-            raw[field.name] = bytes(field.bits // 8) if field.type == "bytes" else field.const or 0
+            raw[field.name] = bytes(field.bits // 8) if field.is_bytes else field.const or 0
         raw.update({part.fields[role]: value for role, value in values.items()})
         assert message.telecommand_id is not None
         return Request(TELECOMMAND, message.telecommand_id, codec.encode(self.known.node, message, raw), repeat)

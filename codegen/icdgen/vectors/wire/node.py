@@ -110,7 +110,7 @@ class FileNode:
 
     def frame(self, step: Step, values: dict[str, Any]) -> bytes:
         """The frame of a step that says this by role."""
-        raw = {f.name: bytes(f.bits // 8) if f.type == "bytes" else 0 for f in step.message.fields}
+        raw = {f.name: bytes(f.bits // 8) if f.is_bytes else 0 for f in step.message.fields}
         raw.update({step.fields[role]: value for role, value in values.items()})
         return codec.encode(self.known.node, step.message, raw)
 

@@ -53,8 +53,7 @@ class _Frames:
         bits = {field.name: field.bits for field in step.message.fields}
         told = {"busy": int(not done), "ready": int(done), "program": self.program, **values}
         raw: dict[str, int | bytes] = {
-            field.name: bytes(field.bits // 8) if field.type == "bytes" else field.const or 0
-            for field in step.message.fields
+            field.name: bytes(field.bits // 8) if field.is_bytes else field.const or 0 for field in step.message.fields
         }
         raw |= {name: told.get(role, 0) & (1 << bits[name]) - 1 for role, name in step.fields.items()}
         frame = codec.encode(self.known.node, step.message, raw)

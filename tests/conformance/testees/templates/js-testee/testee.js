@@ -79,13 +79,24 @@ function shown(field, raw) {
   return field.type === "bool" ? raw === 1n : raw;
 }
 
+function physicalOf(field, raw) {
+  if (!field.text) return bitsOf(codec.physical(field, raw));
+  const said = codec.text(raw);
+  return said.includes("\ufffd") ? null : Buffer.from(said).toString("hex");
+}
+
+function fromPhysical(field, given) {
+  if (!field.text) return codec.rawFromPhysical(field, numberOf(given));
+  return codec.rawFromText(field, Buffer.from(bytesOf(given)).toString("utf8"));
+}
+
 function described({ plan, node }, raw, names) {
   const pairs = plan.fields.map((field, index) => [field, raw[index]]);
-  const scaled = pairs.filter(([field]) => field.scale);
+  const scaled = pairs.filter(([field]) => field.scale || field.text);
   const answer = {
     ok: true,
     raw: Object.fromEntries(pairs.map(([field, value]) => [field.name, shown(field, value)])),
-    physical: Object.fromEntries(scaled.map(([field, value]) => [field.name, bitsOf(codec.physical(field, value))])),
+    physical: Object.fromEntries(scaled.map(([field, value]) => [field.name, physicalOf(field, value)])),
     bytes: hexOf(codec.encode(plan, raw)),
   };
   if (names) {
@@ -120,9 +131,9 @@ const operations = {
     const found = messageOf(request);
     const fields = new Map(found.plan.fields.map((field) => [field.name, field]));
     for (const field of given.keys()) if (!fields.has(field)) throw new Refusal("unknown-field", { field });
-    for (const field of physical.keys()) if (!fields.get(field)?.scale) throw new Refusal("unknown-field", { field });
+    for (const field of physical.keys()) if (!fields.get(field)?.scale && !fields.get(field)?.text) throw new Refusal("unknown-field", { field });
     const raw = found.plan.fields.map((field) => {
-      if (physical.has(field.name)) return codec.rawFromPhysical(field, numberOf(physical.get(field.name)));
+      if (physical.has(field.name)) return fromPhysical(field, physical.get(field.name));
       if (!given.has(field.name)) throw new Refusal("missing-field", { field: field.name });
       const value = rawOf(field, given.get(field.name));
       codec.check(field, value);
