@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from icdgen import codec
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Field, Icd, Message, Node
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node
 from icdgen.vectors import patterns
 from icdgen.vectors.settings import Settings, bits_of, settings
 
@@ -74,7 +74,7 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
     settable = [field for field in message.fields if field.scale or field.type == "text"]
     return MessageVectors(
         message=message,
-        default={field.name: _default(field) for field in message.fields},
+        default=message.fresh,
         rows=tuple(rows),
         lengths=tuple(sorted({0, max(message.length - 1, 0), message.length + 1} - {message.length})),
         unfit={field.name: unfit for field in message.fields if (unfit := patterns.unfit(field))},
@@ -99,12 +99,6 @@ def known_text(raw: bytes) -> str | None:
     """What a text field says, if that is ASCII."""
     said = codec.text(raw)
     return None if "\ufffd" in said else said
-
-
-def _default(field: Field) -> int | bytes:
-    if field.is_bytes:
-        return bytes(field.bits // 8)
-    return field.const or 0
 
 
 def _ids(icd: Icd, node: Node) -> dict[str, dict[int, str]]:
