@@ -22,6 +22,7 @@ def declared_names(description: Description) -> Iterator[Identifier]:
     for name in _SUPPORT:
         yield Identifier(FILE, name, "the support header", None)
     yield Identifier(FILES, "icdgen.h", "the support header", None)
+    yield Identifier(FILES, "icdgen_wide.h", "formulas of many digits", None)
     yield Identifier(FILES, "icdgen_wire.h", "the wire layer", None)
     for node in description.nodes:
         yield from _node(node)
