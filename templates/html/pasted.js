@@ -1,6 +1,6 @@
 "use strict";
 /* What a person copied -> bytes or CAN packets: the same spellings as `icdgen decode` takes. */
-const icdgenPasted = ((frames, packets) => {
+const icdgenPasted = ((frames) => {
   const BEFORE = /^(?:\([\d.:\s-]+\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?/.source;
   const ID = "(?<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})";
   const PACKETS = [
@@ -127,29 +127,6 @@ const icdgenPasted = ((frames, packets) => {
     }
   }
 
-  /** The data of the message that CAN packets carry, and remarks. Throws an Error where they are of another one. */
-  function joined(wire, length, given) {
-    const { can } = wire;
-    if (!can) return { data: Uint8Array.from(given.flatMap((one) => [...one.data])), remarks: ["data of CAN packets"] };
-    const idOf = (one) => packets.partOf(can, "channel", one.id);
-    const mine = given.filter((one) => one.extended && wire.ids.includes(idOf(one)));
-    if (!mine.length) throw new Error(`CAN packets of id ${idOf(given[0])}, which is another message's`);
-    const { messages, open } = packets.join({ can }, mine, () => length);
-    const found = messages.find((one) => ["telecommand", "reply"].includes(one.kind));
-    if (found) return { data: found.data, remarks: [`data of CAN packets with id ${found.id}`] };
-    if (open.length) throw new Error(`${open[0].count - open[0].pieces.size} of ${open[0].count} packets are missing`);
-    throw new Error(`CAN packets with id ${idOf(mine[0])} that carry no data`);
-  }
-
-  /** Data of the message in whatever was pasted, and remarks. Throws an Error where it cannot be this message. */
-  function messageIn(wire, length, text) {
-    const given = read(text);
-    if (given.packets) return joined(wire, length, given.packets);
-    const { data, form } = given;
-    const found = frames.unwrap(wire, length, data);
-    return { data: found.data, remarks: form ? [...found.remarks, `read as ${form}`] : found.remarks };
-  }
-
-  return { read, messageIn };
-})(...(typeof icdgenFrames === "undefined" ? [require("./frames.js"), require("./packets.js")] : [icdgenFrames, icdgenPackets]));
+  return { read };
+})(typeof icdgenFrames === "undefined" ? require("./frames.js") : icdgenFrames);
 if (typeof module !== "undefined") module.exports = icdgenPasted;

@@ -199,7 +199,7 @@
       return;
     }
     try {
-      const { data, remarks } = icdgenPasted.messageIn(wire, plan.length, bytes.value);
+      const { data, remarks } = icdgenGiven.messageIn(wire, plan.length, bytes.value);
       raw = codec.decode(plan, data);
       show(data, remarks);
     } catch (error) {

@@ -38,7 +38,7 @@ class FieldDescription(Named[Field]):
 
     @property
     def fresh(self) -> int:
-        """The raw value in a new message, as a number: see `icdgen.describe.fresh`."""
+        """The raw value in a new message, as a number."""
         return self.model.const or 0
 
     @property

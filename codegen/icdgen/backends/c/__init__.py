@@ -1,4 +1,4 @@
-"""C99 headers: one a message, one a node, one of the enumerations of a node, and one for support."""
+"""C99: headers of messages, nodes, enumerations and support, and the sources of the wire layer and of links."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from icdgen.backends import Identifier
 from icdgen.backends.c import accessors, bits, constants, decoding, encoding, names, types
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.reserved_words import RESERVED
-from icdgen.backends.c.runtime import header
+from icdgen.backends.c.runtime import whole
 from icdgen.backends.c.statement import call, define, head
 from icdgen.backends.c.text import comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
@@ -37,9 +37,9 @@ class CBackend:
     reserved = RESERVED
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """Every header, the support header first, then node by node."""
+        """Every file, the support header first, then node by node."""
         first = f"/* {origin()} */\n"
-        yield PurePosixPath("icdgen.h"), first + header("icdgen.h", {}, render)
+        yield PurePosixPath("icdgen.h"), first + whole("icdgen.h", {}, render)
         description = describe(icd)
         if _is_wide(description):
             yield PurePosixPath("icdgen_wide.h"), first + header("icdgen_wide.h", {}, render)
@@ -47,7 +47,8 @@ class CBackend:
         if links:
             step_bytes = max(1, *(link.longest_step for link in links.values()))
             made = {"wire/sizes.h": render("sizes.h.j2", step_bytes=step_bytes)}
-            yield PurePosixPath("icdgen_wire.h"), first + header("icdgen_wire.h", made, render)
+            yield PurePosixPath("icdgen_wire.h"), first + whole("icdgen_wire.h", made, render)
+            yield PurePosixPath("icdgen_wire.c"), first + whole("icdgen_wire.c", {}, render)
         for node in description.nodes:
             folder = PurePosixPath(node.name)
             shared = {"origin": origin(node.model), "title": prose(words(node.model.title)), **_FUNCTIONS}
@@ -57,7 +58,9 @@ class CBackend:
             for message in node.messages:
                 yield folder / f"{message.name}.h", render("message.h.j2", m=message, **_message(message), **shared)
             if node.name in links:
-                yield folder / "link.h", render("link.h.j2", **_link(node, links[node.name]), **shared)
+                link = {**_link(node, links[node.name]), **shared}
+                yield folder / "link.h", render("link.h.j2", **link)
+                yield folder / "link.c", render("link.c.j2", **link)
             values = {**_node(node), "id_type": f"uint{description.id_bits}_t"}
             yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", node=node, **values, **shared)
 
