@@ -42,7 +42,7 @@ class CBackend:
         yield PurePosixPath("icdgen.h"), first + whole("icdgen.h", {}, render)
         description = describe(icd)
         if _is_wide(description):
-            yield PurePosixPath("icdgen_wide.h"), first + header("icdgen_wide.h", {}, render)
+            yield PurePosixPath("icdgen_wide.h"), first + whole("icdgen_wide.h", {}, render)
         links = _links(description)
         if links:
             step_bytes = max(1, *(link.longest_step for link in links.values()))
