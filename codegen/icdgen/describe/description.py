@@ -148,6 +148,11 @@ class MessageDescription(Named[Message]):
         return any(field.type == "float" for field in self.model.fields)
 
     @cached_property
+    def has_wide_steps(self) -> bool:
+        """Whether the formula of a field has numbers of many digits."""
+        return any(field.steps is not None and field.steps.is_wide for field in self.fields)
+
+    @cached_property
     def comment(self) -> Comment:
         bits = self._description.node(self.node).log_bits
         telemetry_id = self.model.telemetry_id

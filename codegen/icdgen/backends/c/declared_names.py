@@ -22,6 +22,7 @@ def declared_names(description: Description) -> Iterator[Identifier]:
     for name in _SUPPORT:
         yield Identifier(FILE, name, "the support header", None)
     yield Identifier(FILES, "icdgen.h", "the support header", None)
+    yield Identifier(FILES, "icdgen_wide.h", "formulas of many digits", None)
     for end in ("h", "c"):
         yield Identifier(FILES, f"icdgen_wire.{end}", "the wire layer", None)
     for node in description.nodes:

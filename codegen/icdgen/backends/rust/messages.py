@@ -20,6 +20,7 @@ def values(message: MessageDescription) -> dict[str, object]:
     narrow = [field for field in fields if field.is_narrow]
     scales = [field for field in fields if field.steps is not None or field.is_narrow]
     has_text = any(field.is_text for field in fields)
+    is_usual = any(field.steps is None or not field.steps.is_wide for field in scales)
     imported = {
         "array": any("array(" in reading for reading in readings),
         "flags": bool(tables),
@@ -28,9 +29,11 @@ def values(message: MessageDescription) -> dict[str, object]:
         "take": any("take!(" in reading for reading in readings),
         "text": has_text,
         "text_array": has_text,
+        "Big": message.has_wide_steps,
         "Coded": any(field.enum for field in fields),
         "Error": True,
-        "Scale": bool(scales),
+        "Scale": is_usual,
+        "Wide": message.has_wide_steps,
     }
     names = [name for name, is_used in imported.items() if is_used]
     return {
