@@ -38,7 +38,7 @@ class FieldDescription(Named[Field]):
 
     @property
     def fresh(self) -> int:
-        """The raw value in a new message, as a number: see `icdgen.describe.fresh`."""
+        """The raw value in a new message, as a number."""
         return self.model.const or 0
 
     @property
@@ -134,6 +134,11 @@ class MessageDescription(Named[Message]):
     @property
     def has_floats(self) -> bool:
         return any(field.type == "float" for field in self.model.fields)
+
+    @cached_property
+    def has_wide_steps(self) -> bool:
+        """Whether the formula of a field has numbers of many digits."""
+        return any(field.steps is not None and field.steps.is_wide for field in self.fields)
 
     @cached_property
     def comment(self) -> Comment:

@@ -123,6 +123,11 @@ class Field:
         return self.type == "int"
 
     @property
+    def fresh(self) -> int | bytes:
+        """The raw value in a new message: the only valid one, or 0; of a float its bits, of bytes all of them."""
+        return bytes(self.bits // 8) if self.type == "bytes" else self.const or 0
+
+    @property
     def raw_min(self) -> int:
         """Smallest raw value of an integer, enum or bool field."""
         return -(1 << (self.bits - 1)) if self.type == "int" else 0
@@ -166,6 +171,11 @@ class Message:
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
+
+    @property
+    def fresh(self) -> dict[str, int | bytes]:
+        """The raw values of a new message by the names of its fields."""
+        return {field.name: field.fresh for field in self.fields}
 
     @property
     def telecommand_id(self) -> int | None:

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from icdgen import codec
-from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Field, Icd, Message, Node
+from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node
 from icdgen.vectors import patterns
 from icdgen.vectors.settings import bits_of, settings
 
@@ -73,7 +73,7 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
     scaled = [field for field in message.fields if field.scale]
     return MessageVectors(
         message=message,
-        default={field.name: _default(field) for field in message.fields},
+        default=message.fresh,
         rows=tuple(rows),
         lengths=tuple(sorted({0, max(message.length - 1, 0), message.length + 1} - {message.length})),
         unfit={field.name: unfit for field in message.fields if (unfit := patterns.unfit(field))},
@@ -91,12 +91,6 @@ def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
             physical[field.name] = exact
     doubles = {name: bits_of(codec.to_double(exact)) for name, exact in physical.items()}
     return Row(why, frame, raw, codec.encode(node, message, raw), physical, doubles)
-
-
-def _default(field: Field) -> int | bytes:
-    if field.type == "bytes":
-        return bytes(field.bits // 8)
-    return field.const or 0
 
 
 def _ids(icd: Icd, node: Node) -> dict[str, dict[int, str]]:

@@ -13,7 +13,7 @@ FILE = "C names at file scope"
 FILES = "C header files"
 
 _STATUS = ("LENGTH", "RANGE", "UNKNOWN_ID", "UNSUPPORTED", "CHECKSUM", "BUSY")
-_SUPPORT = ("icd_status_t", "ICD_OK", *(f"ICD_ERROR_{end}" for end in _STATUS))
+_SUPPORT = ("ICDGEN_SHARED", "icd_status_t", "ICD_OK", *(f"ICD_ERROR_{end}" for end in _STATUS))
 _SIZES = ("LONGEST", "CAN_SLOT_BYTES", "CLIENT_BYTES", "LOG_BYTES", "BLOCK_BYTES", "BLOCK_BITMAP_BYTES")
 
 
@@ -22,7 +22,9 @@ def declared_names(description: Description) -> Iterator[Identifier]:
     for name in _SUPPORT:
         yield Identifier(FILE, name, "the support header", None)
     yield Identifier(FILES, "icdgen.h", "the support header", None)
-    yield Identifier(FILES, "icdgen_wire.h", "the wire layer", None)
+    yield Identifier(FILES, "icdgen_wide.h", "formulas of many digits", None)
+    for end in ("h", "c"):
+        yield Identifier(FILES, f"icdgen_wire.{end}", "the wire layer", None)
     for node in description.nodes:
         yield from _node(node)
         if node.is_linked:
@@ -54,9 +56,10 @@ def _node(node: NodeDescription) -> Iterator[Identifier]:
 
 def _link(node: NodeDescription) -> Iterator[Identifier]:
     owner, source = f"the link of node `{node.name}`", node.model.source
-    yield Identifier(FILES, f"{node.name}/link.h", owner, source)
+    for end in ("h", "c"):
+        yield Identifier(FILES, f"{node.name}/link.{end}", owner, source)
     yield Identifier(FILE, f"{node.name}_link", owner, source)
-    for end in (*_SIZES, "NODE", "LINK_H"):
+    for end in (*_SIZES, "NODE", "LINK_H", "LINK_C"):
         yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source)
 
 

@@ -196,7 +196,7 @@ class _Literal:
             "file_transfer",
             part("packet_ids", struct("PerBus", *ids)),
             part("hole_map", some(self.hole_map())),
-            *(part(name, some(self.struct(form.procedures.get(name), f"file_transfer.{name}"))) for name in PROCEDURES),
+            *(part(name, some(self.struct(getattr(form, name), f"file_transfer.{name}"))) for name in PROCEDURES),
         )
 
     def hole_map(self) -> Brackets | None:

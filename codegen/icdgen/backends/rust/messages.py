@@ -19,15 +19,18 @@ def values(message: MessageDescription) -> dict[str, object]:
     derived = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
     narrow = [field for field in fields if field.is_narrow]
     scales = [field for field in fields if field.steps is not None or field.is_narrow]
+    is_usual = any(field.steps is None or not field.steps.is_wide for field in scales)
     imported = {
         "array": any("array(" in reading for reading in readings),
         "flags": bool(tables),
         "put": any("put!(" in line for line in writings),
         "put_array": any("put_array(" in line for line in writings),
         "take": any("take!(" in reading for reading in readings),
+        "Big": message.has_wide_steps,
         "Coded": any(field.enum for field in fields),
         "Error": True,
-        "Scale": bool(scales),
+        "Scale": is_usual,
+        "Wide": message.has_wide_steps,
     }
     names = [name for name, is_used in imported.items() if is_used]
     return {
