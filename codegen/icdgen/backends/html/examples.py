@@ -7,6 +7,7 @@ from typing import NamedTuple
 from icdgen import codec, layout
 from icdgen.backends.html.texts import MINUS, number
 from icdgen.icd.model import Field, Message, Node
+from icdgen.tables import clean
 from icdgen.values.numbers import float_text
 from icdgen.vectors import patterns
 
@@ -69,8 +70,9 @@ def examples(message: Message, node: Node) -> list[Example]:
 
 def _cell(field: Field, raw: int | bytes) -> Cell:
     if isinstance(raw, bytes):
-        text = raw.hex(" ").upper()
-        return Cell(text if len(raw) <= 16 else f"{text[:47]} …", "")
+        shown = raw.hex(" ").upper()
+        said = codec.text(raw) if field.type == "text" else ""
+        return Cell(shown if len(raw) <= 16 else f"{shown[:47]} …", clean(said))
     if field.type == "float":
         value = float_text(codec.float_value(field, raw), field.bits)
         return Cell(f"0x{raw:0{field.bits // 4}X}", value.replace("-", MINUS))
