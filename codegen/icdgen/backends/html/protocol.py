@@ -137,7 +137,7 @@ def _checks(known: Facts, section: dict[str, Any]) -> list[tuple[str, Crc, int |
         found.append((f"CRC-{known.checksum.crc.width}", known.checksum.crc, section["crc8"].get("check")))
     if known.crc16:
         found.append((f"CRC-{known.crc16.width}", known.crc16, section["crc16"].get("check")))
-    return [one for one in found if one[1].width <= 32]
+    return found
 
 
 def _plain(crc: Crc) -> dict[str, object]:
