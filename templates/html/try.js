@@ -242,6 +242,9 @@
     document.getElementById("try").scrollIntoView();
   }
 
+  for (const one of document.querySelectorAll(".frames dd")) {
+    one.replaceChildren(make("a", { href: `#try=${one.textContent.replaceAll(" ", "").toLowerCase()}` }, one.textContent));
+  }
   bytes.addEventListener("input", read);
   reset.addEventListener("click", () => {
     raw = codec.fresh(plan);

@@ -28,16 +28,8 @@ class Example(NamedTuple):
     cells: list[Cell]
 
 
-class Frame(NamedTuple):
-    """A vector's bytes, spaced for people and packed for a link."""
-
-    why: str
-    hex: str
-    packed: str
-
-
-def frames(message: Message, node: Node) -> list[Frame]:
-    """Every frame of the message's golden vectors, in their order."""
+def frames(message: Message, node: Node) -> list[tuple[str, str]]:
+    """Name and bytes of every frame of the message's golden vectors, in their order."""
     if not message.length:
         return []
     found = {frame: why for why, frame in reversed(list(patterns.frames(message)))}
@@ -47,7 +39,7 @@ def frames(message: Message, node: Node) -> list[Frame]:
         if frame not in ordered:
             ordered[frame] = None
             found[frame] = f"chosen values {index}"
-    return [Frame(found[frame], frame.hex(" ").upper(), frame.hex()) for frame in ordered]
+    return [(found[frame], frame.hex(" ").upper()) for frame in ordered]
 
 
 def _encoded(message: Message, node: Node, raw: dict[str, int | bytes]) -> bytes:
