@@ -49,9 +49,10 @@ def test_a_telecommand_is_acknowledged_or_not_or_answered_by_a_reset(icd):
 
 def test_uploads_belong_to_the_nodes_that_the_icd_names(icd, known):
     boot = facts.of(icd, icd.node("bootloader"))
-    assert not any(path.startswith("upload.") for path in (*known.files.steps, *known.files.numbers))
-    assert boot.files.steps["upload.finalize"].fields["offset"] == "Offset"
-    assert (boot.files.destinations, boot.files.numbers["upload.destination_bytes"]) == ((3, 4, 5, 6, 7, 8, 9), 524_288)
+    assert known.files.upload is None and not any(path.startswith("upload.") for path in known.files.steps)
+    upload = boot.files.upload
+    assert upload.finalize.fields["offset"] == "Offset" and boot.files.steps["upload.finalize"] is upload.finalize
+    assert (upload.destinations, upload.destination_bytes) == ((3, 4, 5, 6, 7, 8, 9), 524_288)
 
 
 def test_operations_on_programs_are_those_of_the_node(icd, known):
@@ -60,6 +61,8 @@ def test_operations_on_programs_are_those_of_the_node(icd, known):
     assert (known.program_copy, known.program_information) == (None, None)
 
 
-def test_numbers_of_the_procedures_are_found_by_path(known):
-    assert known.files.numbers["download.message_length"] == 20
+def test_procedures_have_their_numbers_and_times_are_milliseconds(icd, known):
+    assert known.files.download.message_length == 20
+    section = icd.protocol_of(icd.node("bootloader"))["file_transfer"]["upload"]
+    assert facts.of(icd, icd.node("bootloader")).files.upload.erase_timeout == section["erase_timeout_s"] * 1000
     assert known.boot_ms == 5000
