@@ -103,7 +103,7 @@ def test_every_declared_name_is_known_to_the_name_rules(tmp_path, odd_ones):
     known = {one.text for one in CBackend().identifiers(icd)}
     undeclared = []
     for path, text in files(icd).items():
-        if path in ("icdgen.h", "icdgen_wire.h", "icdgen_wire.c"):
+        if path in ("icdgen.h", "icdgen_wide.h", "icdgen_wire.h", "icdgen_wire.c"):
             continue
         code = re.sub(r'/\*.*?\*/|"(?:\\.|[^"\\])*"', "", text, flags=re.S)
         names = re.findall(r"^#define (\w+)", code, re.M)
