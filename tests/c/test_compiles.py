@@ -11,6 +11,15 @@ import pytest
 from tests.c import harness
 
 CORTEX_M = shutil.which("arm-none-eabi-gcc")
+AVR = shutil.which("avr-gcc")
+
+INHERENT = {
+    "padded": "members stand in the order of the manual",
+    "declaration-after-statement": "C99 has them, and values are constant from where they are known",
+    "covered-switch-default": "what comes over a wire is in no enumeration; -Wswitch-default and MISRA 16.4 want the default",
+    "unused-macros": "of a source that other sources include",
+}
+"""Warnings of clang that no C99 of this kind can be without, or that contradict others."""
 
 
 @pytest.fixture(scope="module")
@@ -61,6 +70,29 @@ def test_no_double_leaves_no_arithmetic_behind(headers, tmp_path):
     assert without_members != done.stdout
     helpers = re.findall(r"(?:double|float) \*value", done.stdout)
     assert len(helpers) == len(re.findall(r"\b(?:double|float)\b", without_members)) == 4
+
+
+@pytest.mark.parametrize("shared", [(), ("-DICDGEN_SHARED",)], ids=["header only", "shared"])
+def test_clang_has_nothing_to_say_with_every_warning_there_is(headers, tmp_path, shared):
+    source = tmp_path / "everything.c"
+    source.write_text("".join(f'#include "{node.name}.h"\n' for node in harness.shipped().nodes))
+    flags = (
+        "-std=c99",
+        "-Weverything",
+        *(f"-Wno-{name}" for name in INHERENT),
+        "-Wno-unknown-warning-option",
+        "-Werror",
+    )
+    for one in (source, *(headers.rglob("*.c") if shared else ())):
+        if one.name != "all.c":
+            harness.compile(one, *flags, *shared, "-fsyntax-only", f"-I{headers}", compiler="clang")
+
+
+@pytest.mark.skipif(not AVR, reason="needs gcc-avr and avr-libc")
+@pytest.mark.parametrize("option", ["-DICDGEN_NO_DOUBLE", "-UICDGEN_NO_DOUBLE", "-DICDGEN_SHARED"])
+def test_without_a_warning_where_int_has_16_bits(headers, option):
+    """AVR: double may have 32 bits there, of which -Wdouble-promotion knows nothing."""
+    harness.compile_all(harness.shipped(), headers, "avr-gcc", "c99", "-mmcu=atmega2560", "-Os", "-c", option)
 
 
 @pytest.mark.skipif(not CORTEX_M, reason="needs gcc-arm-none-eabi")

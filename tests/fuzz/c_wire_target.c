@@ -311,8 +311,9 @@ static void procedures(const icd_link_t *link, input_t *input)
     const uint8_t which = take(input);
     const uint32_t block = (take(input) * 7u) + 1u;
     const uint32_t most = link->files != NULL && block > link->files->block_bytes ? link->files->block_bytes : block;
-    uint8_t *buffer = memory(link->files != NULL ? icd_block_buffer(link, most) : 0u);
-    uint8_t *bitmap = memory(link->files != NULL ? icd_block_bitmap(link, most) : 0u);
+    const size_t size = link->files != NULL ? icd_block_buffer(link, most) : 0u;
+    const size_t bits = link->files != NULL ? icd_block_bitmap(link, most) : 0u;
+    uint8_t *buffer = memory(size), *bitmap = memory(bits);
     uint8_t *file = memory(1000);
     seen_t seen = {link, 1, 0, 0};
     icd_list_t list;
@@ -325,9 +326,9 @@ static void procedures(const icd_link_t *link, input_t *input)
     } else if (which % 4u == 1u &&
                icd_download_init(
                    &download, link, (icd_bus_t)((which >> 2) % 3u), 1, 2, (which & 0x80u) != 0u ? ICD_SIZE_UNKNOWN : 1000u,
-                   most, buffer, bitmap, on_block, &seen) == ICD_OK) {
+                   most, buffer, size, bitmap, bits, on_block, &seen) == ICD_OK) {
         run(&download.procedure, input);
-    } else if (which % 4u == 2u && icd_upload_init(&upload, link, 3, file, 1000, most, bitmap) == ICD_OK) {
+    } else if (which % 4u == 2u && icd_upload_init(&upload, link, 3, file, 1000, most, bitmap, bits) == ICD_OK) {
         run(&upload.procedure, input);
     } else if (which % 4u == 3u && icd_erase_init(&erase, link, 1, 2, true) == ICD_OK) {
         run(&erase.procedure, input);

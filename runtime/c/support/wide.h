@@ -204,8 +204,8 @@ static inline bool icdgen_wide_exceeds(
 }
 
 /* The bits of the raw value nearest to a physical one, ties to even; ``low`` is not above 0. */
-static inline icd_status_t
-icdgen_wide_nearest(uint64_t *raw, double physical, const icdgen_scale_t *scale, int64_t low, uint64_t high)
+static inline icd_status_t icdgen_wide_nearest(
+    uint64_t *raw, double physical, const icdgen_scale_t *scale, int64_t low, uint64_t high)
 {
     uint64_t bits;
     memcpy(&bits, &physical, sizeof bits);
@@ -239,8 +239,8 @@ icdgen_wide_nearest(uint64_t *raw, double physical, const icdgen_scale_t *scale,
     return ICD_OK;
 }
 
-static inline icd_status_t
-icdgen_wide_set_i64(int64_t *raw, double value, const icdgen_scale_t *scale, int64_t low, int64_t high)
+static inline icd_status_t icdgen_wide_set_i64(
+    int64_t *raw, double value, const icdgen_scale_t *scale, int64_t low, int64_t high)
 {
     uint64_t nearest = 0;
     const icd_status_t status = icdgen_wide_nearest(&nearest, value, scale, low, ICDGEN_U64(high));
@@ -250,14 +250,13 @@ icdgen_wide_set_i64(int64_t *raw, double value, const icdgen_scale_t *scale, int
     return status;
 }
 
-static inline icd_status_t
-icdgen_wide_set_u64(uint64_t *raw, double value, const icdgen_scale_t *scale, uint64_t high)
+static inline icd_status_t icdgen_wide_set_u64(uint64_t *raw, double value, const icdgen_scale_t *scale, uint64_t high)
 {
     return icdgen_wide_nearest(raw, value, scale, 0, high);
 }
 
-static inline icd_status_t
-icdgen_wide_set_i32(int32_t *raw, double value, const icdgen_scale_t *scale, int32_t low, int32_t high)
+static inline icd_status_t icdgen_wide_set_i32(
+    int32_t *raw, double value, const icdgen_scale_t *scale, int32_t low, int32_t high)
 {
     int64_t nearest = *raw;
     const icd_status_t status = icdgen_wide_set_i64(&nearest, value, scale, low, high);
@@ -265,8 +264,7 @@ icdgen_wide_set_i32(int32_t *raw, double value, const icdgen_scale_t *scale, int
     return status;
 }
 
-static inline icd_status_t
-icdgen_wide_set_u32(uint32_t *raw, double value, const icdgen_scale_t *scale, uint32_t high)
+static inline icd_status_t icdgen_wide_set_u32(uint32_t *raw, double value, const icdgen_scale_t *scale, uint32_t high)
 {
     uint64_t nearest = *raw;
     const icd_status_t status = icdgen_wide_set_u64(&nearest, value, scale, high);
@@ -274,8 +272,8 @@ icdgen_wide_set_u32(uint32_t *raw, double value, const icdgen_scale_t *scale, ui
     return status;
 }
 
-static inline icd_status_t
-icdgen_wide_set_i16(int16_t *raw, double value, const icdgen_scale_t *scale, int16_t low, int16_t high)
+static inline icd_status_t icdgen_wide_set_i16(
+    int16_t *raw, double value, const icdgen_scale_t *scale, int16_t low, int16_t high)
 {
     int64_t nearest = *raw;
     const icd_status_t status = icdgen_wide_set_i64(&nearest, value, scale, low, high);
@@ -283,8 +281,7 @@ icdgen_wide_set_i16(int16_t *raw, double value, const icdgen_scale_t *scale, int
     return status;
 }
 
-static inline icd_status_t
-icdgen_wide_set_u16(uint16_t *raw, double value, const icdgen_scale_t *scale, uint16_t high)
+static inline icd_status_t icdgen_wide_set_u16(uint16_t *raw, double value, const icdgen_scale_t *scale, uint16_t high)
 {
     uint64_t nearest = *raw;
     const icd_status_t status = icdgen_wide_set_u64(&nearest, value, scale, high);
@@ -292,8 +289,8 @@ icdgen_wide_set_u16(uint16_t *raw, double value, const icdgen_scale_t *scale, ui
     return status;
 }
 
-static inline icd_status_t
-icdgen_wide_set_i8(int8_t *raw, double value, const icdgen_scale_t *scale, int8_t low, int8_t high)
+static inline icd_status_t icdgen_wide_set_i8(
+    int8_t *raw, double value, const icdgen_scale_t *scale, int8_t low, int8_t high)
 {
     int64_t nearest = *raw;
     const icd_status_t status = icdgen_wide_set_i64(&nearest, value, scale, low, high);
@@ -301,8 +298,7 @@ icdgen_wide_set_i8(int8_t *raw, double value, const icdgen_scale_t *scale, int8_
     return status;
 }
 
-static inline icd_status_t
-icdgen_wide_set_u8(uint8_t *raw, double value, const icdgen_scale_t *scale, uint8_t high)
+static inline icd_status_t icdgen_wide_set_u8(uint8_t *raw, double value, const icdgen_scale_t *scale, uint8_t high)
 {
     uint64_t nearest = *raw;
     const icd_status_t status = icdgen_wide_set_u64(&nearest, value, scale, high);

@@ -18,7 +18,7 @@ ICDGEN_API size_t icd_can_most(const icd_link_t *link, icd_can_kind_t kind)
 {
     const icd_can_form_t *const can = link->can;
     if (can->extended != NULL && can->extended_types[kind] >= 0) {
-        return can->extended->bytes;
+        return ICDGEN_SIZE(can->extended->bytes);
     }
     return icdgen_can_has_data(kind) ? can->data_bytes : 0u;
 }
@@ -71,7 +71,7 @@ ICDGEN_API bool icd_can_next(icd_can_splitter_t *splitter, icd_can_packet_t *pac
     }
     form = splitter->can->extended;
     packet->id = splitter->id;
-    at = splitter->extended ? splitter->next * form->data_bytes : 0u;
+    at = splitter->extended ? ICDGEN_SIZE(splitter->next * form->data_bytes) : 0u;
     size = splitter->length - at;
     memset(packet->data, 0, sizeof packet->data);
     if (splitter->extended) {

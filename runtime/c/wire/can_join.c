@@ -8,8 +8,8 @@
 ICDGEN_API size_t icd_can_slot_bytes(const icd_link_t *link)
 {
     const icd_can_extended_t *const form = link->can->extended;
-    return 1u +
-        (form != NULL ? (link->longest_data + form->data_bytes - 1u) / form->data_bytes * form->data_bytes : 0u);
+    const uint32_t size = form != NULL ? form->data_bytes : 1u;
+    return 1u + (form != NULL ? ICDGEN_SIZE((link->longest_data + size - 1u) / size * size) : 0u);
 }
 
 ICDGEN_API icd_status_t icd_can_joiner_init(
@@ -140,8 +140,8 @@ static inline icd_can_slot_t *icdgen_can_slot(icd_can_joiner_t *joiner)
 /* Bytes of the message if the ICD knows it and it needs several packets, else 0. */
 static inline uint32_t icdgen_can_length(const icd_link_t *link, icd_can_kind_t kind, uint32_t id)
 {
-    const icd_message_t *const message =
-        icd_find_message(link, kind == ICD_CAN_TELECOMMAND ? ICD_TELECOMMAND : ICD_TELEMETRY, id);
+    const icd_message_t *const message = icd_find_message(
+        link, kind == ICD_CAN_TELECOMMAND ? ICD_TELECOMMAND : ICD_TELEMETRY, ICDGEN_CAST(unsigned, id));
     return message != NULL && message->length > link->can->data_bytes ? message->length : 0u;
 }
 
@@ -234,8 +234,8 @@ static inline void icdgen_can_extended(
         slot->done = true;
         slot->completed_by = number;
         icdgen_can_tell_message(
-            link, slot->key, kind, slot->data, slot->length != 0u ? slot->length : slot->count * size, on_event,
-            context);
+            link, slot->key, kind, slot->data, ICDGEN_SIZE(slot->length != 0u ? slot->length : slot->count * size),
+            on_event, context);
     }
 }
 

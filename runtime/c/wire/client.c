@@ -7,19 +7,19 @@
 ICDGEN_API size_t icd_client_bytes(const icd_link_t *link)
 {
     const size_t slot = link->can != NULL ? icd_can_slot_bytes(link) : 0u;
-    return link->longest_telecommand + (slot > link->longest ? slot : link->longest);
+    return ICDGEN_SIZE(link->longest_telecommand + (slot > link->longest ? slot : link->longest));
 }
 
 static inline icd_status_t icdgen_client_input_init(icd_client_t *client, uint8_t *buffer, size_t size)
 {
     const icd_link_t *const link = client->link;
-    const size_t first = link->longest_telecommand;
+    const size_t first = ICDGEN_SIZE(link->longest_telecommand);
     if (size < icd_client_bytes(link)) {
         return ICD_ERROR_LENGTH;
     }
     switch (client->bus) {
     case ICD_BUS_UART:
-        return icd_uart_decoder_init(&client->decoder, link, buffer + first, link->longest);
+        return icd_uart_decoder_init(&client->decoder, link, buffer + first, ICDGEN_SIZE(link->longest));
     case ICD_BUS_CAN:
         return icd_can_joiner_init(&client->joiner, link, 0, &client->slot, 1, buffer + first, size - first);
     case ICD_BUS_I2C:
@@ -142,7 +142,7 @@ ICDGEN_API icd_status_t icd_client_start(
     }
     status = icd_i2c_write(
         client->link, request->id, request->data, telecommand ? request->length : 0u,
-        telecommand && client->checks_telecommands, client->whole, client->link->longest_telecommand,
+        telecommand && client->checks_telecommands, client->whole, ICDGEN_SIZE(client->link->longest_telecommand),
         &client->whole_length);
     client->direction = request->direction;
     if (status != ICD_OK || !icdgen_client_fits_bus(client)) {

@@ -22,7 +22,7 @@ static inline uint32_t icdgen_reflected(uint32_t value, unsigned width)
 ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length)
 {
     const icd_crc_form_t *const form = crc->form;
-    const unsigned width = form->width;
+    const unsigned width = ICDGEN_CAST(unsigned, form->width);
     const uint32_t mask = UINT32_C(0xFFFFFFFF) >> (32u - width);
     const uint32_t top = UINT32_C(1) << (width - 1u);
 #ifndef ICDGEN_NO_TABLES
@@ -53,7 +53,8 @@ ICDGEN_API uint32_t icd_crc_result(const icd_crc_t *crc)
     if (!crc->fed && form->has_empty) {
         return form->empty;
     }
-    return (form->reflect_out ? icdgen_reflected(crc->value, form->width) : crc->value) ^ form->xor_out;
+    return (form->reflect_out ? icdgen_reflected(crc->value, ICDGEN_CAST(unsigned, form->width)) : crc->value) ^
+        form->xor_out;
 }
 
 ICDGEN_API uint32_t icd_crc(const icd_crc_form_t *form, const uint8_t *bytes, size_t length)

@@ -7,15 +7,19 @@
 #include "files.c"
 #include "procedure.c"
 
+static inline uint32_t icdgen_block_packets(const icd_link_t *link, uint32_t block)
+{
+    return (block + link->files->packet_bytes - 1u) / link->files->packet_bytes;
+}
+
 ICDGEN_API size_t icd_block_buffer(const icd_link_t *link, uint32_t block)
 {
-    const uint32_t size = link->files->packet_bytes;
-    return ICDGEN_CAST(size_t, (block + size - 1u) / size) * size;
+    return ICDGEN_SIZE(icdgen_block_packets(link, block) * link->files->packet_bytes);
 }
 
 ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block)
 {
-    return ((block + link->files->packet_bytes - 1u) / link->files->packet_bytes + 7u) / 8u;
+    return ICDGEN_SIZE((icdgen_block_packets(link, block) + 7u) / 8u);
 }
 
 enum {
@@ -134,7 +138,7 @@ static inline void icdgen_download_block(icd_download_t *download)
     icd_procedure_t *const procedure = &download->procedure;
     const icd_link_t *const link = procedure->link;
     const size_t covered =
-        link->download->checksum_covers_fill ? icd_block_buffer(link, download->length) : download->length;
+        link->download->checksum_covers_fill ? icd_block_buffer(link, download->length) : ICDGEN_SIZE(download->length);
     const uint32_t wanted = icdgen_download_wanted(download);
     if (icd_crc(link->crc16, download->buffer, covered) != download->checksum) {
         if (download->rounds == link->download->rounds) {
@@ -146,7 +150,7 @@ static inline void icdgen_download_block(icd_download_t *download)
         return;
     }
     if (download->length != 0u) {
-        download->on_block(download->context, download->offset, download->buffer, download->length);
+        download->on_block(download->context, download->offset, download->buffer, ICDGEN_SIZE(download->length));
         download->offset += download->length;
     }
     if (download->size == ICD_SIZE_UNKNOWN && download->length < wanted) {
@@ -279,7 +283,9 @@ ICDGEN_API icd_status_t icd_download_init(
     uint32_t size,
     uint32_t block,
     uint8_t *buffer,
+    size_t buffer_size,
     uint8_t *bitmap,
+    size_t bitmap_size,
     icd_block_fn *on_block,
     void *context)
 {
@@ -289,12 +295,17 @@ ICDGEN_API icd_status_t icd_download_init(
     if (icdgen_procedure_init(&download->procedure, link, known, icdgen_download_resume) != ICD_OK) {
         return ICD_ERROR_UNSUPPORTED;
     }
+    block = block != 0u && block < link->files->block_bytes ? block : link->files->block_bytes;
+    if (buffer_size < icdgen_block_packets(link, block) * link->files->packet_bytes ||
+        bitmap_size < icd_block_bitmap(link, block)) {
+        return ICD_ERROR_LENGTH;
+    }
     download->procedure.packet = icdgen_download_packet;
     download->bus = bus;
     download->type = type;
     download->counter = counter;
     download->size = size;
-    download->block = block != 0u && block < link->files->block_bytes ? block : link->files->block_bytes;
+    download->block = block;
     download->buffer = buffer;
     download->got = bitmap;
     download->on_block = on_block;

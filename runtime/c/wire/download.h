@@ -45,7 +45,8 @@ ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block);
 
 /**
  * `size`: bytes of the file, or ICD_SIZE_UNKNOWN. `block`: bytes asked for at once, 0 for those of the ICD. `buffer`
- * holds icd_block_buffer() bytes, `bitmap` icd_block_bitmap().
+ * holds icd_block_buffer() bytes, `bitmap` icd_block_bitmap(): NODE_BLOCK_BYTES and NODE_BLOCK_BITMAP_BYTES do for any.
+ * ICD_ERROR_LENGTH if either is smaller, ICD_ERROR_UNSUPPORTED if the node has no downloads on that bus.
  */
 ICDGEN_API icd_status_t icd_download_init(
     icd_download_t *download,
@@ -56,7 +57,9 @@ ICDGEN_API icd_status_t icd_download_init(
     uint32_t size,
     uint32_t block,
     uint8_t *buffer,
+    size_t buffer_size,
     uint8_t *bitmap,
+    size_t bitmap_size,
     icd_block_fn *on_block,
     void *context);
 

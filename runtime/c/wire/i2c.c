@@ -53,7 +53,7 @@ ICDGEN_API icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, 
     if (checked && link->checksum == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    *length = ICDGEN_U32(message->length) + (checked ? link->checksum->bytes : 0u);
+    *length = ICDGEN_SIZE(message->length) + (checked ? link->checksum->bytes : 0u);
     return ICD_OK;
 }
 

@@ -40,7 +40,8 @@ ICDGEN_API bool icd_log_next(icd_log_frames_t *frames, icd_log_frame_t *frame)
 ICDGEN_API size_t icd_log_bytes(const icd_link_t *link)
 {
     const icd_log_mask_form_t *const mask = link->log_mask;
-    const size_t most = mask->size + ICDGEN_U32(link->log_file->frames_at) + (mask->size * 8u * mask->slot_bytes);
+    const size_t most =
+        ICDGEN_SIZE(mask->size) + link->log_file->frames_at + (ICDGEN_SIZE(mask->size) * 8u * mask->slot_bytes);
     return most > link->log_file->header_bytes ? most : link->log_file->header_bytes;
 }
 

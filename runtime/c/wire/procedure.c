@@ -148,27 +148,20 @@ static inline void icdgen_damaged(icd_procedure_t *procedure, const icd_event_t 
 ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, const icd_event_t *event)
 {
     procedure->now = now;
-    switch (event->kind) {
-    case ICD_EVENT_PACKET:
+    if (event->kind == ICD_EVENT_PACKET) {
         if (procedure->packet != NULL) {
             procedure->packet(procedure, event->number, event->data, event->length);
         }
-        break;
-    case ICD_EVENT_DONE:
-    case ICD_EVENT_REFUSED:
-    case ICD_EVENT_TIMEOUT:
-        if (procedure->asked) {
-            procedure->asked = false;
-            if (event->kind == ICD_EVENT_REFUSED && event->code >= 0 && event->reason == ICD_REASON_UNKNOWN) {
-                icdgen_damaged(procedure, event);
-            } else {
-                procedure->damaged = 0;
-                icdgen_resume(procedure, event);
-            }
+    } else if (
+        procedure->asked &&
+        (event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_REFUSED || event->kind == ICD_EVENT_TIMEOUT)) {
+        procedure->asked = false;
+        if (event->kind == ICD_EVENT_REFUSED && event->code >= 0 && event->reason == ICD_REASON_UNKNOWN) {
+            icdgen_damaged(procedure, event);
+        } else {
+            procedure->damaged = 0;
+            icdgen_resume(procedure, event);
         }
-        break;
-    default:
-        break;
     }
 }
 

@@ -32,7 +32,7 @@ static inline void icdgen_upload_begin(icd_upload_t *upload)
     icd_procedure_t *const procedure = &upload->procedure;
     const uint32_t packet_bytes = procedure->link->files->packet_bytes;
     upload->count = (icdgen_upload_length(upload) + packet_bytes - 1u) / packet_bytes;
-    memset(upload->missing, 0xFF, (upload->count + 7u) / 8u);
+    memset(upload->missing, 0xFF, ICDGEN_SIZE((upload->count + 7u) / 8u));
     icdgen_command(procedure, &procedure->link->upload->begin, true, ICDGEN_UPLOAD_BEGUN);
 }
 
@@ -53,7 +53,8 @@ static inline void icdgen_upload_packet(const icd_upload_t *upload, uint32_t pos
     const uint32_t at = position * files->packet_bytes;
     const uint32_t left = icdgen_upload_length(upload) - at;
     memset(packet, files->fill, files->packet_bytes);
-    memcpy(packet, upload->file + upload->sent + at, left < files->packet_bytes ? left : files->packet_bytes);
+    memcpy(
+        packet, upload->file + upload->sent + at, ICDGEN_SIZE(left < files->packet_bytes ? left : files->packet_bytes));
 }
 
 /* Sends the next packet that is missing; false if there is none behind those that were sent. */
@@ -141,7 +142,7 @@ static inline uint32_t icdgen_upload_checksum(const icd_upload_t *upload)
     uint32_t left = upload->count * link->files->packet_bytes - length;
     icd_crc_t crc;
     icd_crc_init(&crc, link->crc16);
-    icd_crc_feed(&crc, upload->file + upload->sent, length);
+    icd_crc_feed(&crc, upload->file + upload->sent, ICDGEN_SIZE(length));
     for (left = link->upload->checksum_covers_fill ? left : 0u; left != 0u; --left) {
         icd_crc_feed(&crc, &link->files->fill, 1);
     }
@@ -245,7 +246,8 @@ ICDGEN_API icd_status_t icd_upload_init(
     const uint8_t *file,
     uint32_t size,
     uint32_t block,
-    uint8_t *bitmap)
+    uint8_t *bitmap,
+    size_t bitmap_size)
 {
     const bool known = link->upload != NULL && link->crc16 != NULL && link->hole_map != NULL;
     memset(upload, 0, sizeof *upload);
@@ -258,10 +260,14 @@ ICDGEN_API icd_status_t icd_upload_init(
     if (link->upload->destination_bytes != 0u && size > link->upload->destination_bytes) {
         return ICD_ERROR_LENGTH;
     }
+    block = block != 0u && block < link->files->block_bytes ? block : link->files->block_bytes;
+    if (bitmap_size < icd_block_bitmap(link, block)) {
+        return ICD_ERROR_LENGTH;
+    }
     upload->destination = destination;
     upload->file = file;
     upload->size = size;
-    upload->block = block != 0u && block < link->files->block_bytes ? block : link->files->block_bytes;
+    upload->block = block;
     upload->missing = bitmap;
     return ICD_OK;
 }

@@ -28,7 +28,7 @@ typedef struct {
 /**
  * The file must stay where it is. `block`: bytes a block, 0 for those of the ICD. `bitmap` holds icd_block_bitmap()
  * bytes. ICD_ERROR_UNSUPPORTED if the node takes no uploads, ICD_ERROR_RANGE if the destination is not supported,
- * ICD_ERROR_LENGTH if it holds less.
+ * ICD_ERROR_LENGTH if it holds less than the file, or the bitmap is smaller.
  */
 ICDGEN_API icd_status_t icd_upload_init(
     icd_upload_t *upload,
@@ -37,6 +37,7 @@ ICDGEN_API icd_status_t icd_upload_init(
     const uint8_t *file,
     uint32_t size,
     uint32_t block,
-    uint8_t *bitmap);
+    uint8_t *bitmap,
+    size_t bitmap_size);
 
 #endif /* ICDGEN_WIRE_UPLOAD_H */

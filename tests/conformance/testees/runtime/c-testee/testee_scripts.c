@@ -166,11 +166,16 @@ typedef union {
     icd_program_operation_t program;
 } any_procedure_t;
 
-/* Room of just the size that the blocks of a transfer need. */
-static uint8_t *block_memory(const icd_link_t *link, uint32_t block, size_t (*size_of)(const icd_link_t *, uint32_t))
+/* Just the size that the blocks of a transfer need. */
+static size_t block_size(const icd_link_t *link, uint32_t block, size_t (*size_of)(const icd_link_t *, uint32_t))
 {
     const uint32_t most = link->files != NULL ? link->files->block_bytes : 0u;
-    return (uint8_t *)memory(link->files != NULL ? size_of(link, block != 0u && block < most ? block : most) : 0u);
+    return link->files != NULL ? size_of(link, block != 0u && block < most ? block : most) : 0u;
+}
+
+static uint8_t *block_memory(const icd_link_t *link, uint32_t block, size_t (*size_of)(const icd_link_t *, uint32_t))
+{
+    return (uint8_t *)memory(block_size(link, block, size_of));
 }
 
 static icd_status_t begin_download(any_procedure_t *any, const icd_link_t *link)
@@ -180,7 +185,8 @@ static icd_status_t begin_download(any_procedure_t *any, const icd_link_t *link)
     const uint32_t size = next_or(ICD_SIZE_UNKNOWN), block = next_number();
     return icd_download_init(
         &any->download, link, bus, type, counter, size, block, block_memory(link, block, icd_block_buffer),
-        block_memory(link, block, icd_block_bitmap), on_block, NULL);
+        block_size(link, block, icd_block_buffer), block_memory(link, block, icd_block_bitmap),
+        block_size(link, block, icd_block_bitmap), on_block, NULL);
 }
 
 static icd_status_t begin_upload(any_procedure_t *any, const icd_link_t *link)
@@ -190,7 +196,7 @@ static icd_status_t begin_upload(any_procedure_t *any, const icd_link_t *link)
     const octets_t file = next_octets();
     const icd_status_t status = icd_upload_init(
         &any->upload, link, destination, file.data, (uint32_t)file.length, block,
-        block_memory(link, block, icd_block_bitmap));
+        block_memory(link, block, icd_block_bitmap), block_size(link, block, icd_block_bitmap));
     if (status == ICD_ERROR_LENGTH) {
         refuse_length("too-long", link->upload->destination_bytes, file.length);
     }
@@ -225,8 +231,7 @@ static icd_status_t begin(any_procedure_t *any, const icd_link_t *link, const ch
 
 static void take_event(icd_procedure_t *procedure, uint32_t now, const char *name)
 {
-    static const icd_event_kind_t kinds[] = {
-        ICD_EVENT_DONE, ICD_EVENT_REFUSED, ICD_EVENT_TIMEOUT, ICD_EVENT_PACKET};
+    static const icd_event_kind_t kinds[] = {ICD_EVENT_DONE, ICD_EVENT_REFUSED, ICD_EVENT_TIMEOUT, ICD_EVENT_PACKET};
     icd_event_t event;
     octets_t octets;
     size_t i;
@@ -246,7 +251,8 @@ static void take_event(icd_procedure_t *procedure, uint32_t now, const char *nam
 
 static void put_step(icd_procedure_t *procedure, uint32_t now)
 {
-    static const char *const results[] = {"", "done", "refused", "timeout", "parameter", "length", "rounds", "checksum", "error"};
+    static const char *const results[] = {
+        "", "done", "refused", "timeout", "parameter", "length", "rounds", "checksum", "error"};
     icd_request_t request;
     uint32_t deadline;
     const bool asks = icd_procedure_next(procedure, now, &request);

@@ -1,0 +1,63 @@
+"""Whoever lends a buffer says how large it is, and is refused where it is too small: nothing is written past its end."""
+
+from __future__ import annotations
+
+import subprocess
+
+import pytest
+
+from tests.c import harness
+
+PROGRAM = r"""
+#include "bootloader.h"
+#include "cubeacp.h"
+#include <assert.h>
+
+static void on_block(void *context, uint32_t offset, const uint8_t *data, size_t length)
+{
+    (void)context, (void)offset, (void)data, (void)length;
+}
+
+static icd_status_t download(uint32_t block, size_t size, size_t bits)
+{
+    static icd_download_t one;
+    static uint8_t buffer[CUBEACP_BLOCK_BYTES], bitmap[CUBEACP_BLOCK_BITMAP_BYTES];
+    return icd_download_init(
+        &one, cubeacp_link(), ICD_BUS_UART, 1, 2, ICD_SIZE_UNKNOWN, block, buffer, size, bitmap, bits, on_block, NULL);
+}
+
+static icd_status_t upload(uint32_t block, size_t bits)
+{
+    static icd_upload_t one;
+    static uint8_t bitmap[BOOTLOADER_BLOCK_BITMAP_BYTES];
+    static const uint8_t file[100];
+    return icd_upload_init(&one, bootloader_link(), DESTINATION, file, sizeof file, block, bitmap, bits);
+}
+
+int main(void)
+{
+    const icd_link_t *const link = cubeacp_link();
+    const size_t all = CUBEACP_BLOCK_BYTES, bits = CUBEACP_BLOCK_BITMAP_BYTES;
+    assert(download(0, all, bits) == ICD_OK);
+    assert(download(0, all - 1u, bits) == ICD_ERROR_LENGTH && download(0, all, bits - 1u) == ICD_ERROR_LENGTH);
+    assert(download(100, icd_block_buffer(link, 100), icd_block_bitmap(link, 100)) == ICD_OK);
+    assert(download(100, icd_block_buffer(link, 100) - 1u, 1) == ICD_ERROR_LENGTH && download(100, all, 0) == ICD_ERROR_LENGTH);
+    assert(download(CUBEACP_BLOCK_BYTES + 1u, all, bits) == ICD_OK); /* no block is larger than those of the ICD */
+    assert(upload(0, BOOTLOADER_BLOCK_BITMAP_BYTES) == ICD_OK);
+    assert(upload(0, BOOTLOADER_BLOCK_BITMAP_BYTES - 1u) == ICD_ERROR_LENGTH && upload(100, 0) == ICD_ERROR_LENGTH);
+    return 0;
+}
+"""
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_a_buffer_that_is_too_small_for_a_block_is_refused(tmp_path, compiler):
+    headers = harness.generate(harness.shipped(), tmp_path)
+    icd = harness.shipped()
+    destination = icd.protocol_of(icd.node("bootloader"))["file_transfer"]["upload"]["destinations"][0]
+    source = tmp_path / "buffers.c"
+    source.write_text(PROGRAM.replace("DESTINATION", str(destination)))
+    flags = ("-std=c99", *harness.WARNINGS, *harness.SANITIZERS, f"-I{headers}")
+    program = harness.compile(source, *flags, compiler=compiler, output=tmp_path / "buffers")
+    done = subprocess.run([program], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
