@@ -98,9 +98,10 @@ def _double(bits: str) -> float:
 
 
 def _same(ours: object, theirs: object, part: dict) -> bool:
-    """Whether a testee's raw value is the library's. Of text a library keeps what stands before a NUL; some read bytes as numbers."""
+    """Whether a testee's raw value is the library's. Of text a library keeps what stands before a NUL."""
     if part["type"] in ("bytes", "text"):
-        data = theirs.to_bytes(part["bits"] // 8, "little") if isinstance(theirs, int) else bytes(theirs)  # type: ignore[call-overload]
+        wide = isinstance(theirs, int)  # some read bytes as one number
+        data = theirs.to_bytes(part["bits"] // 8, "little") if wide else bytes(theirs)  # type: ignore
         mine = bytes.fromhex(str(ours))
         return mine == data or (part["type"] == "text" and mine.startswith(data + b"\0"))
     if isinstance(theirs, (list, tuple)):
