@@ -12,7 +12,7 @@ from icdgen.describe.comments import Comment, field_comment, message_comment
 from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.named import Named
-from icdgen.describe.storage import Storage, holding
+from icdgen.describe.storage import Storage, holding, storage_of
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Enum, Field, Icd, Message, Node
 
@@ -33,7 +33,7 @@ class FieldDescription(Named[Field]):
     def __init__(self, field: Field, message: MessageDescription, enum: EnumDescription | None) -> None:
         super().__init__(field, message.node.vocabulary, f"field `{field.name}` of `{message.model.name}`")
         self.message, self.enum = message, enum
-        self.storage = enum.storage if enum is not None else Storage(holding(field.bits), field.type == "int")
+        self.storage = enum.storage if enum is not None else storage_of(field.bits, field.signed)
         self.steps = steps.steps(field)
         self.physical_name = f"{self.name}_{self.unit_name}"
 

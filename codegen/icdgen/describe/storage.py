@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 
@@ -23,3 +24,9 @@ class Storage(NamedTuple):
 def holding(bits: int) -> int:
     """The smallest of 8, 16, 32 and 64 that is not below ``bits``."""
     return 8 if bits <= 8 else 16 if bits <= 16 else 32 if bits <= 32 else 64
+
+
+@cache
+def storage_of(bits: int, signed: bool) -> Storage:
+    """The smallest integer that holds ``bits``."""
+    return Storage(holding(bits), signed)

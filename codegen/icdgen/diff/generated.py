@@ -202,9 +202,9 @@ def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
         message = Message("Samples", TELEMETRY, 0, tuple(own), node="samples")
         icd = Icd((Node("samples", "", "", "little", "lsb0", (message,), (), vocabulary=vocabulary),))
         for language in LANGUAGES:
-            for _, text, _, source in backends.get(language).identifiers(icd):
-                if id(source) in found:
-                    found[id(source)].append((language, text))
+            for one in backends.get(language).identifiers(icd):
+                if id(one.source) in found:
+                    found[id(one.source)].append((language, one.text))
     return list(found.values())
 
 
@@ -300,8 +300,9 @@ class _Cut:
         types: dict[int, str] = {}  # Rust: id(pair) -> name of the type
         for language in LANGUAGES:
             stems: dict[str, str | None] = {}  # scope -> stem of its names, None if they are no names
-            for scope, text, _, source in backends.get(language).identifiers(icd):
-                pair = self.marks.get(id(source)) if source is not None else None
+            for one in backends.get(language).identifiers(icd):
+                scope, text = one.scope, one.text
+                pair = self.marks.get(id(one.source)) if one.source is not None else None
                 if pair is None or not text.isidentifier():
                     continue
                 stem = stems.get(scope, "?")
