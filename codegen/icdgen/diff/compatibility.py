@@ -37,6 +37,11 @@ class Direction(NamedTuple):
     total: int
     general: tuple[str, ...]
 
+    @property
+    def worst_first(self) -> list[Frame]:
+        """The frames, those first that are not understood at all."""
+        return sorted(self.frames, key=lambda frame: frame.verdict != NO)
+
 
 Judge = Callable[[MessagePair], tuple[str, tuple[str, ...]]]
 
