@@ -242,7 +242,7 @@ class _Cut:
 
     def enum(self, enum: Enum, names: dict[str, str]) -> Enum:
         pair = self.match.enums.get(id(enum))
-        members = {id(self.side_of(p)): p for p in pair.members} if pair is not None else {}
+        members = {id(self.side_of(p)): p for p in pair.parts} if pair is not None else {}
         kept = [m for m in enum.members if id(m) in members and id(members[id(m)]) in self.kept]
         own = tuple(self.marked(m, members[id(m)]) for m in kept)
         made = self.marked(enum, pair, members=own, node=names.get(enum.node, enum.node))
@@ -251,7 +251,7 @@ class _Cut:
 
     def message(self, message: Message, names: dict[str, str]) -> Message:
         pair = self.match.messages[id(message)]
-        fields = {id(self.side_of(p)): p for p in pair.fields}
+        fields = {id(self.side_of(p)): p for p in pair.parts}
         own = []
         for one in message.fields:
             if id(fields[id(one)]) not in self.kept or not _is_sound(one):

@@ -85,12 +85,12 @@ class Drawing(NamedTuple):
 
 def draw(pair: MessagePair, changes: list[Change]) -> Drawing:
     """The layouts of a message; one strip is empty where it is only in one ICD."""
-    kinds = {id(one): _kind(one, changes) for one in pair.fields}
+    kinds = {id(one): _kind(one, changes) for one in pair.parts}
     sides = tuple(message.length * 8 if message is not None else 0 for message in (pair.before, pair.after))
     rows = [Row() for _ in range((max(*sides, 1) + BITS - 1) // BITS)]
     for size, y in zip(sides, (OLD_Y, NEW_Y), strict=True):
         _frame(rows, size, y)
-    for number, one in enumerate(sorted(pair.fields, key=lambda p: p.any.at)):
+    for number, one in enumerate(sorted(pair.parts, key=lambda p: p.any.at)):
         before = _boxes(rows, one.old, OLD_Y, kinds[id(one)], f"f{number}") if one.before is not None else {}
         after = _boxes(rows, one.new, NEW_Y, kinds[id(one)], f"f{number}") if one.after is not None else {}
         for index in before.keys() & after.keys():
