@@ -7,9 +7,9 @@ import re
 from icdgen import __version__, shipped
 from icdgen.diff.accepted import about_stale
 from icdgen.diff.layers import ABOUT, TEXT
-from icdgen.diff.pairs import FieldPair, MessagePair
+from icdgen.diff.pairs import MessagePair
 from icdgen.diff.report import Report
-from icdgen.diff.reports.drawing import Drawing, Row, draw
+from icdgen.diff.reports.drawing import Drawing, draw
 from icdgen.diff.reports.groups import Group, groups
 from icdgen.reports.excerpt import printable
 
@@ -61,9 +61,4 @@ def coded(text: str) -> list[tuple[str, bool]]:
 
 def layouts(group: Group) -> Drawing | None:
     """Both layouts of a message, where any bit of them changed its place or its sense."""
-    owner = group.owner
-    if not isinstance(owner, MessagePair):
-        return None
-    of_fields = [change for change in group.changes if isinstance(change.pair, FieldPair)]
-    made = draw(owner, of_fields)
-    return made if any(isinstance(part, Row) and part.is_new for part in made.parts) else None
+    return draw(group.owner, group.changes) if isinstance(group.owner, MessagePair) else None
