@@ -68,7 +68,7 @@ def started(client: Session, data: bytes) -> None:
     """Uploads a program, copies it to where it can run, and starts it. The boot program runs."""
     boot = Session(ICD, STARTER, client.port, settings=FAST)
     boot.known = hasty(boot.known)
-    data = data[: boot.known.files.numbers["upload.destination_bytes"]]
+    data = data[: boot.known.files.upload.destination_bytes]
     done(boot, "upload", transfer.Upload(boot.known, DESTINATION, data))
     done(boot, "copy", programs.ProgramCopy(boot.known, DESTINATION))
     running = ICD.protocol_of(STARTER)["program_copy"]["destination"]

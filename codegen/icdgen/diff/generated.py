@@ -187,7 +187,7 @@ def _decisive(field: Field) -> object:
 
 def _is_sound(field: Field) -> bool:
     """Whether a backend can make anything of the field: an ICD that was not checked may hold what none can."""
-    if field.type == "bytes":
+    if field.is_bytes:
         return field.at % 8 == field.bits % 8 == 0
     wanted = {"bool": field.bits == 1, "float": field.bits in (32, 64), "enum": field.enum is not None}
     return field.bits <= 64 and wanted.get(field.type, True)
@@ -303,8 +303,8 @@ class _Cut:
         if language == "rust":
             return rust.raw_type(one)
         if language == "c":
-            return f"uint8_t[{field.bits // 8}]" if field.type == "bytes" else c.type_of(one)
-        plain = {"uint": "int", "enum": "int"}.get(field.type, field.type)
+            return f"uint8_t[{field.bits // 8}]" if field.is_bytes else c.type_of(one)
+        plain = {"uint": "int", "enum": "int", "text": "bytes"}.get(field.type, field.type)
         return camel(one.enum.words) if one.enum is not None else plain
 
 

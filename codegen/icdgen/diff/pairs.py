@@ -207,11 +207,13 @@ def orders(node: Node) -> tuple[str, str]:
 
 def position(node: Node, one: Field) -> Position:
     """The bits that the field lies on, comparable between nodes of different byte and bit order."""
-    return (byte_range(one),) if one.type == "bytes" else pieces(one, node)
+    return (byte_range(one),) if one.is_bytes else pieces(one, node)
 
 
 def kind(one: Field) -> str:
     """How the bits are read: as an unsigned or signed number, as a float, as bytes."""
+    if one.is_bytes:
+        return "bytes"
     return "unsigned" if one.type in ("uint", "enum", "bool") else one.type
 
 
