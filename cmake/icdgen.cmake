@@ -1,12 +1,14 @@
 # C and other code from ICDs as a step of the build.
 #
 #   include(icdgen)
-#   icdgen_add_library(<target> LANG c ICDS <file>... [OUT <folder>] [TEMPLATES <folder>])
+#   icdgen_add_library(<target> LANG c ICDS <file>... [OUT <folder>] [TEMPLATES <folder>] [HEADER_ONLY])
 #   target_link_libraries(<program> PRIVATE <target>)
 #
-# <target> is an INTERFACE library whose include folder holds the generated headers. They are generated before anything
-# that links it is compiled, and again when an ICD changes, its errata, or a file that it includes. Headers whose
-# content stays the same are not touched, so only what uses the changed messages is compiled again.
+# <target> is a library whose include folder holds the generated headers, and which has the functions of the wire layer
+# once, however many units use it (ICDGEN_SHARED). With HEADER_ONLY, for a language other than C, and in a project without
+# C it is an INTERFACE library: each unit has those that it uses for itself. All is generated before anything that links
+# it is compiled, and again when an ICD changes, its errata, or a file that it includes. Files whose content stays the
+# same are not touched, so only what uses the changed messages is compiled again.
 #
 # ICDGEN_COMMAND, a list, is the command to run; by default `icdgen` from the PATH, else `python -m icdgen`.
 
@@ -30,6 +32,21 @@ if(CMAKE_SCRIPT_MODE_FILE AND CMAKE_SCRIPT_MODE_FILE STREQUAL CMAKE_CURRENT_LIST
   string(REPLACE " \\\n  " "\n" outputs "${outputs}")
   string(REGEX REPLACE "\\\\([ #:\\\\])" "\\1" outputs "${outputs}")
   string(REPLACE "$$" "$" outputs "${outputs}")
+  # All sources, which CMake cannot know before the first build, as one; it is never empty, as C demands.
+  set(sources "typedef int icdgen_sources_t;\n")
+  string(REPLACE "\n" ";" files "${outputs}")
+  foreach(file IN LISTS files)
+    if(file MATCHES "\\.c$")
+      string(APPEND sources "#include \"${file}\"\n")
+    endif()
+  endforeach()
+  set(known "")
+  if(EXISTS "${STEM}.c")
+    file(READ "${STEM}.c" known)
+  endif()
+  if(NOT known STREQUAL sources)
+    file(WRITE "${STEM}.c" "${sources}")
+  endif()
   file(READ "${STEM}.outputs" known)
   if(NOT known STREQUAL outputs)
     file(WRITE "${STEM}.outputs" "${outputs}")
@@ -59,9 +76,9 @@ function(_icdgen_find_command)
 endfunction()
 
 function(icdgen_add_library target)
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "LANG;OUT;TEMPLATES" "ICDS")
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "HEADER_ONLY" "LANG;OUT;TEMPLATES" "ICDS")
   if(NOT ARG_LANG OR NOT ARG_ICDS OR ARG_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "usage: icdgen_add_library(<target> LANG <language> ICDS <file>... [OUT <folder>] [TEMPLATES <folder>])")
+    message(FATAL_ERROR "usage: icdgen_add_library(<target> LANG <language> ICDS <file>... [OUT <folder>] [TEMPLATES <folder>] [HEADER_ONLY])")
   endif()
   _icdgen_find_command()
 
@@ -93,14 +110,22 @@ function(icdgen_add_library target)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${stem}.outputs")
   add_custom_command(
     OUTPUT "${stem}.stamp"
-    BYPRODUCTS ${outputs}
+    BYPRODUCTS "${stem}.c" ${outputs}
     COMMAND "${CMAKE_COMMAND}" "-DCOMMAND=${command}" "-DSTEM=${stem}" -P "${_ICDGEN_MODULE}"
     DEPENDS ${icds} ${program} "${_ICDGEN_MODULE}"
     DEPFILE "${stem}.d"
     COMMENT "Generating ${target} (${ARG_LANG})"
     VERBATIM)
   add_custom_target(${target}-icdgen DEPENDS "${stem}.stamp")
-  add_library(${target} INTERFACE)
+  get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
+  if(ARG_LANG STREQUAL "c" AND "C" IN_LIST languages AND NOT ARG_HEADER_ONLY)
+    add_library(${target} STATIC "${stem}.c")
+    target_compile_definitions(${target} PUBLIC ICDGEN_SHARED)
+    target_include_directories(${target} PUBLIC "${out}")
+    target_compile_features(${target} PRIVATE c_std_99)
+  else()
+    add_library(${target} INTERFACE)
+    target_include_directories(${target} INTERFACE "${out}")
+  endif()
   add_dependencies(${target} ${target}-icdgen)
-  target_include_directories(${target} INTERFACE "${out}")
 endfunction()

@@ -8,10 +8,20 @@
  * looks at a clock or allocates: bytes go in, bytes and events come out, memory and time (milliseconds, which may wrap)
  * are the caller's. What differs from node to node is in its link, which NODE_link() of its header gives.
  *
+ * ICDGEN_SHARED     define it where the program has several units: this header declares the functions then, and
+ *                   icdgen_wire.c and NODE/link.c are compiled once. Else each unit has those that it uses for itself.
  * ICDGEN_NO_TABLES  define it to compute checksums without tables: slower, and smaller by 512 bytes each.
  */
 
 #include "icdgen.h"
+
+#ifndef ICDGEN_SHARED
+#define ICDGEN_API static inline
+#elif defined(__cplusplus)
+#define ICDGEN_API extern "C"
+#else
+#define ICDGEN_API extern
+#endif
 
 /* ---- what the ICD says about a node ------------------------------------------------------------------------------ */
 
@@ -474,123 +484,11 @@ typedef struct {
     const icd_step_t *identification;
 } icd_link_t;
 
-static inline bool icdgen_same_name(const char *one, const char *other)
-{
-    while (*one != '\0' && *one == *other) {
-        ++one;
-        ++other;
-    }
-    return *one == *other;
-}
-
 /** Whether the node has the messages of that one, which is so of itself and of those that it includes. */
-static inline bool icd_has_messages_of(const icd_link_t *link, const char *node)
-{
-    for (size_t i = 0; i < link->node_count; ++i) {
-        if (icdgen_same_name(link->nodes[i], node)) {
-            return true;
-        }
-    }
-    return false;
-}
+ICDGEN_API bool icd_has_messages_of(const icd_link_t *link, const char *node);
 
 /** The message of an id; NULL if the node has none. */
-static inline const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, unsigned id)
-{
-    const icd_message_t *const table = direction == ICD_TELECOMMAND ? link->telecommands : link->telemetry;
-    size_t low = 0, high = direction == ICD_TELECOMMAND ? link->telecommand_count : link->telemetry_count;
-    while (low < high) {
-        const size_t middle = (low + high) / 2u;
-        if (table[middle].id == id) {
-            return &table[middle];
-        }
-        if (table[middle].id < id) {
-            low = middle + 1u;
-        } else {
-            high = middle;
-        }
-    }
-    return NULL;
-}
-
-/* A number of several bytes in the node's byte order. */
-static inline uint32_t icdgen_number(const icd_link_t *link, const uint8_t *bytes, size_t count)
-{
-    uint32_t number = 0;
-    for (size_t i = 0; i < count; ++i) {
-        number = (number << 8) | bytes[link->little ? count - 1u - i : i];
-    }
-    return number;
-}
-
-/* The reverse; ICD_ERROR_RANGE if it does not fit. */
-static inline icd_status_t icdgen_put_number(const icd_link_t *link, uint8_t *bytes, size_t count, uint32_t number)
-{
-    for (size_t i = 0; i < count; ++i) {
-        bytes[link->little ? i : count - 1u - i] = ICDGEN_U8(number & 0xFFu);
-        number >>= 8;
-    }
-    return number == 0u ? ICD_OK : ICD_ERROR_RANGE;
-}
-
-static inline const icd_place_t *icdgen_place(const icd_step_t *step, icd_role_t role)
-{
-    for (size_t i = 0; i < step->place_count; ++i) {
-        if (step->places[i].role == role) {
-            return &step->places[i];
-        }
-    }
-    return NULL;
-}
-
-/* The raw value of a role in a frame, 0 if the frame has no such role. */
-static inline uint32_t icdgen_get(const icd_link_t *link, const icd_step_t *step, const uint8_t *frame, icd_role_t role)
-{
-    const icd_place_t *const place = icdgen_place(step, role);
-    uint32_t value = 0;
-    unsigned below = 0;
-    unsigned at = place != NULL ? place->at : 0u;
-    const unsigned end = place != NULL ? at + place->bits : 0u;
-    while (at < end) {
-        const unsigned first = at % 8u;
-        const unsigned count = 8u - first < end - at ? 8u - first : end - at;
-        const unsigned shift = link->msb0 ? 8u - first - count : first;
-        const uint32_t run = (ICDGEN_U32(frame[at / 8u]) >> shift) & ((1u << count) - 1u);
-        value = link->little ? value | (run << below) : (value << count) | run;
-        below += count;
-        at += count;
-    }
-    return value;
-}
-
-/* Puts the raw value of a role into a frame in which its bits are 0. */
-static inline void icdgen_put(
-    const icd_link_t *link, const icd_step_t *step, uint8_t *frame, icd_role_t role, uint32_t value)
-{
-    const icd_place_t *const place = icdgen_place(step, role);
-    unsigned at = place != NULL ? place->at : 0u;
-    const unsigned end = place != NULL ? at + place->bits : 0u;
-    unsigned below = link->little ? 0u : end - at;
-    while (at < end) {
-        const unsigned first = at % 8u;
-        const unsigned count = 8u - first < end - at ? 8u - first : end - at;
-        const unsigned shift = link->msb0 ? 8u - first - count : first;
-        below -= link->little ? 0u : count;
-        frame[at / 8u] = ICDGEN_U8(frame[at / 8u] | (((value >> below) & ((1u << count) - 1u)) << shift));
-        below += link->little ? count : 0u;
-        at += count;
-    }
-}
-
-/* Whether a number is one of those that are allowed, of which NULL stands for all. */
-static inline bool icdgen_allowed(const uint8_t *allowed, size_t count, uint8_t number)
-{
-    bool found = allowed == NULL;
-    for (size_t i = 0; !found && i < count; ++i) {
-        found = allowed[i] == number;
-    }
-    return found;
-}
+ICDGEN_API const icd_message_t *icd_find_message(const icd_link_t *link, icd_direction_t direction, unsigned id);
 
 /** Who the node is. */
 typedef struct {
@@ -600,22 +498,8 @@ typedef struct {
 } icd_identity_t;
 
 /** What an identification frame tells, to be called before anything else is believed. */
-static inline icd_status_t icd_identify(
-    const icd_link_t *link, const uint8_t *frame, size_t length, icd_identity_t *identity)
-{
-    const icd_step_t *const step = link->identification;
-    if (step == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    if (length != step->length) {
-        return ICD_ERROR_LENGTH;
-    }
-    identity->node_type = icdgen_get(link, step, frame, ICD_ROLE_NODE_TYPE);
-    identity->interface_version = icdgen_get(link, step, frame, ICD_ROLE_INTERFACE_VERSION);
-    identity->matches = (link->node_type < 0 || ICDGEN_U32(link->node_type) == identity->node_type) &&
-        (link->interface_version < 0 || ICDGEN_U32(link->interface_version) == identity->interface_version);
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t
+icd_identify(const icd_link_t *link, const uint8_t *frame, size_t length, icd_identity_t *identity);
 
 /* ---- events ------------------------------------------------------------------------------------------------------ */
 
@@ -661,23 +545,6 @@ typedef struct {
 /** Is told of each event, with the context that was given along. */
 typedef void icd_event_fn(void *context, const icd_event_t *event);
 
-static inline icd_event_t icdgen_event(icd_event_kind_t kind, uint8_t id)
-{
-    icd_event_t event;
-    memset(&event, 0, sizeof event);
-    event.kind = kind;
-    event.id = id;
-    event.code = -1;
-    event.parameter = -1;
-    return event;
-}
-
-/* Whether a time has come; times may wrap. */
-static inline bool icdgen_reached(uint32_t now, uint32_t time)
-{
-    return now - time < UINT32_C(0x80000000);
-}
-
 /* ---- checksums --------------------------------------------------------------------------------------------------- */
 
 /** A CRC that is fed piece by piece. */
@@ -687,87 +554,20 @@ typedef struct {
     bool fed;
 } icd_crc_t;
 
-static inline void icd_crc_init(icd_crc_t *crc, const icd_crc_form_t *form)
-{
-    crc->form = form;
-    crc->value = form->init;
-    crc->fed = false;
-}
+ICDGEN_API void icd_crc_init(icd_crc_t *crc, const icd_crc_form_t *form);
 
-static inline uint32_t icdgen_reflected(uint32_t value, unsigned width)
-{
-    uint32_t reflected = 0;
-    for (unsigned i = 0; i < width; ++i) {
-        reflected = (reflected << 1) | ((value >> i) & 1u);
-    }
-    return reflected;
-}
-
-static inline void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length)
-{
-    const icd_crc_form_t *const form = crc->form;
-    const unsigned width = form->width;
-    const uint32_t mask = UINT32_C(0xFFFFFFFF) >> (32u - width);
-    const uint32_t top = UINT32_C(1) << (width - 1u);
-#ifndef ICDGEN_NO_TABLES
-    const unsigned beyond = width > 8u ? width - 8u : 0u;  /* bits of the register below those that meet a byte */
-    const unsigned missing = width < 8u ? 8u - width : 0u; /* bits of a byte that meet none of the register */
-#endif
-    uint32_t value = crc->value;
-    for (size_t i = 0; i < length; ++i) {
-        const uint32_t byte = form->reflect_in ? icdgen_reflected(bytes[i], 8) : bytes[i];
-#ifndef ICDGEN_NO_TABLES
-        if (form->table != NULL) {
-            value = ((value << 8) ^ form->table[(((value >> beyond) << missing) ^ byte) & 0xFFu]) & mask;
-            continue;
-        }
-#endif
-        for (unsigned bit = 8; bit-- != 0u;) {
-            const bool out = ((value & top) != 0u) != (((byte >> bit) & 1u) != 0u);
-            value = ((value << 1) & mask) ^ (out ? form->polynomial : 0u);
-        }
-    }
-    crc->value = value;
-    crc->fed = crc->fed || length != 0u;
-}
+ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length);
 
 /** The CRC of everything fed so far. */
-static inline uint32_t icd_crc_result(const icd_crc_t *crc)
-{
-    const icd_crc_form_t *const form = crc->form;
-    if (!crc->fed && form->has_empty) {
-        return form->empty;
-    }
-    return (form->reflect_out ? icdgen_reflected(crc->value, form->width) : crc->value) ^ form->xor_out;
-}
+ICDGEN_API uint32_t icd_crc_result(const icd_crc_t *crc);
 
-static inline uint32_t icd_crc(const icd_crc_form_t *form, const uint8_t *bytes, size_t length)
-{
-    icd_crc_t crc;
-    icd_crc_init(&crc, form);
-    icd_crc_feed(&crc, bytes, length);
-    return icd_crc_result(&crc);
-}
+ICDGEN_API uint32_t icd_crc(const icd_crc_form_t *form, const uint8_t *bytes, size_t length);
 
 /** The CRC of telecommands and frames; ICD_ERROR_UNSUPPORTED if the node has none. */
-static inline icd_status_t icd_crc8(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc)
-{
-    if (link->checksum == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    *crc = icd_crc(&link->checksum->crc, bytes, length);
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t icd_crc8(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc);
 
 /** The CRC of files and their blocks; ICD_ERROR_UNSUPPORTED if the node has none. */
-static inline icd_status_t icd_crc16(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc)
-{
-    if (link->crc16 == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    *crc = icd_crc(link->crc16, bytes, length);
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t icd_crc16(const icd_link_t *link, const uint8_t *bytes, size_t length, uint32_t *crc);
 
 /* ---- UART -------------------------------------------------------------------------------------------------------- */
 
@@ -783,71 +583,18 @@ typedef struct {
 } icd_uart_encoder_t;
 
 /** Begins a message: id and data, which must stay where they are until all is written. */
-static inline icd_status_t icd_uart_encode_begin(
-    icd_uart_encoder_t *encoder, const icd_link_t *link, const uint8_t *message, size_t length)
-{
-    memset(encoder, 0, sizeof *encoder);
-    encoder->ended = true;
-    if (link->framing == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    if (length == 0u) {
-        return ICD_ERROR_LENGTH;
-    }
-    encoder->framing = link->framing;
-    encoder->message = message;
-    encoder->length = length;
-    encoder->next[0] = link->framing->start;
-    encoder->next[1] = link->framing->escape;
-    encoder->pending = 2;
-    encoder->ended = false;
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t
+icd_uart_encode_begin(icd_uart_encoder_t *encoder, const icd_link_t *link, const uint8_t *message, size_t length);
 
 /** Writes what fits the buffer; the count, 0 at the end of the message. */
-static inline size_t icd_uart_encode_some(icd_uart_encoder_t *encoder, uint8_t *buffer, size_t capacity)
-{
-    const icd_framing_t *const framing = encoder->framing;
-    size_t count = 0;
-    while (count < capacity) {
-        if (encoder->pending != 0u) {
-            buffer[count++] = encoder->next[--encoder->pending];
-        } else if (encoder->at < encoder->length) {
-            const uint8_t byte = encoder->message[encoder->at];
-            if (byte == framing->escape && (encoder->at != 0u || framing->escapes_id)) {
-                encoder->next[0] = framing->escaped;
-                encoder->pending = 1;
-            }
-            buffer[count++] = byte;
-            encoder->at++;
-        } else if (!encoder->ended) {
-            encoder->next[0] = framing->end;
-            encoder->next[1] = framing->escape;
-            encoder->pending = 2;
-            encoder->ended = true;
-        } else {
-            break;
-        }
-    }
-    return count;
-}
+ICDGEN_API size_t icd_uart_encode_some(icd_uart_encoder_t *encoder, uint8_t *buffer, size_t capacity);
 
 /** The most bytes that a message of `length` bytes takes on the line. */
 #define ICD_UART_BYTES(length) (2u * (length) + 4u)
 
 /** A message, id and data, on the line; ICD_ERROR_LENGTH if it has no id or does not fit the buffer. */
-static inline icd_status_t icd_uart_encode(
-    const icd_link_t *link, const uint8_t *message, size_t length, uint8_t *buffer, size_t capacity, size_t *written)
-{
-    icd_uart_encoder_t encoder;
-    uint8_t more;
-    const icd_status_t status = icd_uart_encode_begin(&encoder, link, message, length);
-    if (status != ICD_OK) {
-        return status;
-    }
-    *written = icd_uart_encode_some(&encoder, buffer, capacity);
-    return icd_uart_encode_some(&encoder, &more, 1) == 0u ? ICD_OK : ICD_ERROR_LENGTH;
-}
+ICDGEN_API icd_status_t icd_uart_encode(
+    const icd_link_t *link, const uint8_t *message, size_t length, uint8_t *buffer, size_t capacity, size_t *written);
 
 /** Finds the messages in a stream. */
 typedef struct {
@@ -862,168 +609,26 @@ typedef struct {
 } icd_uart_decoder_t;
 
 /** `buffer` holds the longest message that is taken; that of the node is NODE_LONGEST bytes long. */
-static inline icd_status_t icd_uart_decoder_init(
-    icd_uart_decoder_t *decoder, const icd_link_t *link, uint8_t *buffer, size_t capacity)
-{
-    memset(decoder, 0, sizeof *decoder);
-    if (link->framing == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    decoder->framing = link->framing;
-    decoder->buffer = buffer;
-    decoder->capacity = capacity;
-    return ICD_OK;
-}
-
-static inline void icdgen_uart_start(icd_uart_decoder_t *decoder)
-{
-    decoder->discarded += decoder->pending - 2u; /* all but the two bytes of the start itself */
-    decoder->pending = 2;
-    decoder->inside = true;
-    decoder->escaped = false;
-    decoder->length = 0;
-}
-
-/* Drops what was decided to be no message; an escape byte may still begin one. */
-static inline void icdgen_uart_outside(icd_uart_decoder_t *decoder, bool escaped)
-{
-    decoder->discarded += decoder->pending - (escaped ? 1u : 0u);
-    decoder->pending = escaped ? 1u : 0u;
-    decoder->inside = false;
-    decoder->escaped = escaped;
-    decoder->length = 0;
-}
-
-static inline void icdgen_uart_tell(
-    const icd_uart_decoder_t *decoder, icd_event_kind_t kind, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(kind, 0);
-    if (kind == ICD_EVENT_MESSAGE) {
-        event.id = decoder->buffer[0];
-        event.data = decoder->buffer;
-        event.length = decoder->length;
-    }
-    on_event(context, &event);
-}
-
-static inline void icdgen_uart_data(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_fn *on_event, void *context)
-{
-    if (decoder->length < decoder->capacity) {
-        decoder->buffer[decoder->length++] = byte;
-    } else {
-        icdgen_uart_tell(decoder, ICD_EVENT_OVERRUN, on_event, context);
-        icdgen_uart_outside(decoder, false);
-    }
-}
-
-static inline void icdgen_uart_end(icd_uart_decoder_t *decoder, icd_event_fn *on_event, void *context)
-{
-    if (decoder->length != 0u) {
-        icdgen_uart_tell(decoder, ICD_EVENT_MESSAGE, on_event, context);
-        decoder->pending = 0;
-    } else {
-        icdgen_uart_tell(decoder, ICD_EVENT_EMPTY, on_event, context);
-    }
-    icdgen_uart_outside(decoder, false);
-}
-
-/* A byte that follows an escape byte within a message. */
-static inline void icdgen_uart_escaped(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_fn *on_event, void *context)
-{
-    const icd_framing_t *const framing = decoder->framing;
-    decoder->escaped = false;
-    if (byte == framing->start) {
-        icdgen_uart_tell(decoder, ICD_EVENT_UNEXPECTED_START, on_event, context);
-        icdgen_uart_start(decoder);
-    } else if (byte == framing->end) {
-        icdgen_uart_end(decoder, on_event, context);
-    } else if (byte == framing->escaped) {
-        icdgen_uart_data(decoder, framing->escape, on_event, context);
-    } else if (!framing->ignores_other) {
-        icdgen_uart_tell(decoder, ICD_EVENT_PROTOCOL_ERROR, on_event, context);
-        icdgen_uart_outside(decoder, byte == framing->escape);
-    }
-}
+ICDGEN_API icd_status_t
+icd_uart_decoder_init(icd_uart_decoder_t *decoder, const icd_link_t *link, uint8_t *buffer, size_t capacity);
 
 /**
  * Takes the next bytes of the stream and tells of ICD_EVENT_MESSAGE, whose data begin with the id, UNEXPECTED_START,
  * PROTOCOL_ERROR, OVERRUN and EMPTY. Events do not depend on how the stream was cut.
  */
-static inline void icd_uart_feed(
-    icd_uart_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
-{
-    const icd_framing_t *const framing = decoder->framing;
-    for (size_t i = 0; i < count; ++i) {
-        const uint8_t byte = bytes[i];
-        decoder->pending++;
-        if (!decoder->inside) {
-            if (decoder->escaped && byte == framing->start) {
-                icdgen_uart_start(decoder);
-            } else {
-                icdgen_uart_outside(decoder, byte == framing->escape);
-            }
-        } else if (decoder->escaped) {
-            icdgen_uart_escaped(decoder, byte, on_event, context);
-        } else if (byte == framing->escape && (decoder->length != 0u || framing->escapes_id)) {
-            decoder->escaped = true;
-        } else {
-            icdgen_uart_data(decoder, byte, on_event, context);
-        }
-    }
-}
-
-/* The slots of a log that a mask selects; what the mask lacks of its length counts as not selected. */
-static inline size_t icdgen_log_slots(const icd_link_t *link, const uint8_t *mask, size_t length)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < length && i < link->log_mask->size; ++i) {
-        for (unsigned bits = mask[i]; bits != 0u; bits &= bits - 1u) {
-            count++;
-        }
-    }
-    return count;
-}
+ICDGEN_API void icd_uart_feed(
+    icd_uart_decoder_t *decoder, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);
 
 /** What a message from the node is, as far as its id and its length tell. `length` is not 0. */
-static inline icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *message, size_t length)
-{
-    const uint8_t id = message[0];
-    const icd_log_message_form_t *const log = link->log_message;
-    const icd_files_form_t *const files = link->files;
-    if (log != NULL && id == log->id) {
-        const size_t given = length > log->mask_at ? length - log->mask_at : 0u;
-        const size_t slots = icdgen_log_slots(link, given != 0u ? message + log->mask_at : message, given);
-        return length == log->frames_at + (slots * link->log_mask->slot_bytes) ? ICD_UART_LOG : ICD_UART_OTHER;
-    }
-    if (id >= link->telemetry_first && id <= link->telemetry_last) {
-        return ICD_UART_REPLY;
-    }
-    if (link->acknowledge != NULL && length == link->acknowledge->length) {
-        return ICD_UART_ACKNOWLEDGE;
-    }
-    if (files != NULL && id == files->packet_ids[ICD_BUS_UART] &&
-        length == 1u + ICDGEN_U32(files->counter_bytes) + files->packet_bytes) {
-        return ICD_UART_PACKET;
-    }
-    return ICD_UART_OTHER;
-}
+ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *message, size_t length);
 
 /* ---- I2C --------------------------------------------------------------------------------------------------------- */
 
 /** The checksum of a message's data. The node has checksums. */
-static inline uint32_t icd_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length)
-{
-    icd_crc_t crc;
-    icd_crc_init(&crc, &link->checksum->crc);
-    if (link->checksum->covers_id) {
-        icd_crc_feed(&crc, &id, 1);
-    }
-    icd_crc_feed(&crc, data, length);
-    return icd_crc_result(&crc);
-}
+ICDGEN_API uint32_t icd_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length);
 
 /** Id, data and, if asked for, the checksum of a telecommand: what is written on I2C, and framed on the UART. */
-static inline icd_status_t icd_i2c_write(
+ICDGEN_API icd_status_t icd_i2c_write(
     const icd_link_t *link,
     uint8_t id,
     const uint8_t *data,
@@ -1031,61 +636,14 @@ static inline icd_status_t icd_i2c_write(
     bool checked,
     uint8_t *buffer,
     size_t capacity,
-    size_t *written)
-{
-    size_t extra = 0;
-    if (checked) {
-        if (link->checksum == NULL) {
-            return ICD_ERROR_UNSUPPORTED;
-        }
-        extra = link->checksum->bytes;
-    }
-    if (capacity < extra + 1u || capacity - extra - 1u < length) {
-        return ICD_ERROR_LENGTH;
-    }
-    buffer[0] = id;
-    if (length != 0u) {
-        memmove(buffer + 1, data, length);
-    }
-    *written = 1u + length + extra;
-    return checked ? icdgen_put_number(link, buffer + 1 + length, extra, icd_checksum(link, id, buffer + 1, length))
-                   : ICD_OK;
-}
+    size_t *written);
 
 /** Bytes to read for a frame. */
-static inline icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, bool checked, size_t *length)
-{
-    const icd_message_t *const message = icd_find_message(link, ICD_TELEMETRY, id);
-    if (message == NULL) {
-        return ICD_ERROR_UNKNOWN_ID;
-    }
-    if (checked && link->checksum == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    *length = ICDGEN_U32(message->length) + (checked ? link->checksum->bytes : 0u);
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, bool checked, size_t *length);
 
 /** The bytes of the frame in what was read; ICD_ERROR_LENGTH or ICD_ERROR_CHECKSUM if it is not as it must be. */
-static inline icd_status_t icd_i2c_reply(
-    const icd_link_t *link, uint8_t id, const uint8_t *bytes, size_t length, bool checked, size_t *frame_length)
-{
-    size_t expected = 0;
-    const icd_status_t status = icd_i2c_read_length(link, id, checked, &expected);
-    if (status != ICD_OK) {
-        return status;
-    }
-    if (length != expected) {
-        return ICD_ERROR_LENGTH;
-    }
-    *frame_length = expected - (checked ? link->checksum->bytes : 0u);
-    if (checked &&
-        icdgen_number(link, bytes + *frame_length, link->checksum->bytes) !=
-            icd_checksum(link, id, bytes, *frame_length)) {
-        return ICD_ERROR_CHECKSUM;
-    }
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t icd_i2c_reply(
+    const icd_link_t *link, uint8_t id, const uint8_t *bytes, size_t length, bool checked, size_t *frame_length);
 
 /* ---- CAN --------------------------------------------------------------------------------------------------------- */
 
@@ -1096,26 +654,8 @@ typedef struct {
     uint8_t data[8];
 } icd_can_packet_t;
 
-static inline uint32_t icdgen_can_part(icd_can_part_t part, uint32_t id)
-{
-    return (id >> part.shift) & ((UINT32_C(1) << part.bits) - 1u);
-}
-
-/* Whether the kind of message has data. */
-static inline bool icdgen_can_has_data(icd_can_kind_t kind)
-{
-    return kind == ICD_CAN_TELECOMMAND || kind == ICD_CAN_REPLY;
-}
-
 /** The most data that a message of the kind can have. The node is on CAN. */
-static inline size_t icd_can_most(const icd_link_t *link, icd_can_kind_t kind)
-{
-    const icd_can_form_t *const can = link->can;
-    if (can->extended != NULL && can->extended_types[kind] >= 0) {
-        return can->extended->bytes;
-    }
-    return icdgen_can_has_data(kind) ? can->data_bytes : 0u;
-}
+ICDGEN_API size_t icd_can_most(const icd_link_t *link, icd_can_kind_t kind);
 
 /** Gives the packets of a message one by one. */
 typedef struct {
@@ -1132,7 +672,7 @@ typedef struct {
  * Begins a message, whose data must stay where they are. ICD_ERROR_LENGTH if they are too long, ICD_ERROR_RANGE if an
  * id or address does not fit the identifier.
  */
-static inline icd_status_t icd_can_split(
+ICDGEN_API icd_status_t icd_can_split(
     icd_can_splitter_t *splitter,
     const icd_link_t *link,
     icd_can_kind_t kind,
@@ -1140,62 +680,10 @@ static inline icd_status_t icd_can_split(
     uint8_t source,
     uint8_t destination,
     const uint8_t *data,
-    size_t length)
-{
-    const icd_can_form_t *const can = link->can;
-    int32_t type;
-    memset(splitter, 0, sizeof *splitter);
-    if (can == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    splitter->extended = length > (icdgen_can_has_data(kind) ? can->data_bytes : 0u);
-    if (splitter->extended && length > icd_can_most(link, kind)) {
-        return ICD_ERROR_LENGTH;
-    }
-    type = splitter->extended ? can->extended_types[kind] : can->types[kind];
-    if (type < 0) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    splitter->id = (ICDGEN_U32(type) << can->type.shift) | (ICDGEN_U32(id) << can->channel.shift) |
-        (ICDGEN_U32(source) << can->source.shift) | (ICDGEN_U32(destination) << can->destination.shift);
-    if (icdgen_can_part(can->channel, splitter->id) != id || icdgen_can_part(can->source, splitter->id) != source ||
-        icdgen_can_part(can->destination, splitter->id) != destination) {
-        return ICD_ERROR_RANGE;
-    }
-    splitter->can = can;
-    splitter->data = data;
-    splitter->length = length;
-    splitter->count = splitter->extended
-        ? ICDGEN_U32((length + can->extended->data_bytes - 1u) / can->extended->data_bytes)
-        : ICDGEN_U32(1);
-    return ICD_OK;
-}
+    size_t length);
 
 /** The next packet; false after the last. */
-static inline bool icd_can_next(icd_can_splitter_t *splitter, icd_can_packet_t *packet)
-{
-    const icd_can_extended_t *form;
-    size_t at, size;
-    if (splitter->next >= splitter->count) {
-        return false;
-    }
-    form = splitter->can->extended;
-    packet->id = splitter->id;
-    at = splitter->extended ? splitter->next * form->data_bytes : 0u;
-    size = splitter->length - at;
-    memset(packet->data, 0, sizeof packet->data);
-    if (splitter->extended) {
-        size = size < form->data_bytes ? size : form->data_bytes;
-        memset(packet->data, form->fill, form->left_at);
-        packet->data[form->left_at] = ICDGEN_U8(form->left_in_last + splitter->count - 1u - splitter->next);
-    }
-    if (size != 0u) {
-        memcpy(packet->data, splitter->data + at, size);
-    }
-    packet->length = ICDGEN_U8(splitter->extended ? form->left_at + 1u : size);
-    splitter->next++;
-    return true;
-}
+ICDGEN_API bool icd_can_next(icd_can_splitter_t *splitter, icd_can_packet_t *packet);
 
 /** A message of several packets on its way. */
 typedef struct {
@@ -1226,281 +714,30 @@ typedef struct {
 #define ICD_CAN_EVERYBODY (-1)
 
 /** Bytes that each slot takes of the buffer: NODE_CAN_SLOT_BYTES is the constant for a node. The node is on CAN. */
-static inline size_t icd_can_slot_bytes(const icd_link_t *link)
-{
-    const icd_can_extended_t *const form = link->can->extended;
-    return 1u +
-        (form != NULL ? (link->longest_data + form->data_bytes - 1u) / form->data_bytes * form->data_bytes : 0u);
-}
+ICDGEN_API size_t icd_can_slot_bytes(const icd_link_t *link);
 
 /**
  * `address`: whose messages are taken, or ICD_CAN_EVERYBODY. ICD_ERROR_LENGTH if the buffer is too small for the
  * slots.
  */
-static inline icd_status_t icd_can_joiner_init(
+ICDGEN_API icd_status_t icd_can_joiner_init(
     icd_can_joiner_t *joiner,
     const icd_link_t *link,
     int16_t address,
     icd_can_slot_t *slots,
     size_t count,
     uint8_t *buffer,
-    size_t size)
-{
-    size_t each;
-    memset(joiner, 0, sizeof *joiner);
-    if (link->can == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    each = icd_can_slot_bytes(link);
-    if (size / each < count) {
-        return ICD_ERROR_LENGTH;
-    }
-    memset(slots, 0, count * sizeof *slots);
-    for (size_t i = 0; i < count; ++i) {
-        slots[i].data = buffer + (i * each) + 1;
-    }
-    joiner->link = link;
-    joiner->address = address;
-    joiner->slots = slots;
-    joiner->slot_count = count;
-    joiner->room = link->can->extended != NULL ? ICDGEN_U32((each - 1u) / link->can->extended->data_bytes) : 0u;
-    return ICD_OK;
-}
-
-static inline void icdgen_can_tell(
-    const icd_link_t *link,
-    uint32_t key,
-    icd_event_kind_t kind,
-    uint32_t missing,
-    icd_event_fn *on_event,
-    void *context)
-{
-    icd_event_t event = icdgen_event(kind, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
-    event.source = ICDGEN_U8(icdgen_can_part(link->can->source, key));
-    event.missing = missing;
-    on_event(context, &event);
-}
-
-/* Data begin one byte after the id. */
-static inline void icdgen_can_tell_message(
-    const icd_link_t *link,
-    uint32_t key,
-    icd_can_kind_t kind,
-    uint8_t *data,
-    size_t length,
-    icd_event_fn *on_event,
-    void *context)
-{
-    icd_event_t event = icdgen_event(ICD_EVENT_MESSAGE, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
-    event.source = ICDGEN_U8(icdgen_can_part(link->can->source, key));
-    event.destination = ICDGEN_U8(icdgen_can_part(link->can->destination, key));
-    event.can_kind = kind;
-    data[-1] = event.id;
-    event.data = data;
-    event.length = length;
-    on_event(context, &event);
-}
-
-static inline bool icdgen_can_got(const icd_can_slot_t *slot, uint32_t number)
-{
-    return number < slot->count && ((ICDGEN_U32(slot->got[number / 8u]) >> (number % 8u)) & 1u) != 0u;
-}
-
-/* Frees a slot; its memory goes to the end of the row. */
-static inline void icdgen_can_free(icd_can_joiner_t *joiner, size_t index)
-{
-    icd_can_slot_t *const slots = joiner->slots;
-    uint8_t *const data = slots[index].data;
-    joiner->used--;
-    memmove(&slots[index], &slots[index + 1u], (joiner->used - index) * sizeof *slots);
-    memset(&slots[joiner->used], 0, sizeof *slots);
-    slots[joiner->used].data = data;
-}
-
-/* Forgets a message. One that is done leaves no event: it was kept to know repeated packets. */
-static inline void icdgen_can_give_up(icd_can_joiner_t *joiner, size_t index, icd_event_fn *on_event, void *context)
-{
-    const icd_can_slot_t *const slot = &joiner->slots[index];
-    const uint32_t key = slot->key, missing = slot->count - slot->there;
-    const bool done = slot->done;
-    icdgen_can_free(joiner, index);
-    if (!done) {
-        icdgen_can_tell(joiner->link, key, ICD_EVENT_INCOMPLETE, missing, on_event, context);
-    }
-}
+    size_t size);
 
 /** Gives up what has waited too long for its next packet: ICD_EVENT_INCOMPLETE. */
-static inline void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    for (size_t i = 0; i < joiner->used;) {
-        if (icdgen_reached(now, joiner->slots[i].last + joiner->link->can->extended->packet_timeout)) {
-            icdgen_can_give_up(joiner, i, on_event, context);
-        } else {
-            ++i;
-        }
-    }
-}
-
-/* Notes that a packet came, be it a repeated one. */
-static inline void icdgen_can_came(icd_can_slot_t *slot, uint32_t number, uint32_t now)
-{
-    slot->last = now;
-    if (number == slot->run) {
-        slot->run++;
-    } else if (number + 1u != slot->run) {
-        slot->run = number == 0u ? 1u : 0u;
-    }
-}
-
-/* A slot for a new message, for which the oldest one that is done makes room; NULL if there is none. */
-static inline icd_can_slot_t *icdgen_can_slot(icd_can_joiner_t *joiner)
-{
-    for (size_t i = 0; joiner->used == joiner->slot_count && i < joiner->used; ++i) {
-        if (joiner->slots[i].done) {
-            icdgen_can_free(joiner, i);
-        }
-    }
-    return joiner->used < joiner->slot_count ? &joiner->slots[joiner->used++] : NULL;
-}
-
-/* Bytes of the message if the ICD knows it and it needs several packets, else 0. */
-static inline uint32_t icdgen_can_length(const icd_link_t *link, icd_can_kind_t kind, uint32_t id)
-{
-    const icd_message_t *const message =
-        icd_find_message(link, kind == ICD_CAN_TELECOMMAND ? ICD_TELECOMMAND : ICD_TELEMETRY, id);
-    return message != NULL && message->length > link->can->data_bytes ? message->length : 0u;
-}
-
-/* Another message than that of a slot has begun; with the same packets as the old one up to here, they are kept. */
-static inline void icdgen_can_replace(
-    icd_can_joiner_t *joiner,
-    size_t index,
-    uint32_t number,
-    icd_can_slot_t *fresh,
-    icd_event_fn *on_event,
-    void *context)
-{
-    const icd_can_slot_t *const slot = &joiner->slots[index];
-    if (!slot->done && number == slot->run) {
-        for (uint32_t n = 0; n < number; ++n) {
-            fresh->got[n / 8u] = ICDGEN_U8(fresh->got[n / 8u] | (1u << (n % 8u)));
-        }
-        fresh->there = number;
-        fresh->run = number;
-    }
-    icdgen_can_give_up(joiner, index, on_event, context);
-}
-
-/* A packet of a message of several. */
-static inline void icdgen_can_extended(
-    icd_can_joiner_t *joiner,
-    uint32_t now,
-    icd_can_kind_t kind,
-    const icd_can_packet_t *packet,
-    icd_event_fn *on_event,
-    void *context)
-{
-    const icd_link_t *const link = joiner->link;
-    const icd_can_form_t *const can = link->can;
-    const uint32_t length = icdgen_can_length(link, kind, icdgen_can_part(can->channel, packet->id));
-    const icd_can_extended_t *const form = can->extended;
-    const size_t size = form->data_bytes;
-    size_t index = 0;
-    icd_can_slot_t *slot, fresh;
-    uint32_t left, count, number;
-    while (index < joiner->used && joiner->slots[index].key != packet->id) {
-        ++index;
-    }
-    slot = index < joiner->used ? &joiner->slots[index] : NULL;
-    left = packet->data[form->left_at] - ICDGEN_U32(form->left_in_last);
-    if (length != 0u) {
-        count = ICDGEN_U32((length + size - 1u) / size);
-    } else if (slot != NULL && !slot->done && left < slot->count) {
-        count = slot->count;
-    } else { /* the first packet that comes tells how many there are */
-        count = left + 1u;
-    }
-    if (packet->length != form->left_at + 1u || left >= count || count > joiner->room) {
-        if (slot != NULL) {
-            icdgen_can_give_up(joiner, index, on_event, context);
-        }
-        icdgen_can_tell(link, packet->id, ICD_EVENT_MALFORMED, 0, on_event, context);
-        return;
-    }
-    number = count - 1u - left;
-    if (slot != NULL && (!slot->done || slot->completed_by == number) && icdgen_can_got(slot, number) &&
-        memcmp(slot->data + (number * size), packet->data, size) == 0) {
-        icdgen_can_came(slot, number, now);
-        icdgen_can_tell(link, packet->id, ICD_EVENT_DUPLICATE, 0, on_event, context);
-        return;
-    }
-    memset(&fresh, 0, sizeof fresh);
-    if (slot != NULL && (slot->done || slot->count != count || icdgen_can_got(slot, number))) {
-        icdgen_can_replace(joiner, index, number, &fresh, on_event, context); /* the next free slot has its memory */
-        slot = NULL;
-    }
-    if (slot == NULL) {
-        slot = icdgen_can_slot(joiner);
-        if (slot == NULL) {
-            icdgen_can_tell(link, packet->id, ICD_EVENT_BUSY, 0, on_event, context);
-            return;
-        }
-        fresh.data = slot->data;
-        *slot = fresh;
-        slot->key = packet->id;
-        slot->kind = kind;
-        slot->count = count;
-        slot->length = length;
-    }
-    memcpy(slot->data + (number * size), packet->data, size);
-    slot->got[number / 8u] = ICDGEN_U8(slot->got[number / 8u] | (1u << (number % 8u)));
-    slot->there++;
-    icdgen_can_came(slot, number, now);
-    if (slot->there == slot->count) {
-        slot->done = true;
-        slot->completed_by = number;
-        icdgen_can_tell_message(
-            link, slot->key, kind, slot->data, slot->length != 0u ? slot->length : slot->count * size, on_event,
-            context);
-    }
-}
+ICDGEN_API void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event_fn *on_event, void *context);
 
 /**
  * Takes one packet; `now` in milliseconds. Tells of ICD_EVENT_MESSAGE, whose data have no id, and of INCOMPLETE,
  * MALFORMED, DUPLICATE, BUSY and UNKNOWN_TYPE.
  */
-static inline void icd_can_feed(
-    icd_can_joiner_t *joiner, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context)
-{
-    const icd_link_t *const link = joiner->link;
-    const icd_can_form_t *const can = link->can;
-    const uint32_t type = icdgen_can_part(can->type, packet->id);
-    icd_can_expire(joiner, now, on_event, context);
-    if (joiner->address != ICD_CAN_EVERYBODY &&
-        icdgen_can_part(can->destination, packet->id) != ICDGEN_U32(joiner->address)) {
-        return;
-    }
-    for (unsigned i = 0; i < ICD_CAN_KINDS; ++i) {
-        const icd_can_kind_t kind = ICDGEN_CAST(icd_can_kind_t, i);
-        if (can->types[i] >= 0 && ICDGEN_U32(can->types[i]) == type) {
-            uint8_t message[1u + sizeof packet->data];
-            if (packet->length > (icdgen_can_has_data(kind) ? can->data_bytes : 0u)) {
-                icdgen_can_tell(link, packet->id, ICD_EVENT_MALFORMED, 0, on_event, context);
-                return;
-            }
-            memcpy(message + 1, packet->data, sizeof packet->data);
-            icdgen_can_tell_message(link, packet->id, kind, message + 1, packet->length, on_event, context);
-            return;
-        }
-    }
-    for (unsigned i = 0; can->extended != NULL && i < ICD_CAN_KINDS; ++i) {
-        if (can->extended_types[i] >= 0 && ICDGEN_U32(can->extended_types[i]) == type) {
-            icdgen_can_extended(joiner, now, ICDGEN_CAST(icd_can_kind_t, i), packet, on_event, context);
-            return;
-        }
-    }
-    icdgen_can_tell(link, packet->id, ICD_EVENT_UNKNOWN_TYPE, 0, on_event, context);
-}
+ICDGEN_API void icd_can_feed(
+    icd_can_joiner_t *joiner, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context);
 
 /* ---- telemetry logs ---------------------------------------------------------------------------------------------- */
 
@@ -1527,39 +764,14 @@ typedef struct {
 } icd_log_frames_t;
 
 /** Frames of an entry: as many as the mask selects. The node has logs. */
-static inline size_t icd_log_count(const icd_link_t *link, const uint8_t *mask)
-{
-    return icdgen_log_slots(link, mask, link->log_mask->size);
-}
+ICDGEN_API size_t icd_log_count(const icd_link_t *link, const uint8_t *mask);
 
 /** `slots`: where they begin, such as `slots` of icd_log_entry_t. */
-static inline void icd_log_frames(
-    icd_log_frames_t *frames, const icd_link_t *link, const uint8_t *mask, const uint8_t *slots)
-{
-    frames->form = link->log_mask;
-    frames->mask = mask;
-    frames->slot = slots;
-    frames->bit = 0;
-}
+ICDGEN_API void icd_log_frames(
+    icd_log_frames_t *frames, const icd_link_t *link, const uint8_t *mask, const uint8_t *slots);
 
 /** The next frame; false after the last. */
-static inline bool icd_log_next(icd_log_frames_t *frames, icd_log_frame_t *frame)
-{
-    const icd_log_mask_form_t *const form = frames->form;
-    while (frames->bit < form->size * 8u) {
-        const unsigned bit = frames->bit++;
-        const unsigned weight = form->msb0 ? 7u - (bit % 8u) : bit % 8u;
-        if (((ICDGEN_U32(frames->mask[bit / 8u]) >> weight) & 1u) != 0u) {
-            frame->bit = ICDGEN_U16(bit);
-            frame->id = form->bits[bit].id;
-            frame->length = form->bits[bit].length;
-            frame->data = frames->slot;
-            frames->slot = frames->slot != NULL ? frames->slot + form->slot_bytes : NULL;
-            return true;
-        }
-    }
-    return false;
-}
+ICDGEN_API bool icd_log_next(icd_log_frames_t *frames, icd_log_frame_t *frame);
 
 /** An entry of a log file: Unix time, and the slots of its frames, for icd_log_frames(). */
 typedef struct {
@@ -1582,123 +794,21 @@ typedef struct {
 } icd_log_reader_t;
 
 /** Bytes that a reader needs at most: NODE_LOG_BYTES is the constant for a node. The node has log files. */
-static inline size_t icd_log_bytes(const icd_link_t *link)
-{
-    const icd_log_mask_form_t *const mask = link->log_mask;
-    const size_t most = mask->size + ICDGEN_U32(link->log_file->frames_at) + (mask->size * 8u * mask->slot_bytes);
-    return most > link->log_file->header_bytes ? most : link->log_file->header_bytes;
-}
+ICDGEN_API size_t icd_log_bytes(const icd_link_t *link);
 
-static inline icd_status_t icd_log_reader_init(
-    icd_log_reader_t *reader, const icd_link_t *link, uint8_t *buffer, size_t capacity)
-{
-    memset(reader, 0, sizeof *reader);
-    if (link->log_file == NULL || link->log_mask == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    if (capacity < icd_log_bytes(link)) {
-        return ICD_ERROR_LENGTH;
-    }
-    reader->link = link;
-    reader->buffer = buffer;
-    return ICD_OK;
-}
-
-static inline void icdgen_log_header(icd_log_reader_t *reader)
-{
-    const icd_link_t *const link = reader->link;
-    memmove(reader->buffer, reader->buffer + link->log_file->mask_at, link->log_mask->size);
-    reader->entry_bytes =
-        link->log_file->frames_at + (icd_log_count(link, reader->buffer) * link->log_mask->slot_bytes);
-    reader->has_mask = true;
-    reader->length = 0;
-}
-
-static inline void icdgen_log_tell(icd_log_reader_t *reader, icd_log_entry_fn *on_entry, void *context)
-{
-    const icd_log_file_form_t *const form = reader->link->log_file;
-    const uint8_t *const at = reader->buffer + reader->link->log_mask->size;
-    icd_log_entry_t entry;
-    entry.seconds = icdgen_number(reader->link, at + form->seconds.at, form->seconds.bytes);
-    entry.milliseconds = icdgen_number(reader->link, at + form->milliseconds.at, form->milliseconds.bytes);
-    entry.mask = reader->buffer;
-    entry.slots = at + form->frames_at;
-    reader->length = 0;
-    on_entry(context, &entry);
-}
+ICDGEN_API icd_status_t
+icd_log_reader_init(icd_log_reader_t *reader, const icd_link_t *link, uint8_t *buffer, size_t capacity);
 
 /** Takes the next bytes of the file. */
-static inline void icd_log_feed(
-    icd_log_reader_t *reader, const uint8_t *bytes, size_t count, icd_log_entry_fn *on_entry, void *context)
-{
-    while (count != 0u) {
-        const size_t whole = reader->has_mask ? reader->entry_bytes : reader->link->log_file->header_bytes;
-        const size_t before = reader->has_mask ? reader->link->log_mask->size : 0u;
-        const size_t wanted = whole - reader->length;
-        const size_t taken = wanted < count ? wanted : count;
-        memcpy(reader->buffer + before + reader->length, bytes, taken);
-        reader->length += taken;
-        bytes += taken;
-        count -= taken;
-        if (reader->length < whole) {
-            return;
-        }
-        if (reader->has_mask) {
-            icdgen_log_tell(reader, on_entry, context);
-        } else {
-            icdgen_log_header(reader);
-        }
-    }
-}
+ICDGEN_API void icd_log_feed(
+    icd_log_reader_t *reader, const uint8_t *bytes, size_t count, icd_log_entry_fn *on_entry, void *context);
 
 /** Writes the header of a log file; ICD_ERROR_LENGTH if the mask has another length, or the buffer is too small. */
-static inline icd_status_t icd_log_write_header(
-    const icd_link_t *link, const uint8_t *mask, size_t mask_length, uint8_t *buffer, size_t capacity, size_t *written)
-{
-    if (link->log_file == NULL || link->log_mask == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    if (mask_length != link->log_mask->size || capacity < link->log_file->header_bytes) {
-        return ICD_ERROR_LENGTH;
-    }
-    memset(buffer, 0, link->log_file->header_bytes);
-    memcpy(buffer + link->log_file->mask_at, mask, mask_length);
-    *written = link->log_file->header_bytes;
-    return ICD_OK;
-}
-
-/* Frames into their slots; ICD_ERROR_LENGTH if there are more or fewer, or one has another length. */
-static inline icd_status_t icdgen_log_slots_write(
-    const icd_link_t *link,
-    const uint8_t *mask,
-    const icd_bytes_t *given,
-    size_t count,
-    uint8_t *buffer,
-    size_t capacity,
-    size_t *written)
-{
-    const size_t size = link->log_mask->slot_bytes;
-    icd_log_frames_t frames;
-    icd_log_frame_t frame;
-    if (count != icd_log_count(link, mask) || capacity / (size != 0u ? size : 1u) < count) {
-        return ICD_ERROR_LENGTH;
-    }
-    icd_log_frames(&frames, link, mask, NULL);
-    for (size_t i = 0; icd_log_next(&frames, &frame); ++i) {
-        if (given[i].length != frame.length) {
-            return ICD_ERROR_LENGTH;
-        }
-        memset(buffer + (i * size), link->log_mask->fill, size);
-        if (frame.length != 0u) {
-            memcpy(buffer + (i * size), given[i].data, frame.length);
-        }
-    }
-    *written = count * size;
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t icd_log_write_header(
+    const icd_link_t *link, const uint8_t *mask, size_t mask_length, uint8_t *buffer, size_t capacity, size_t *written);
 
 /** Writes an entry of a log file with one frame for each bit of the mask. ICD_ERROR_RANGE if a time does not fit. */
-static inline icd_status_t icd_log_write_entry(
+ICDGEN_API icd_status_t icd_log_write_entry(
     const icd_link_t *link,
     const uint8_t *mask,
     uint32_t seconds,
@@ -1707,29 +817,7 @@ static inline icd_status_t icd_log_write_entry(
     size_t count,
     uint8_t *buffer,
     size_t capacity,
-    size_t *written)
-{
-    const icd_log_file_form_t *const form = link->log_file;
-    size_t slots = 0;
-    icd_status_t status;
-    if (form == NULL || link->log_mask == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    if (capacity < form->frames_at) {
-        return ICD_ERROR_LENGTH;
-    }
-    memset(buffer, 0, form->frames_at);
-    status = icdgen_put_number(link, buffer + form->seconds.at, form->seconds.bytes, seconds);
-    if (status == ICD_OK) {
-        status = icdgen_put_number(link, buffer + form->milliseconds.at, form->milliseconds.bytes, milliseconds);
-    }
-    if (status == ICD_OK) {
-        status = icdgen_log_slots_write(
-            link, mask, frames, count, buffer + form->frames_at, capacity - form->frames_at, &slots);
-    }
-    *written = form->frames_at + slots;
-    return status;
-}
+    size_t *written);
 
 /** An unsolicited log: mask and slots lie within the message. */
 typedef struct {
@@ -1738,34 +826,17 @@ typedef struct {
 } icd_log_message_t;
 
 /** Bytes of an unsolicited log message with its id, as far as that is known. The node has such messages. */
-static inline size_t icd_log_message_length(const icd_link_t *link, const uint8_t *message, size_t length)
-{
-    const icd_log_message_form_t *const form = link->log_message;
-    return length < form->frames_at
-        ? form->frames_at
-        : form->frames_at + (icd_log_count(link, message + form->mask_at) * link->log_mask->slot_bytes);
-}
+ICDGEN_API size_t icd_log_message_length(const icd_link_t *link, const uint8_t *message, size_t length);
 
 /**
  * Reads an unsolicited log message, which begins with its id; ICD_ERROR_LENGTH if it is longer or shorter than it must
  * be.
  */
-static inline icd_status_t icd_log_message_decode(
-    const icd_link_t *link, const uint8_t *message, size_t length, icd_log_message_t *log)
-{
-    if (link->log_message == NULL || link->log_mask == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    if (length < link->log_message->frames_at || length != icd_log_message_length(link, message, length)) {
-        return ICD_ERROR_LENGTH;
-    }
-    log->mask = message + link->log_message->mask_at;
-    log->slots = message + link->log_message->frames_at;
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t
+icd_log_message_decode(const icd_link_t *link, const uint8_t *message, size_t length, icd_log_message_t *log);
 
 /** Writes an unsolicited log message with its id. */
-static inline icd_status_t icd_log_message_encode(
+ICDGEN_API icd_status_t icd_log_message_encode(
     const icd_link_t *link,
     const uint8_t *mask,
     size_t mask_length,
@@ -1773,25 +844,7 @@ static inline icd_status_t icd_log_message_encode(
     size_t count,
     uint8_t *buffer,
     size_t capacity,
-    size_t *written)
-{
-    const icd_log_message_form_t *const form = link->log_message;
-    size_t slots = 0;
-    icd_status_t status;
-    if (form == NULL || link->log_mask == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    if (mask_length != link->log_mask->size || capacity < form->frames_at) {
-        return ICD_ERROR_LENGTH;
-    }
-    memset(buffer, 0, form->frames_at);
-    buffer[0] = form->id;
-    memcpy(buffer + form->mask_at, mask, mask_length);
-    status =
-        icdgen_log_slots_write(link, mask, frames, count, buffer + form->frames_at, capacity - form->frames_at, &slots);
-    *written = form->frames_at + slots;
-    return status;
-}
+    size_t *written);
 
 /* ---- packed time ------------------------------------------------------------------------------------------------- */
 
@@ -1806,138 +859,31 @@ typedef struct {
 } icd_dos_time_t;
 
 /** The name of the first part that the calendar or the clock does not have; NULL if all is well. */
-static inline const char *icd_dos_time_wrong(const icd_dos_time_t *time)
-{
-    static const uint8_t month_days[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-    unsigned days;
-    if (time->month < 1u || time->month > 12u) {
-        return "month";
-    }
-    days = month_days[time->month - 1u];
-    if (time->month == 2u && ((time->year % 4u == 0u && time->year % 100u != 0u) || time->year % 400u == 0u)) {
-        days++;
-    }
-    return time->day < 1u || time->day > days ? "day"
-        : time->hour > 23u                    ? "hour"
-        : time->minute > 59u                  ? "minute"
-        : time->second > 59u                  ? "second"
-                                              : NULL;
-}
-
-static inline uint16_t icdgen_time_get(icd_time_part_t part, uint32_t value)
-{
-    const uint32_t raw = (value >> part.at) & ((UINT32_C(1) << part.bits) - 1u);
-    return ICDGEN_U16((raw * part.factor) + part.offset);
-}
-
-static inline bool icdgen_time_put(icd_time_part_t part, uint32_t given, uint32_t *value)
-{
-    const uint32_t raw = (given - part.offset) / part.factor;
-    *value |= raw << part.at;
-    return given >= part.offset && (raw >> part.bits) == 0u;
-}
+ICDGEN_API const char *icd_dos_time_wrong(const icd_dos_time_t *time);
 
 /** Unpacks a time, whatever it is; icd_dos_time_wrong() tells whether it exists. */
-static inline icd_status_t icd_dos_time_unpack(const icd_link_t *link, uint32_t value, icd_dos_time_t *time)
-{
-    const icd_time_form_t *const form = link->time;
-    if (form == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    time->year = icdgen_time_get(form->year, value);
-    time->month = icdgen_time_get(form->month, value);
-    time->day = icdgen_time_get(form->day, value);
-    time->hour = icdgen_time_get(form->hour, value);
-    time->minute = icdgen_time_get(form->minute, value);
-    time->second = icdgen_time_get(form->second, value);
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t icd_dos_time_unpack(const icd_link_t *link, uint32_t value, icd_dos_time_t *time);
 
 /**
  * Packs a time; what is finer than its resolution is cut off. ICD_ERROR_RANGE, with the name of the first part that
  * does not exist or does not fit in `wrong`.
  */
-static inline icd_status_t icd_dos_time_pack(
-    const icd_link_t *link, const icd_dos_time_t *time, uint32_t *value, const char **wrong)
-{
-    const icd_time_form_t *const form = link->time;
-    uint32_t packed = 0;
-    if (form == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    *wrong = icd_dos_time_wrong(time);
-    if (*wrong == NULL) {
-        *wrong = !icdgen_time_put(form->year, time->year, &packed)  ? "year"
-            : !icdgen_time_put(form->month, time->month, &packed)   ? "month"
-            : !icdgen_time_put(form->day, time->day, &packed)       ? "day"
-            : !icdgen_time_put(form->hour, time->hour, &packed)     ? "hour"
-            : !icdgen_time_put(form->minute, time->minute, &packed) ? "minute"
-            : !icdgen_time_put(form->second, time->second, &packed) ? "second"
-                                                                    : NULL;
-    }
-    if (*wrong != NULL) {
-        return ICD_ERROR_RANGE;
-    }
-    *value = packed;
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t
+icd_dos_time_pack(const icd_link_t *link, const icd_dos_time_t *time, uint32_t *value, const char **wrong);
 
 /* ---- hole maps and the index file -------------------------------------------------------------------------------- */
 
-static inline uint8_t icdgen_hole_bit(const icd_hole_map_form_t *form, uint32_t position)
-{
-    return ICDGEN_U8(1u << (form->msb0 ? 7u - (position % 8u) : position % 8u));
-}
-
-static inline void icdgen_hole_put(const icd_hole_map_form_t *form, uint8_t *map, uint32_t position, bool one)
-{
-    const uint8_t bit = icdgen_hole_bit(form, position);
-    map[position / 8u] = ICDGEN_U8(one ? map[position / 8u] | bit : map[position / 8u] & ~ICDGEN_U32(bit));
-}
-
 /** Makes the map of a block of so many packets, none of which was received. ICD_ERROR_RANGE if there are too many. */
-static inline icd_status_t icd_hole_map_init(const icd_link_t *link, uint8_t *map, uint32_t packets)
-{
-    const icd_hole_map_form_t *const form = link->hole_map;
-    if (form == NULL || link->files == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    if (packets > form->bytes * 8u) {
-        return ICD_ERROR_RANGE;
-    }
-    for (uint32_t i = 0; i < form->bytes * 8u; ++i) {
-        icdgen_hole_put(form, map, i, i < packets ? !form->received : form->beyond_end);
-    }
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t icd_hole_map_init(const icd_link_t *link, uint8_t *map, uint32_t packets);
 
 /** Marks a packet as received. ICD_ERROR_RANGE if the block has no packet of that number. */
-static inline icd_status_t icd_hole_map_set(const icd_link_t *link, uint8_t *map, uint32_t packets, uint32_t number)
-{
-    const uint32_t position = number - link->files->first_packet;
-    if (position >= packets) {
-        return ICD_ERROR_RANGE;
-    }
-    icdgen_hole_put(link->hole_map, map, position, link->hole_map->received);
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t icd_hole_map_set(const icd_link_t *link, uint8_t *map, uint32_t packets, uint32_t number);
 
 /** Whether the map says that the packet was received. The block has a packet of that number. */
-static inline bool icd_hole_map_get(const icd_link_t *link, const uint8_t *map, uint32_t number)
-{
-    const uint32_t position = number - link->files->first_packet;
-    return ((map[position / 8u] & icdgen_hole_bit(link->hole_map, position)) != 0u) == link->hole_map->received;
-}
+ICDGEN_API bool icd_hole_map_get(const icd_link_t *link, const uint8_t *map, uint32_t number);
 
 /** Packets of a block that were not received. */
-static inline uint32_t icd_hole_map_count(const icd_link_t *link, const uint8_t *map, uint32_t packets)
-{
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < packets; ++i) {
-        count += icd_hole_map_get(link, map, link->files->first_packet + i) ? 0u : 1u;
-    }
-    return count;
-}
+ICDGEN_API uint32_t icd_hole_map_count(const icd_link_t *link, const uint8_t *map, uint32_t packets);
 
 /** An entry of the index file; `time` is packed. */
 typedef struct {
@@ -1951,53 +897,12 @@ typedef struct {
 } icd_index_entry_t;
 
 /** Reads an entry, whose meta-data stay where they are. */
-static inline icd_status_t icd_index_entry_decode(
-    const icd_link_t *link, const uint8_t *bytes, size_t length, icd_index_entry_t *entry)
-{
-    const icd_index_form_t *const form = link->index;
-    if (form == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    if (length != form->entry_bytes) {
-        return ICD_ERROR_LENGTH;
-    }
-    entry->type = icdgen_number(link, bytes + form->type.at, form->type.bytes);
-    entry->counter = icdgen_number(link, bytes + form->counter.at, form->counter.bytes);
-    entry->checksum = icdgen_number(link, bytes + form->checksum.at, form->checksum.bytes);
-    entry->size = icdgen_number(link, bytes + form->size.at, form->size.bytes);
-    entry->time = icdgen_number(link, bytes + form->time.at, form->time.bytes);
-    entry->meta = bytes + form->meta.at;
-    entry->meta_length = form->meta.bytes;
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t
+icd_index_entry_decode(const icd_link_t *link, const uint8_t *bytes, size_t length, icd_index_entry_t *entry);
 
 /** Writes an entry. ICD_ERROR_RANGE if a number does not fit, ICD_ERROR_LENGTH if the meta-data have another length. */
-static inline icd_status_t icd_index_entry_encode(
-    const icd_link_t *link, const icd_index_entry_t *entry, uint8_t *bytes, size_t capacity)
-{
-    const icd_index_form_t *const form = link->index;
-    if (form == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    if (capacity < form->entry_bytes) {
-        return ICD_ERROR_LENGTH;
-    }
-    memset(bytes, 0, form->entry_bytes);
-    if (icdgen_put_number(link, bytes + form->type.at, form->type.bytes, entry->type) != ICD_OK ||
-        icdgen_put_number(link, bytes + form->counter.at, form->counter.bytes, entry->counter) != ICD_OK ||
-        icdgen_put_number(link, bytes + form->checksum.at, form->checksum.bytes, entry->checksum) != ICD_OK ||
-        icdgen_put_number(link, bytes + form->size.at, form->size.bytes, entry->size) != ICD_OK ||
-        icdgen_put_number(link, bytes + form->time.at, form->time.bytes, entry->time) != ICD_OK) {
-        return ICD_ERROR_RANGE;
-    }
-    if (entry->meta_length != form->meta.bytes) {
-        return ICD_ERROR_LENGTH;
-    }
-    if (entry->meta_length != 0u) {
-        memcpy(bytes + form->meta.at, entry->meta, entry->meta_length);
-    }
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t
+icd_index_entry_encode(const icd_link_t *link, const icd_index_entry_t *entry, uint8_t *bytes, size_t capacity);
 
 /* ---- client ------------------------------------------------------------------------------------------------------ */
 
@@ -2056,211 +961,43 @@ typedef struct {
 } icd_client_t;
 
 /** Bytes of buffer that a client needs: NODE_CLIENT_BYTES is the constant for a node. */
-static inline size_t icd_client_bytes(const icd_link_t *link)
-{
-    const size_t slot = link->can != NULL ? icd_can_slot_bytes(link) : 0u;
-    return link->longest_telecommand + (slot > link->longest ? slot : link->longest);
-}
-
-static inline icd_status_t icdgen_client_input_init(icd_client_t *client, uint8_t *buffer, size_t size)
-{
-    const icd_link_t *const link = client->link;
-    const size_t first = link->longest_telecommand;
-    if (size < icd_client_bytes(link)) {
-        return ICD_ERROR_LENGTH;
-    }
-    switch (client->bus) {
-    case ICD_BUS_UART:
-        return icd_uart_decoder_init(&client->decoder, link, buffer + first, link->longest);
-    case ICD_BUS_CAN:
-        return icd_can_joiner_init(&client->joiner, link, 0, &client->slot, 1, buffer + first, size - first);
-    case ICD_BUS_I2C:
-    default:
-        return link->i2c_address < 0 ? ICD_ERROR_UNSUPPORTED : ICD_OK;
-    }
-}
+ICDGEN_API size_t icd_client_bytes(const icd_link_t *link);
 
 /**
  * A client on one bus with the times of the ICD. ICD_ERROR_UNSUPPORTED if the node is not on that bus, ICD_ERROR_LENGTH
  * if the buffer is smaller than icd_client_bytes(); it refuses every request then. The client must stay where it is.
  */
-static inline icd_status_t icd_client_init(
-    icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
-{
-    icd_status_t status;
-    memset(client, 0, sizeof *client);
-    client->link = link;
-    client->bus = bus;
-    client->settings = link->client;
-    client->whole = buffer;
-    client->encoder.ended = true;
-    status = icdgen_client_input_init(client, buffer, size);
-    client->ready = status == ICD_OK;
-    return status;
-}
+ICDGEN_API icd_status_t
+icd_client_init(icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size);
 
 /** Uses checksums where the ICD has them for the bus. */
-static inline void icd_client_use_checksums(icd_client_t *client)
-{
-    const icd_checksum_form_t *const form = client->link->checksum;
-    client->checks_telecommands = form != NULL && ((ICDGEN_U32(form->telecommand_buses) >> client->bus) & 1u) != 0u;
-    client->checks_telemetry = form != NULL && ((ICDGEN_U32(form->telemetry_buses) >> client->bus) & 1u) != 0u;
-}
+ICDGEN_API void icd_client_use_checksums(icd_client_t *client);
 
 /** Our address on CAN. */
-static inline void icd_client_set_address(icd_client_t *client, uint8_t address)
-{
-    client->address = address;
-    client->joiner.address = address;
-}
+ICDGEN_API void icd_client_set_address(icd_client_t *client, uint8_t address);
 
 /** When icd_client_tick() wants to be called at the latest; false: not at all. */
-static inline bool icd_client_deadline(const icd_client_t *client, uint32_t *deadline)
-{
-    *deadline = client->until;
-    return client->state != ICD_CLIENT_IDLE;
-}
-
-static inline void icdgen_client_end(
-    icd_client_t *client, uint32_t now, icd_event_t *event, icd_event_fn *on_event, void *context)
-{
-    event->id = client->message->id;
-    event->attempts = client->attempts;
-    client->echo = client->attempts > 1u || event->kind == ICD_EVENT_TIMEOUT;
-    client->echo_id = event->id;
-    client->echo_end = now + client->settings.reply_timeout;
-    client->state = ICD_CLIENT_IDLE;
-    on_event(context, event);
-}
-
-static inline void icdgen_client_done(
-    icd_client_t *client, uint32_t now, const uint8_t *data, size_t length, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(ICD_EVENT_DONE, 0);
-    event.data = data;
-    event.length = length;
-    icdgen_client_end(client, now, &event, on_event, context);
-}
-
-static inline void icdgen_client_timeout(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(ICD_EVENT_TIMEOUT, 0);
-    icdgen_client_end(client, now, &event, on_event, context);
-}
-
-/* Sends the request, for the first time or again. */
-static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    client->attempts++;
-    client->sent_whole = false;
-    client->state = ICD_CLIENT_WAIT;
-    client->until = now + client->settings.reply_timeout;
-    client->pending++;
-    if (client->bus != ICD_BUS_I2C && client->direction == ICD_TELECOMMAND &&
-        (client->message->flags & ICD_ACKNOWLEDGED) == 0u) {
-        icdgen_client_done(client, now, NULL, 0, on_event, context);
-    }
-}
-
-/* Whether anything that is to be sent has not been taken. */
-static inline bool icdgen_client_has_output(const icd_client_t *client)
-{
-    return client->pending != 0u || client->poll || !client->encoder.ended || client->encoder.pending != 0u ||
-        client->splitter.next < client->splitter.count;
-}
-
-static inline bool icdgen_client_fits_bus(const icd_client_t *client)
-{
-    icd_can_splitter_t splitter;
-    const icd_link_t *const link = client->link;
-    return client->bus != ICD_BUS_CAN ||
-        icd_can_split(
-            &splitter, link, client->direction == ICD_TELECOMMAND ? ICD_CAN_TELECOMMAND : ICD_CAN_REQUEST,
-            client->whole[0], client->address, link->can->node_address, client->whole + 1,
-            client->whole_length - 1u) == ICD_OK;
-}
+ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadline);
 
 /**
  * Begins a request; its data are copied. ICD_ERROR_UNKNOWN_ID, ICD_ERROR_BUSY while another one is going on or has not
  * been taken by the output functions, ICD_ERROR_LENGTH, ICD_ERROR_UNSUPPORTED if icd_client_init() failed; nothing has
  * happened then.
  */
-static inline icd_status_t icd_client_start(
-    icd_client_t *client, uint32_t now, const icd_request_t *request, icd_event_fn *on_event, void *context)
-{
-    const icd_message_t *message;
-    const bool telecommand = request->direction == ICD_TELECOMMAND;
-    icd_status_t status;
-    if (!client->ready) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    message = icd_find_message(client->link, request->direction, request->id);
-    if (message == NULL) {
-        return ICD_ERROR_UNKNOWN_ID;
-    }
-    if (client->state != ICD_CLIENT_IDLE || icdgen_client_has_output(client)) {
-        return ICD_ERROR_BUSY;
-    }
-    if (telecommand && request->length != message->length) {
-        return ICD_ERROR_LENGTH;
-    }
-    status = icd_i2c_write(
-        client->link, request->id, request->data, telecommand ? request->length : 0u,
-        telecommand && client->checks_telecommands, client->whole, client->link->longest_telecommand,
-        &client->whole_length);
-    client->direction = request->direction;
-    if (status != ICD_OK || !icdgen_client_fits_bus(client)) {
-        return status != ICD_OK ? status : ICD_ERROR_LENGTH;
-    }
-    client->message = message;
-    client->repeat = request->repeat || !telecommand || (message->flags & ICD_SETTING) != 0u;
-    client->attempts = 0;
-    if (client->echo && client->echo_id == request->id && !icdgen_reached(now, client->echo_end)) {
-        client->state = ICD_CLIENT_HOLD;
-        client->until = client->echo_end;
-    } else {
-        icdgen_client_send(client, now, on_event, context);
-    }
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t icd_client_start(
+    icd_client_t *client, uint32_t now, const icd_request_t *request, icd_event_fn *on_event, void *context);
 
 /**
  * Gives up the request, without an event, and what of it has not been taken: the next one may begin. A late reply to
  * this one is ICD_EVENT_STRAY.
  */
-static inline void icd_client_cancel(icd_client_t *client)
-{
-    client->pending = 0;
-    client->poll = false;
-    client->encoder.ended = true;
-    client->encoder.pending = 0;
-    client->splitter.next = client->splitter.count;
-    if (client->state != ICD_CLIENT_IDLE && client->attempts != 0u) {
-        client->echo = true;
-        client->echo_id = client->message->id;
-        client->echo_end = client->until + client->settings.reply_timeout;
-    }
-    client->state = ICD_CLIENT_IDLE;
-}
-
-static inline void icdgen_client_ignore(void *context, const icd_event_t *event)
-{
-    (void)context;
-    (void)event;
-}
+ICDGEN_API void icd_client_cancel(icd_client_t *client);
 
 /** Requests telemetry. */
-static inline icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint8_t id)
-{
-    icd_request_t request;
-    memset(&request, 0, sizeof request);
-    request.direction = ICD_TELEMETRY;
-    request.id = id;
-    return icd_client_start(client, now, &request, icdgen_client_ignore, NULL);
-}
+ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint8_t id);
 
 /** Sends a telecommand, whose data are copied. One that is not acknowledged is ICD_EVENT_DONE at once. */
-static inline icd_status_t icd_client_send(
+ICDGEN_API icd_status_t icd_client_send(
     icd_client_t *client,
     uint32_t now,
     uint8_t id,
@@ -2268,25 +1005,9 @@ static inline icd_status_t icd_client_send(
     size_t length,
     bool repeat,
     icd_event_fn *on_event,
-    void *context)
-{
-    icd_request_t request;
-    memset(&request, 0, sizeof request);
-    request.direction = ICD_TELECOMMAND;
-    request.id = id;
-    request.data = data;
-    request.length = length;
-    request.repeat = repeat;
-    return icd_client_start(client, now, &request, on_event, context);
-}
+    void *context);
 
-static inline icd_status_t icdgen_client_request_of(icd_client_t *client, uint32_t now, const char *node, unsigned id)
-{
-    if (!icd_has_messages_of(client->link, node)) {
-        return ICD_ERROR_UNKNOWN_ID;
-    }
-    return icd_client_request(client, now, ICDGEN_U8(id));
-}
+ICDGEN_API icd_status_t icdgen_client_request_of(icd_client_t *client, uint32_t now, const char *node, unsigned id);
 
 /**
  * Requests the telemetry of that name, such as ICD_REQUEST(&client, now, NODE_IDENTIFICATION); ICD_ERROR_UNKNOWN_ID if
@@ -2295,356 +1016,34 @@ static inline icd_status_t icdgen_client_request_of(icd_client_t *client, uint32
 #define ICD_REQUEST(client, now, name) icdgen_client_request_of(client, now, name##_TELEMETRY)
 
 /** The next bytes for the UART; false when there are none. They last until the next call. */
-static inline bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count)
-{
-    *bytes = client->chunk;
-    *count = 0;
-    if (client->bus != ICD_BUS_UART) {
-        return false;
-    }
-    while (*count < sizeof client->chunk) {
-        *count += icd_uart_encode_some(&client->encoder, client->chunk + *count, sizeof client->chunk - *count);
-        if (client->encoder.ended && client->encoder.pending == 0u) {
-            if (client->pending == 0u) {
-                break;
-            }
-            client->pending--;
-            (void)icd_uart_encode_begin(&client->encoder, client->link, client->whole, client->whole_length);
-        }
-    }
-    return *count != 0u;
-}
+ICDGEN_API bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count);
 
 /** The next packet for CAN; false when there is none. */
-static inline bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *packet)
-{
-    if (client->bus != ICD_BUS_CAN) {
-        return false;
-    }
-    if (client->splitter.next >= client->splitter.count && client->pending != 0u) {
-        const icd_can_kind_t kind = client->direction == ICD_TELECOMMAND ? ICD_CAN_TELECOMMAND : ICD_CAN_REQUEST;
-        client->pending--;
-        (void)icd_can_split(
-            &client->splitter, client->link, kind, client->whole[0], client->address, client->link->can->node_address,
-            client->whole + 1, client->whole_length - 1u);
-    }
-    return icd_can_next(&client->splitter, packet);
-}
+ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *packet);
 
 /**
  * The next transaction on I2C: bytes to write, and how many to read then; false when there is none.
  * icd_client_transferred() is told of each that was taken, once and in this order.
  */
-static inline bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read)
-{
-    *read = 0;
-    if (client->bus == ICD_BUS_I2C && client->poll) {
-        client->poll = false;
-        client->owed++;
-        *bytes = &client->poll_id;
-        *count = 1;
-        return icd_i2c_read_length(client->link, client->poll_id, client->checks_telemetry, read) == ICD_OK;
-    }
-    if (client->bus != ICD_BUS_I2C || client->pending == 0u) {
-        return false;
-    }
-    client->pending--;
-    client->owed++;
-    *bytes = client->whole;
-    *count = client->whole_length;
-    if (client->direction == ICD_TELEMETRY) {
-        (void)icd_i2c_read_length(client->link, client->whole[0], client->checks_telemetry, read);
-    }
-    return true;
-}
-
-/* The node refused it. A wrong checksum is no fault of the request: it is sent again. */
-static inline void icdgen_client_refused(
-    icd_client_t *client, uint32_t now, int64_t code, int64_t parameter, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(ICD_EVENT_REFUSED, 0);
-    for (size_t i = client->link->error_count; i-- != 0u;) {
-        if (client->link->errors[i].code == code) {
-            event.reason = client->link->errors[i].reason;
-        }
-    }
-    if (event.reason == ICD_REASON_CHECKSUM && client->checks_telecommands &&
-        client->attempts <= client->settings.retries) {
-        icdgen_client_send(client, now, on_event, context);
-        return;
-    }
-    event.code = code;
-    event.parameter = parameter;
-    icdgen_client_end(client, now, &event, on_event, context);
-}
-
-/* There was no reply, or none that can be used: once more, or the end. */
-static inline void icdgen_client_no_reply(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    if (!client->repeat || client->attempts > client->settings.retries) {
-        icdgen_client_timeout(client, now, on_event, context);
-    } else if (client->bus == ICD_BUS_I2C) { /* the bus said so at once: give the node some time */
-        client->state = ICD_CLIENT_PAUSE;
-        client->until = now + client->settings.poll_interval;
-        client->give_up = now + client->settings.poll_timeout;
-    } else {
-        icdgen_client_send(client, now, on_event, context);
-    }
-}
-
-/* Polls once more after a while. */
-static inline void icdgen_client_again(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    if (icdgen_reached(now, client->give_up)) {
-        icdgen_client_timeout(client, now, on_event, context);
-    } else {
-        client->state = ICD_CLIENT_PAUSE;
-        client->until = now + client->settings.poll_interval;
-    }
-}
-
-static inline void icdgen_client_poll(icd_client_t *client, uint32_t now)
-{
-    client->state = ICD_CLIENT_POLL;
-    client->until = now + client->settings.reply_timeout;
-    client->poll = true;
-    client->poll_id = ICDGEN_U8(client->link->polled->telemetry);
-}
-
-static inline void icdgen_client_tell(
-    icd_event_kind_t kind, uint8_t id, const uint8_t *data, size_t length, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(kind, id);
-    event.data = data;
-    event.length = length;
-    on_event(context, &event);
-}
-
-/* A client and who is told of its events, while its decoder or joiner is fed. */
-typedef struct {
-    icd_client_t *client;
-    uint32_t now;
-    icd_event_fn *on_event;
-    void *context;
-} icdgen_client_call_t;
-
-static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, const uint8_t *message, size_t length)
-{
-    icd_client_t *const client = call->client;
-    const icd_link_t *const link = client->link;
-    const icd_uart_kind_t kind = icd_uart_kind(link, message, length);
-    const bool waits = client->state == ICD_CLIENT_WAIT;
-    if (kind == ICD_UART_LOG) {
-        icdgen_client_tell(ICD_EVENT_LOG, message[0], message, length, call->on_event, call->context);
-        return;
-    }
-    if (kind == ICD_UART_PACKET) {
-        icd_event_t event = icdgen_event(ICD_EVENT_PACKET, message[0]);
-        event.number = icdgen_number(link, message + 1, link->files->counter_bytes);
-        event.data = message + 1 + link->files->counter_bytes;
-        event.length = link->files->packet_bytes;
-        call->on_event(call->context, &event);
-        return;
-    }
-    if (waits && kind == ICD_UART_REPLY && client->direction == ICD_TELEMETRY && message[0] == client->message->id) {
-        if (length - 1u == client->message->length) {
-            icdgen_client_done(client, call->now, message + 1, length - 1u, call->on_event, call->context);
-        } else {
-            icdgen_client_tell(ICD_EVENT_MALFORMED, message[0], NULL, 0, call->on_event, call->context);
-        }
-        return;
-    }
-    if (waits && kind == ICD_UART_ACKNOWLEDGE && client->direction == ICD_TELECOMMAND &&
-        message[link->acknowledge->id_at] == client->message->id) {
-        const uint8_t code = message[link->acknowledge->error_at];
-        if (code == link->no_error) {
-            icdgen_client_done(client, call->now, NULL, 0, call->on_event, call->context);
-        } else {
-            icdgen_client_refused(client, call->now, code, -1, call->on_event, call->context);
-        }
-        return;
-    }
-    icdgen_client_tell(ICD_EVENT_STRAY, message[0], message, length, call->on_event, call->context);
-}
-
-static inline void icdgen_client_on_uart(void *context, const icd_event_t *event)
-{
-    const icdgen_client_call_t *const call = ICDGEN_CAST(const icdgen_client_call_t *, context);
-    if (event->kind == ICD_EVENT_MESSAGE) {
-        icdgen_client_uart_message(call, event->data, event->length);
-    } else {
-        call->on_event(call->context, event);
-    }
-}
-
-static inline void icdgen_client_on_can(void *context, const icd_event_t *event)
-{
-    const icdgen_client_call_t *const call = ICDGEN_CAST(const icdgen_client_call_t *, context);
-    icd_client_t *const client = call->client;
-    if (event->kind != ICD_EVENT_MESSAGE) {
-        call->on_event(call->context, event);
-        return;
-    }
-    if (client->state == ICD_CLIENT_WAIT && event->id == client->message->id &&
-        event->source == client->link->can->node_address) {
-        const bool telecommand = client->direction == ICD_TELECOMMAND;
-        if (telecommand && event->can_kind == ICD_CAN_ACKNOWLEDGE) {
-            icdgen_client_done(client, call->now, NULL, 0, call->on_event, call->context);
-            return;
-        }
-        if (event->can_kind == (telecommand ? ICD_CAN_REFUSAL : ICD_CAN_REQUEST_REFUSAL)) {
-            icdgen_client_refused(client, call->now, -1, -1, call->on_event, call->context);
-            return;
-        }
-        if (!telecommand && event->can_kind == ICD_CAN_REPLY) {
-            if (event->length == client->message->length) {
-                icdgen_client_done(client, call->now, event->data, event->length, call->on_event, call->context);
-            } else {
-                icdgen_client_tell(ICD_EVENT_MALFORMED, event->id, NULL, 0, call->on_event, call->context);
-            }
-            return;
-        }
-    }
-    icdgen_client_tell(ICD_EVENT_STRAY, event->id, event->data - 1, event->length + 1u, call->on_event, call->context);
-}
+ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read);
 
 /** Lets time pass. */
-static inline void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    if (client->bus == ICD_BUS_CAN) {
-        icd_can_expire(&client->joiner, now, on_event, context);
-    }
-    if (client->echo && icdgen_reached(now, client->echo_end)) {
-        client->echo = false;
-    }
-    if (client->state == ICD_CLIENT_IDLE || !icdgen_reached(now, client->until)) {
-        return;
-    }
-    switch (client->state) {
-    case ICD_CLIENT_HOLD:
-        icdgen_client_send(client, now, on_event, context);
-        break;
-    case ICD_CLIENT_PAUSE:
-        if (icdgen_reached(now, client->give_up)) {
-            icdgen_client_timeout(client, now, on_event, context);
-        } else if (client->sent_whole) {
-            icdgen_client_poll(client, now);
-        } else {
-            icdgen_client_send(client, now, on_event, context);
-        }
-        break;
-    case ICD_CLIENT_POLL:
-        icdgen_client_again(client, now, on_event, context);
-        break;
-    case ICD_CLIENT_WAIT:
-        icdgen_client_no_reply(client, now, on_event, context);
-        break;
-    case ICD_CLIENT_IDLE:
-    default:
-        break;
-    }
-}
+ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context);
 
 /** UART: takes the next bytes of the stream. */
-static inline void icd_client_received(
-    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
-{
-    icdgen_client_call_t call;
-    call.client = client;
-    call.now = now;
-    call.on_event = on_event;
-    call.context = context;
-    icd_client_tick(client, now, on_event, context);
-    if (client->ready) {
-        icd_uart_feed(&client->decoder, bytes, count, icdgen_client_on_uart, &call);
-    }
-}
+ICDGEN_API void icd_client_received(
+    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);
 
 /** CAN: takes a packet. */
-static inline void icd_client_packet(
-    icd_client_t *client, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context)
-{
-    icdgen_client_call_t call;
-    call.client = client;
-    call.now = now;
-    call.on_event = on_event;
-    call.context = context;
-    icd_client_tick(client, now, on_event, context);
-    if (client->ready) {
-        icd_can_feed(&client->joiner, now, packet, icdgen_client_on_can, &call);
-    }
-}
-
-/* I2C: what was read of the acknowledge frame. */
-static inline void icdgen_client_polled(
-    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
-{
-    const icd_link_t *const link = client->link;
-    const icd_step_t *const step = link->polled;
-    size_t length = 0;
-    uint32_t code;
-    if (icd_i2c_reply(link, client->poll_id, bytes, count, client->checks_telemetry, &length) != ICD_OK) {
-        icdgen_client_tell(ICD_EVENT_MALFORMED, client->poll_id, NULL, 0, on_event, context);
-        icdgen_client_again(client, now, on_event, context);
-        return;
-    }
-    if (icdgen_get(link, step, bytes, ICD_ROLE_ID) != client->message->id ||
-        icdgen_get(link, step, bytes, ICD_ROLE_PROCESSED) == 0u) {
-        icdgen_client_again(client, now, on_event, context);
-        return;
-    }
-    code = icdgen_get(link, step, bytes, ICD_ROLE_ERROR);
-    if (code == link->no_error) {
-        icdgen_client_done(client, now, NULL, 0, on_event, context);
-    } else {
-        icdgen_client_refused(client, now, code, icdgen_get(link, step, bytes, ICD_ROLE_PARAMETER), on_event, context);
-    }
-}
-
-/* I2C: whether the last transaction was taken, and is that of the request. */
-static inline bool icdgen_client_awaits_transfer(const icd_client_t *client, uint32_t owed)
-{
-    return client->owed == owed && (client->state == ICD_CLIENT_WAIT || client->state == ICD_CLIENT_POLL) &&
-        !icdgen_client_has_output(client);
-}
+ICDGEN_API void icd_client_packet(
+    icd_client_t *client, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context);
 
 /**
  * I2C: takes what was read in the oldest transaction that was taken and not told of; `bytes` NULL: it failed. Of a
  * write without reading, anything but NULL. What a request owed that is over is ICD_EVENT_STRAY.
  */
-static inline void icd_client_transferred(
-    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
-{
-    size_t length = 0;
-    const bool awaited = icdgen_client_awaits_transfer(client, 1);
-    client->owed -= client->owed != 0u ? 1u : 0u;
-    icd_client_tick(client, now, on_event, context); /* may end that request, and begin the next one */
-    if (!awaited || !icdgen_client_awaits_transfer(client, 0)) {
-        icdgen_client_tell(ICD_EVENT_STRAY, 0, bytes, bytes != NULL ? count : 0u, on_event, context);
-    } else if (client->state == ICD_CLIENT_POLL) {
-        if (bytes == NULL) {
-            icdgen_client_again(client, now, on_event, context);
-        } else {
-            icdgen_client_polled(client, now, bytes, count, on_event, context);
-        }
-    } else if (bytes == NULL) {
-        icdgen_client_no_reply(client, now, on_event, context);
-    } else if (client->direction == ICD_TELEMETRY) {
-        const uint8_t id = client->message->id;
-        if (icd_i2c_reply(client->link, id, bytes, count, client->checks_telemetry, &length) == ICD_OK) {
-            icdgen_client_done(client, now, bytes, length, on_event, context);
-        } else {
-            icdgen_client_tell(ICD_EVENT_MALFORMED, id, NULL, 0, on_event, context);
-            icdgen_client_no_reply(client, now, on_event, context);
-        }
-    } else if ((client->message->flags & ICD_ACKNOWLEDGED) == 0u || client->link->polled == NULL) {
-        icdgen_client_done(client, now, NULL, 0, on_event, context);
-    } else {
-        client->sent_whole = true;
-        client->give_up = now + client->settings.poll_timeout;
-        icdgen_client_again(client, now, on_event, context);
-    }
-}
+ICDGEN_API void icd_client_transferred(
+    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);
 
 /** Bytes of the longest message that takes part in a procedure, of any node. */
 #define ICD_STEP_BYTES 22u
@@ -2693,211 +1092,24 @@ struct icd_procedure {
     void (*packet)(icd_procedure_t *procedure, uint32_t number, const uint8_t *data, size_t length);
 };
 
-static inline void icdgen_end(icd_procedure_t *procedure, icd_result_t result)
-{
-    procedure->want = ICDGEN_WANT_NOTHING;
-    procedure->result = result;
-}
-
-static inline void icdgen_wait(icd_procedure_t *procedure, uint32_t until)
-{
-    procedure->want = ICDGEN_WANT_TIME;
-    procedure->until = until;
-}
-
-/* Requests a frame. */
-static inline void icdgen_ask(icd_procedure_t *procedure, int16_t id, uint8_t state)
-{
-    memset(&procedure->request, 0, sizeof procedure->request);
-    procedure->request.direction = ICD_TELEMETRY;
-    procedure->request.id = ICDGEN_U8(id);
-    procedure->request.repeat = true;
-    procedure->want = ICDGEN_WANT_REQUEST;
-    procedure->tolerant = false;
-    procedure->state = state;
-}
-
-/* A telecommand as a fresh message has it; values are put into `data` then. */
-static inline void icdgen_command(icd_procedure_t *procedure, const icd_step_t *step, bool repeat, uint8_t state)
-{
-    if (step->fresh != NULL) {
-        memcpy(procedure->data, step->fresh, step->length);
-    } else {
-        memset(procedure->data, 0, step->length);
-    }
-    procedure->request.direction = ICD_TELECOMMAND;
-    procedure->request.id = ICDGEN_U8(step->telecommand);
-    procedure->request.data = procedure->data;
-    procedure->request.length = step->length;
-    procedure->request.repeat = repeat;
-    procedure->want = ICDGEN_WANT_REQUEST;
-    procedure->tolerant = false;
-    procedure->state = state;
-}
-
-/* Requests the frame until its flag is as wanted, or its error flag is set; `state` is told of that frame. */
-static inline void icdgen_poll(
-    icd_procedure_t *procedure,
-    const icd_step_t *step,
-    icd_role_t flag,
-    bool wanted,
-    uint32_t interval,
-    uint32_t timeout,
-    uint8_t state)
-{
-    icdgen_ask(procedure, step->telemetry, state);
-    procedure->polled = step;
-    procedure->flag = flag;
-    procedure->wanted = wanted;
-    procedure->interval = interval;
-    procedure->poll_end = procedure->now + timeout;
-}
-
-/* Whether the frame is about what was asked for. */
-static inline bool icdgen_is_meant(const icd_procedure_t *procedure, const uint8_t *frame)
-{
-    const icd_step_t *const step = procedure->polled;
-    return icdgen_place(step, ICD_ROLE_PROGRAM) == NULL ||
-        icdgen_get(procedure->link, step, frame, ICD_ROLE_PROGRAM) == procedure->program;
-}
-
-/* Whether polling goes on after this outcome. */
-static inline bool icdgen_polls_on(icd_procedure_t *procedure, const icd_event_t *outcome)
-{
-    const icd_step_t *const step = procedure->polled;
-    const icd_link_t *const link = procedure->link;
-    if (outcome == NULL) {
-        icdgen_ask(procedure, step->telemetry, procedure->state);
-        return true;
-    }
-    if (outcome->length != step->length) {
-        icdgen_end(procedure, ICD_LENGTH);
-        return true;
-    }
-    if (((icdgen_get(link, step, outcome->data, procedure->flag) != 0u) == procedure->wanted &&
-         icdgen_is_meant(procedure, outcome->data)) ||
-        icdgen_get(link, step, outcome->data, ICD_ROLE_ERROR) != 0u) {
-        procedure->polled = NULL;
-        return false;
-    }
-    if (icdgen_reached(procedure->now, procedure->poll_end)) {
-        icdgen_end(procedure, ICD_TIMED_OUT);
-    } else {
-        icdgen_wait(procedure, procedure->now + procedure->interval);
-    }
-    return true;
-}
-
-static inline void icdgen_resume(icd_procedure_t *procedure, const icd_event_t *outcome)
-{
-    procedure->want = ICDGEN_WANT_NOTHING;
-    if (outcome != NULL && outcome->kind != ICD_EVENT_DONE && !procedure->tolerant) {
-        icdgen_end(procedure, outcome->kind == ICD_EVENT_REFUSED ? ICD_REFUSED : ICD_TIMED_OUT);
-    } else if (procedure->polled == NULL || !icdgen_polls_on(procedure, outcome)) {
-        procedure->resume(procedure, outcome);
-    }
-}
-
 /** The next request, once; false while there is nothing to send. It lasts until the next call. */
-static inline bool icd_procedure_next(icd_procedure_t *procedure, uint32_t now, icd_request_t *request)
-{
-    procedure->now = now;
-    if (!procedure->started) {
-        procedure->started = true;
-        icdgen_resume(procedure, NULL);
-    }
-    while (procedure->want == ICDGEN_WANT_TIME && icdgen_reached(now, procedure->until)) {
-        icdgen_resume(procedure, NULL);
-    }
-    if (procedure->want != ICDGEN_WANT_REQUEST || procedure->asked) {
-        return false;
-    }
-    procedure->asked = true;
-    *request = procedure->request;
-    return true;
-}
-
-/*
- * A refusal with a code that the ICD does not have is a damaged acknowledge, which tells nothing: what may be repeated
- * is asked again, and else it is as if none had come.
- */
-static inline void icdgen_damaged(icd_procedure_t *procedure, const icd_event_t *event)
-{
-    icd_event_t timeout = *event;
-    timeout.kind = ICD_EVENT_TIMEOUT;
-    if (procedure->request.repeat && procedure->damaged < procedure->link->client.retries) {
-        procedure->damaged++;
-    } else {
-        procedure->damaged = 0;
-        icdgen_resume(procedure, &timeout);
-    }
-}
+ICDGEN_API bool icd_procedure_next(icd_procedure_t *procedure, uint32_t now, icd_request_t *request);
 
 /** Takes an event of the client; those that are of no concern are ignored. */
-static inline void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, const icd_event_t *event)
-{
-    procedure->now = now;
-    switch (event->kind) {
-    case ICD_EVENT_PACKET:
-        if (procedure->packet != NULL) {
-            procedure->packet(procedure, event->number, event->data, event->length);
-        }
-        break;
-    case ICD_EVENT_DONE:
-    case ICD_EVENT_REFUSED:
-    case ICD_EVENT_TIMEOUT:
-        if (procedure->asked) {
-            procedure->asked = false;
-            if (event->kind == ICD_EVENT_REFUSED && event->code >= 0 && event->reason == ICD_REASON_UNKNOWN) {
-                icdgen_damaged(procedure, event);
-            } else {
-                procedure->damaged = 0;
-                icdgen_resume(procedure, event);
-            }
-        }
-        break;
-    default:
-        break;
-    }
-}
+ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, const icd_event_t *event);
 
 /**
  * When icd_procedure_next() wants to be called again. False while a request is ready, which is before the first call
  * and after an outcome: it may be called at once; false also while an outcome is awaited, and at the end.
  */
-static inline bool icd_procedure_deadline(const icd_procedure_t *procedure, uint32_t *deadline)
-{
-    *deadline = procedure->until;
-    return procedure->want == ICDGEN_WANT_TIME;
-}
+ICDGEN_API bool icd_procedure_deadline(const icd_procedure_t *procedure, uint32_t *deadline);
 
 /**
  * Gives the client the next request as soon as there is one and the client is free. `on_event` is that of the client,
  * and hands each event to icd_procedure_event().
  */
-static inline icd_status_t icd_procedure_step(
-    icd_procedure_t *procedure, icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    icd_request_t request;
-    if (client->state != ICD_CLIENT_IDLE || icdgen_client_has_output(client) ||
-        !icd_procedure_next(procedure, now, &request)) {
-        return ICD_OK;
-    }
-    return icd_client_start(client, now, &request, on_event, context);
-}
-
-static inline icd_status_t icdgen_procedure_init(
-    icd_procedure_t *procedure,
-    const icd_link_t *link,
-    bool supported,
-    void (*resume)(icd_procedure_t *procedure, const icd_event_t *outcome))
-{
-    memset(procedure, 0, sizeof *procedure);
-    procedure->link = link;
-    procedure->resume = resume;
-    procedure->result = ICD_RUNNING;
-    return supported ? ICD_OK : ICD_ERROR_UNSUPPORTED;
-}
+ICDGEN_API icd_status_t icd_procedure_step(
+    icd_procedure_t *procedure, icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context);
 
 /** A file of the node; `time` is packed. */
 typedef struct {
@@ -2921,85 +1133,7 @@ typedef struct {
     uint8_t last[ICD_STEP_BYTES];
 } icd_list_t;
 
-enum { ICDGEN_LIST_START, ICDGEN_LIST_RESET, ICDGEN_LIST_FRAME, ICDGEN_LIST_ADVANCED };
-
-static inline void icdgen_list_poll(icd_procedure_t *procedure)
-{
-    const icd_list_form_t *const form = procedure->link->list;
-    icdgen_poll(
-        procedure, &form->information, ICD_ROLE_BUSY, false, form->poll_interval, form->timeout, ICDGEN_LIST_FRAME);
-}
-
-static inline void icdgen_list_tell(const icd_list_t *list, const uint8_t *frame)
-{
-    const icd_link_t *const link = list->procedure.link;
-    const icd_step_t *const step = &link->list->information;
-    icd_file_t file;
-    file.type = icdgen_get(link, step, frame, ICD_ROLE_TYPE);
-    file.counter = icdgen_get(link, step, frame, ICD_ROLE_COUNTER);
-    file.size = icdgen_get(link, step, frame, ICD_ROLE_SIZE);
-    file.time = icdgen_get(link, step, frame, ICD_ROLE_TIME);
-    file.checksum = icdgen_get(link, step, frame, ICD_ROLE_CHECKSUM);
-    list->on_file(list->context, &file);
-}
-
-static inline void icdgen_list_frame(icd_list_t *list, const uint8_t *frame, size_t length)
-{
-    icd_procedure_t *const procedure = &list->procedure;
-    uint8_t any = 0;
-    for (size_t i = 0; i < length; ++i) {
-        any = ICDGEN_U8(any | frame[i]);
-    }
-    if (any == 0u) {
-        icdgen_end(procedure, ICD_DONE);
-        return;
-    }
-    if (!list->has_last || memcmp(list->last, frame, length) != 0) {
-        icdgen_list_tell(list, frame);
-        list->again = 0;
-    } else if (list->again > procedure->link->client.retries) {
-        icdgen_end(procedure, ICD_TIMED_OUT);
-        return;
-    }
-    memcpy(list->last, frame, length);
-    list->has_last = true;
-    list->again++;
-    /* Sent once: if only its acknowledge was lost, the next frame tells that it arrived. */
-    icdgen_command(procedure, &procedure->link->list->advance, false, ICDGEN_LIST_ADVANCED);
-    procedure->tolerant = true;
-}
-
-static inline void icdgen_list_resume(icd_procedure_t *procedure, const icd_event_t *outcome)
-{
-    icd_list_t *const list = ICDGEN_CAST(icd_list_t *, ICDGEN_CAST(void *, procedure));
-    switch (procedure->state) {
-    case ICDGEN_LIST_START:
-        icdgen_command(procedure, &procedure->link->list->reset, true, ICDGEN_LIST_RESET);
-        break;
-    case ICDGEN_LIST_FRAME:
-        icdgen_list_frame(list, outcome->data, outcome->length);
-        break;
-    case ICDGEN_LIST_ADVANCED:
-        if (outcome->kind == ICD_EVENT_REFUSED) {
-            icdgen_end(procedure, ICD_REFUSED);
-            break;
-        }
-        icdgen_list_poll(procedure);
-        break;
-    case ICDGEN_LIST_RESET:
-    default:
-        icdgen_list_poll(procedure);
-        break;
-    }
-}
-
-static inline icd_status_t icd_list_init(icd_list_t *list, const icd_link_t *link, icd_file_fn *on_file, void *context)
-{
-    memset(list, 0, sizeof *list);
-    list->on_file = on_file;
-    list->context = context;
-    return icdgen_procedure_init(&list->procedure, link, link->list != NULL, icdgen_list_resume);
-}
+ICDGEN_API icd_status_t icd_list_init(icd_list_t *list, const icd_link_t *link, icd_file_fn *on_file, void *context);
 
 /** Is told of each block of a file. */
 typedef void icd_block_fn(void *context, uint32_t offset, const uint8_t *data, size_t length);
@@ -3030,274 +1164,15 @@ typedef struct {
 } icd_download_t;
 
 /** Bytes of the buffer and of the bitmap for blocks of at most `block` bytes. */
-static inline size_t icd_block_buffer(const icd_link_t *link, uint32_t block)
-{
-    const uint32_t size = link->files->packet_bytes;
-    return ICDGEN_CAST(size_t, (block + size - 1u) / size) * size;
-}
+ICDGEN_API size_t icd_block_buffer(const icd_link_t *link, uint32_t block);
 
-static inline size_t icd_block_bitmap(const icd_link_t *link, uint32_t block)
-{
-    return ((block + link->files->packet_bytes - 1u) / link->files->packet_bytes + 7u) / 8u;
-}
-
-enum {
-    ICDGEN_DOWNLOAD_START,
-    ICDGEN_DOWNLOAD_LOADED,
-    ICDGEN_DOWNLOAD_READY,
-    ICDGEN_DOWNLOAD_MAPPED,
-    ICDGEN_DOWNLOAD_BURST,
-    ICDGEN_DOWNLOAD_SILENCE,
-    ICDGEN_DOWNLOAD_FETCHED
-};
-
-static inline bool icdgen_bit(const uint8_t *bits, uint32_t position)
-{
-    return ((ICDGEN_U32(bits[position / 8u]) >> (position % 8u)) & 1u) != 0u;
-}
-
-static inline void icdgen_set_bit(uint8_t *bits, uint32_t position, bool one)
-{
-    const uint32_t bit = UINT32_C(1) << (position % 8u);
-    bits[position / 8u] = ICDGEN_U8(one ? bits[position / 8u] | bit : bits[position / 8u] & ~bit);
-}
-
-static inline icd_download_t *icdgen_download(icd_procedure_t *procedure)
-{
-    return ICDGEN_CAST(icd_download_t *, ICDGEN_CAST(void *, procedure));
-}
-
-static inline void icdgen_download_packet(
-    icd_procedure_t *procedure, uint32_t number, const uint8_t *data, size_t length)
-{
-    icd_download_t *const download = icdgen_download(procedure);
-    const icd_files_form_t *const files = procedure->link->files;
-    const uint32_t position = number - files->first_packet;
-    if (position >= download->count || length != files->packet_bytes) {
-        return;
-    }
-    if (!icdgen_bit(download->got, position)) {
-        icdgen_set_bit(download->got, position, true);
-        memcpy(download->buffer + (ICDGEN_CAST(size_t, position) * length), data, length);
-        download->there++;
-    }
-    download->last = procedure->now;
-    if (download->there == download->count && procedure->want == ICDGEN_WANT_TIME) {
-        procedure->until = procedure->now;
-    }
-}
-
-/* Bytes to ask for next; 0 at the end of the file. */
-static inline uint32_t icdgen_download_wanted(const icd_download_t *download)
-{
-    const uint32_t left = download->size - download->offset;
-    return download->size == ICD_SIZE_UNKNOWN || left > download->block ? download->block : left;
-}
-
-static inline void icdgen_download_load(icd_download_t *download)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    const icd_link_t *const link = procedure->link;
-    const icd_step_t *const step = &link->download->load;
-    if (icdgen_download_wanted(download) == 0u) {
-        icdgen_end(procedure, ICD_DONE);
-        return;
-    }
-    download->count = 0;
-    download->there = 0;
-    icdgen_command(procedure, step, true, ICDGEN_DOWNLOAD_LOADED);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_TYPE, download->type);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_COUNTER, download->counter);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_OFFSET, download->offset);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_LENGTH, icdgen_download_wanted(download));
-}
-
-static inline void icdgen_download_burst(icd_download_t *download)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    const icd_link_t *const link = procedure->link;
-    const icd_step_t *const step = &link->download->burst;
-    download->left = download->count - download->there;
-    download->last = procedure->now;
-    /* Sent once: that packets come, or none, tells more than its acknowledge. */
-    icdgen_command(procedure, step, false, ICDGEN_DOWNLOAD_BURST);
-    procedure->tolerant = true;
-    icdgen_put(link, step, procedure->data, ICD_ROLE_LENGTH, link->download->message_length);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_IGNORE_HOLE_MAP, download->there == 0u ? 1u : 0u);
-}
-
-/* Sends the next piece of the hole map, or asks for the packets once all are sent. */
-static inline void icdgen_download_map(icd_download_t *download)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    const icd_hole_map_form_t *const form = procedure->link->hole_map;
-    const uint32_t first = download->left * form->message_bytes * 8u;
-    const icd_hole_map_message_t *const message = &form->messages[download->left];
-    icd_step_t step;
-    if (first >= download->count || download->left >= form->message_count) {
-        icdgen_download_burst(download);
-        return;
-    }
-    memset(&step, 0, sizeof step);
-    step.telecommand = message->telecommand;
-    step.length = message->length;
-    icdgen_command(procedure, &step, true, ICDGEN_DOWNLOAD_MAPPED);
-    for (uint32_t i = 0; i < form->message_bytes * 8u; ++i) {
-        const uint32_t position = first + i;
-        const bool one =
-            position >= download->count ? form->beyond_end : icdgen_bit(download->got, position) == form->received;
-        icdgen_hole_put(form, procedure->data + message->at, i, one);
-    }
-    download->left++;
-}
-
-/* The block is whole: delivers it, and asks for the next one. */
-static inline void icdgen_download_block(icd_download_t *download)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    const icd_link_t *const link = procedure->link;
-    const size_t covered =
-        link->download->checksum_covers_fill ? icd_block_buffer(link, download->length) : download->length;
-    const uint32_t wanted = icdgen_download_wanted(download);
-    if (icd_crc(link->crc16, download->buffer, covered) != download->checksum) {
-        if (download->rounds == link->download->rounds) {
-            icdgen_end(procedure, ICD_CHECKSUM);
-            return;
-        }
-        download->rounds += download->length == 0u ? 1u : 0u;
-        icdgen_download_load(download);
-        return;
-    }
-    if (download->length != 0u) {
-        download->on_block(download->context, download->offset, download->buffer, download->length);
-        download->offset += download->length;
-    }
-    if (download->size == ICD_SIZE_UNKNOWN && download->length < wanted) {
-        icdgen_end(procedure, ICD_DONE);
-        return;
-    }
-    download->rounds = 0;
-    icdgen_download_load(download);
-}
-
-/* One more round, if packets are missing. */
-static inline void icdgen_download_round(icd_download_t *download)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    if (download->there == download->count) {
-        icdgen_download_block(download);
-        return;
-    }
-    if (download->rounds == procedure->link->download->rounds) {
-        icdgen_end(procedure, ICD_ROUNDS);
-        return;
-    }
-    download->rounds++;
-    download->left = 0;
-    if (download->there != 0u) {
-        icdgen_download_map(download);
-    } else {
-        icdgen_download_burst(download);
-    }
-}
-
-static inline void icdgen_download_ready(icd_download_t *download, const uint8_t *frame)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    const icd_link_t *const link = procedure->link;
-    const icd_step_t *const step = &link->download->ready;
-    const uint32_t wanted = icdgen_download_wanted(download);
-    if (icdgen_get(link, step, frame, ICD_ROLE_ERROR) != 0u) {
-        icdgen_end(procedure, ICD_PARAMETER);
-        return;
-    }
-    download->length = icdgen_get(link, step, frame, ICD_ROLE_LENGTH);
-    download->checksum = icdgen_get(link, step, frame, ICD_ROLE_CHECKSUM);
-    if (download->length > wanted || (download->size != ICD_SIZE_UNKNOWN && download->length != wanted)) {
-        icdgen_end(procedure, ICD_LENGTH);
-        return;
-    }
-    download->count = (download->length + link->files->packet_bytes - 1u) / link->files->packet_bytes;
-    memset(download->got, 0, icd_block_bitmap(link, download->length));
-    icdgen_download_round(download);
-}
-
-/* I2C, CAN: requests the next packet, or ends the round. */
-static inline void icdgen_download_fetch(icd_download_t *download)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    if (download->left == 0u) {
-        icdgen_download_round(download);
-        return;
-    }
-    download->left--;
-    icdgen_ask(procedure, procedure->link->files->packet_ids[download->bus], ICDGEN_DOWNLOAD_FETCHED);
-    procedure->tolerant = true;
-}
-
-/* UART: waits for packets until all are there, or none has come for a while. */
-static inline void icdgen_download_silence(icd_download_t *download)
-{
-    icd_procedure_t *const procedure = &download->procedure;
-    const uint32_t end = download->last + procedure->link->download->silence;
-    if (download->there == download->count || icdgen_reached(procedure->now, end)) {
-        icdgen_download_round(download);
-        return;
-    }
-    procedure->state = ICDGEN_DOWNLOAD_SILENCE;
-    icdgen_wait(procedure, end);
-}
-
-static inline void icdgen_download_resume(icd_procedure_t *procedure, const icd_event_t *outcome)
-{
-    icd_download_t *const download = icdgen_download(procedure);
-    const icd_link_t *const link = procedure->link;
-    const icd_download_form_t *const form = link->download;
-    const size_t head = link->files->counter_bytes;
-    switch (procedure->state) {
-    case ICDGEN_DOWNLOAD_LOADED:
-        icdgen_poll(
-            procedure, &form->ready, ICD_ROLE_READY, true, form->poll_interval, form->ready_timeout,
-            ICDGEN_DOWNLOAD_READY);
-        break;
-    case ICDGEN_DOWNLOAD_READY:
-        icdgen_download_ready(download, outcome->data);
-        break;
-    case ICDGEN_DOWNLOAD_MAPPED:
-        icdgen_download_map(download);
-        break;
-    case ICDGEN_DOWNLOAD_BURST:
-        if (outcome->kind == ICD_EVENT_REFUSED) {
-            icdgen_end(procedure, ICD_REFUSED);
-        } else if (download->bus != ICD_BUS_UART) {
-            icdgen_download_fetch(download);
-        } else {
-            download->last = procedure->now;
-            icdgen_download_silence(download);
-        }
-        break;
-    case ICDGEN_DOWNLOAD_SILENCE:
-        icdgen_download_silence(download);
-        break;
-    case ICDGEN_DOWNLOAD_FETCHED:
-        if (outcome->kind == ICD_EVENT_DONE && outcome->length >= head) {
-            icdgen_download_packet(
-                procedure, icdgen_number(link, outcome->data, head), outcome->data + head, outcome->length - head);
-        }
-        icdgen_download_fetch(download);
-        break;
-    case ICDGEN_DOWNLOAD_START:
-    default:
-        icdgen_download_load(download);
-        break;
-    }
-}
+ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block);
 
 /**
  * `size`: bytes of the file, or ICD_SIZE_UNKNOWN. `block`: bytes asked for at once, 0 for those of the ICD. `buffer`
  * holds icd_block_buffer() bytes, `bitmap` icd_block_bitmap().
  */
-static inline icd_status_t icd_download_init(
+ICDGEN_API icd_status_t icd_download_init(
     icd_download_t *download,
     const icd_link_t *link,
     icd_bus_t bus,
@@ -3308,26 +1183,7 @@ static inline icd_status_t icd_download_init(
     uint8_t *buffer,
     uint8_t *bitmap,
     icd_block_fn *on_block,
-    void *context)
-{
-    const bool known = link->download != NULL && link->files != NULL && link->crc16 != NULL && link->hole_map != NULL &&
-        (bus == ICD_BUS_UART || link->files->packet_ids[bus] >= 0);
-    memset(download, 0, sizeof *download);
-    if (icdgen_procedure_init(&download->procedure, link, known, icdgen_download_resume) != ICD_OK) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    download->procedure.packet = icdgen_download_packet;
-    download->bus = bus;
-    download->type = type;
-    download->counter = counter;
-    download->size = size;
-    download->block = block != 0u && block < link->files->block_bytes ? block : link->files->block_bytes;
-    download->buffer = buffer;
-    download->got = bitmap;
-    download->on_block = on_block;
-    download->context = context;
-    return ICD_OK;
-}
+    void *context);
 
 /** Uploads a file block by block. `procedure` goes to the functions of icd_procedure_t. */
 typedef struct {
@@ -3343,269 +1199,19 @@ typedef struct {
     uint32_t rounds;
 } icd_upload_t;
 
-enum {
-    ICDGEN_UPLOAD_START,
-    ICDGEN_UPLOAD_INITIATED,
-    ICDGEN_UPLOAD_READY,
-    ICDGEN_UPLOAD_BEGUN,
-    ICDGEN_UPLOAD_PACKET,
-    ICDGEN_UPLOAD_MAP,
-    ICDGEN_UPLOAD_CHECKSUM,
-    ICDGEN_UPLOAD_FINALIZE,
-    ICDGEN_UPLOAD_FINALIZED
-};
-
-/* Bytes of this block. */
-static inline uint32_t icdgen_upload_length(const icd_upload_t *upload)
-{
-    const uint32_t left = upload->size - upload->sent;
-    return left < upload->block ? left : upload->block;
-}
-
-/* Begins the block, for the first time or again. */
-static inline void icdgen_upload_begin(icd_upload_t *upload)
-{
-    icd_procedure_t *const procedure = &upload->procedure;
-    const uint32_t packet_bytes = procedure->link->files->packet_bytes;
-    upload->count = (icdgen_upload_length(upload) + packet_bytes - 1u) / packet_bytes;
-    memset(upload->missing, 0xFF, (upload->count + 7u) / 8u);
-    icdgen_command(procedure, &procedure->link->upload->begin, true, ICDGEN_UPLOAD_BEGUN);
-}
-
-static inline void icdgen_upload_block(icd_upload_t *upload)
-{
-    upload->rounds = 0;
-    if (upload->sent == upload->size) {
-        icdgen_end(&upload->procedure, ICD_DONE);
-    } else {
-        icdgen_upload_begin(upload);
-    }
-}
-
-/* The filled packet of that position. */
-static inline void icdgen_upload_packet(const icd_upload_t *upload, uint32_t position, uint8_t *packet)
-{
-    const icd_files_form_t *const files = upload->procedure.link->files;
-    const uint32_t at = position * files->packet_bytes;
-    const uint32_t left = icdgen_upload_length(upload) - at;
-    memset(packet, files->fill, files->packet_bytes);
-    memcpy(packet, upload->file + upload->sent + at, left < files->packet_bytes ? left : files->packet_bytes);
-}
-
-/* Sends the next packet that is missing; false if there is none behind those that were sent. */
-static inline bool icdgen_upload_send(icd_upload_t *upload)
-{
-    icd_procedure_t *const procedure = &upload->procedure;
-    const icd_link_t *const link = procedure->link;
-    const icd_step_t *const step = &link->upload->packet;
-    const icd_place_t *const bytes = icdgen_place(step, ICD_ROLE_BYTES);
-    while (upload->next < upload->count && !icdgen_bit(upload->missing, upload->next)) {
-        upload->next++;
-    }
-    if (upload->next == upload->count) {
-        return false;
-    }
-    icdgen_command(procedure, step, false, ICDGEN_UPLOAD_PACKET);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_NUMBER, link->files->first_packet + upload->next);
-    icdgen_upload_packet(upload, upload->next, procedure->data + (bytes->at / 8u));
-    upload->next++;
-    return true;
-}
-
-/* Begins another round, or reads the checksum if no packet is missing. */
-static inline void icdgen_upload_round(icd_upload_t *upload)
-{
-    icd_procedure_t *const procedure = &upload->procedure;
-    bool any = false;
-    for (uint32_t i = 0; i < upload->count; ++i) {
-        any = any || icdgen_bit(upload->missing, i);
-    }
-    if (!any) {
-        icdgen_ask(procedure, procedure->link->upload->checksum.telemetry, ICDGEN_UPLOAD_CHECKSUM);
-        return;
-    }
-    if (upload->rounds == procedure->link->upload->rounds) {
-        icdgen_end(procedure, ICD_ROUNDS);
-        return;
-    }
-    upload->rounds++;
-    upload->next = 0;
-    (void)icdgen_upload_send(upload);
-}
-
-/* Reads the next piece of the hole map, and what it tells once all is read. */
-static inline void icdgen_upload_map(icd_upload_t *upload)
-{
-    const icd_hole_map_form_t *const form = upload->procedure.link->hole_map;
-    if (upload->next >= form->message_count || upload->next * form->message_bytes * 8u >= upload->count) {
-        icdgen_upload_round(upload);
-    } else {
-        icdgen_ask(&upload->procedure, form->messages[upload->next].telemetry, ICDGEN_UPLOAD_MAP);
-    }
-}
-
-/* Sends the next packet that is missing, or reads the hole map. */
-static inline void icdgen_upload_next(icd_upload_t *upload)
-{
-    if (!icdgen_upload_send(upload)) {
-        upload->next = 0;
-        icdgen_upload_map(upload);
-    }
-}
-
-static inline void icdgen_upload_mapped(icd_upload_t *upload, const uint8_t *frame, size_t length)
-{
-    const icd_hole_map_form_t *const form = upload->procedure.link->hole_map;
-    const icd_hole_map_message_t *const message = &form->messages[upload->next];
-    const uint32_t first = upload->next * form->message_bytes * 8u;
-    if (length != message->length) {
-        icdgen_end(&upload->procedure, ICD_LENGTH);
-        return;
-    }
-    for (uint32_t i = 0; i < form->message_bytes * 8u && first + i < upload->count; ++i) {
-        const bool one = (frame[message->at + (i / 8u)] & icdgen_hole_bit(form, i)) != 0u;
-        icdgen_set_bit(upload->missing, first + i, one != form->received);
-    }
-    upload->next++;
-    icdgen_upload_map(upload);
-}
-
-static inline uint32_t icdgen_upload_checksum(const icd_upload_t *upload)
-{
-    const icd_link_t *const link = upload->procedure.link;
-    const uint32_t length = icdgen_upload_length(upload);
-    uint32_t left = upload->count * link->files->packet_bytes - length;
-    icd_crc_t crc;
-    icd_crc_init(&crc, link->crc16);
-    icd_crc_feed(&crc, upload->file + upload->sent, length);
-    for (left = link->upload->checksum_covers_fill ? left : 0u; left != 0u; --left) {
-        icd_crc_feed(&crc, &link->files->fill, 1);
-    }
-    return icd_crc_result(&crc);
-}
-
-/* The block is not as it should be: once more, or the end. */
-static inline void icdgen_upload_again(icd_upload_t *upload)
-{
-    if (upload->rounds == upload->procedure.link->upload->rounds) {
-        icdgen_end(&upload->procedure, ICD_CHECKSUM);
-    } else {
-        icdgen_upload_begin(upload);
-    }
-}
-
-static inline void icdgen_upload_checked(icd_upload_t *upload, const icd_event_t *outcome)
-{
-    icd_procedure_t *const procedure = &upload->procedure;
-    const icd_link_t *const link = procedure->link;
-    const icd_step_t *const step = &link->upload->finalize;
-    if (outcome->length != link->upload->checksum.length) {
-        icdgen_end(procedure, ICD_LENGTH);
-        return;
-    }
-    if (icdgen_get(link, &link->upload->checksum, outcome->data, ICD_ROLE_CHECKSUM) != icdgen_upload_checksum(upload)) {
-        icdgen_upload_again(upload);
-        return;
-    }
-    icdgen_command(procedure, step, true, ICDGEN_UPLOAD_FINALIZE);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_DESTINATION, upload->destination);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_OFFSET, upload->sent);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_LENGTH, icdgen_upload_length(upload));
-}
-
-static inline void icdgen_upload_finalized(icd_upload_t *upload, const uint8_t *frame)
-{
-    const icd_link_t *const link = upload->procedure.link;
-    if (icdgen_get(link, &link->upload->finalized, frame, ICD_ROLE_ERROR) != 0u) {
-        icdgen_upload_again(upload);
-        return;
-    }
-    upload->sent += icdgen_upload_length(upload);
-    icdgen_upload_block(upload);
-}
-
-static inline void icdgen_upload_start(icd_upload_t *upload)
-{
-    icd_procedure_t *const procedure = &upload->procedure;
-    const icd_link_t *const link = procedure->link;
-    const icd_step_t *const step = &link->upload->initiate;
-    icdgen_command(procedure, step, true, ICDGEN_UPLOAD_INITIATED);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_DESTINATION, upload->destination);
-    icdgen_put(link, step, procedure->data, ICD_ROLE_BLOCK_SIZE, link->upload->block_size);
-}
-
-static inline void icdgen_upload_resume(icd_procedure_t *procedure, const icd_event_t *outcome)
-{
-    icd_upload_t *const upload = ICDGEN_CAST(icd_upload_t *, ICDGEN_CAST(void *, procedure));
-    const icd_upload_form_t *const form = procedure->link->upload;
-    switch (procedure->state) {
-    case ICDGEN_UPLOAD_INITIATED:
-        icdgen_poll(
-            procedure, &form->initiated, ICD_ROLE_BUSY, false, form->poll_interval, form->erase_timeout,
-            ICDGEN_UPLOAD_READY);
-        break;
-    case ICDGEN_UPLOAD_READY:
-        icdgen_upload_block(upload);
-        break;
-    case ICDGEN_UPLOAD_BEGUN:
-        icdgen_upload_round(upload);
-        break;
-    case ICDGEN_UPLOAD_PACKET:
-        icdgen_upload_next(upload);
-        break;
-    case ICDGEN_UPLOAD_MAP:
-        icdgen_upload_mapped(upload, outcome->data, outcome->length);
-        break;
-    case ICDGEN_UPLOAD_CHECKSUM:
-        icdgen_upload_checked(upload, outcome);
-        break;
-    case ICDGEN_UPLOAD_FINALIZE:
-        icdgen_poll(
-            procedure, &form->finalized, ICD_ROLE_BUSY, false, form->poll_interval, form->finalize_timeout,
-            ICDGEN_UPLOAD_FINALIZED);
-        break;
-    case ICDGEN_UPLOAD_FINALIZED:
-        icdgen_upload_finalized(upload, outcome->data);
-        break;
-    case ICDGEN_UPLOAD_START:
-    default:
-        icdgen_upload_start(upload);
-        break;
-    }
-}
-
 /**
  * The file must stay where it is. `block`: bytes a block, 0 for those of the ICD. `bitmap` holds icd_block_bitmap()
  * bytes. ICD_ERROR_UNSUPPORTED if the node takes no uploads, ICD_ERROR_RANGE if the destination is not supported,
  * ICD_ERROR_LENGTH if it holds less.
  */
-static inline icd_status_t icd_upload_init(
+ICDGEN_API icd_status_t icd_upload_init(
     icd_upload_t *upload,
     const icd_link_t *link,
     uint8_t destination,
     const uint8_t *file,
     uint32_t size,
     uint32_t block,
-    uint8_t *bitmap)
-{
-    const bool known = link->upload != NULL && link->crc16 != NULL && link->hole_map != NULL;
-    memset(upload, 0, sizeof *upload);
-    if (icdgen_procedure_init(&upload->procedure, link, known, icdgen_upload_resume) != ICD_OK) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    if (!icdgen_allowed(link->upload->destinations, link->upload->destinations_count, destination)) {
-        return ICD_ERROR_RANGE;
-    }
-    if (link->upload->destination_bytes != 0u && size > link->upload->destination_bytes) {
-        return ICD_ERROR_LENGTH;
-    }
-    upload->destination = destination;
-    upload->file = file;
-    upload->size = size;
-    upload->block = block != 0u && block < link->files->block_bytes ? block : link->files->block_bytes;
-    upload->missing = bitmap;
-    return ICD_OK;
-}
+    uint8_t *bitmap);
 
 /** Deletes a file or all of them, or formats the medium. `procedure` goes to the functions of icd_procedure_t. */
 typedef struct {
@@ -3618,46 +1224,12 @@ typedef struct {
 
 typedef icd_erase_t icd_format_t;
 
-enum { ICDGEN_ERASE_START, ICDGEN_ERASE_BEGUN, ICDGEN_ERASE_ENDED };
-
-static inline void icdgen_erase_resume(icd_procedure_t *procedure, const icd_event_t *outcome)
-{
-    icd_erase_t *const erase = ICDGEN_CAST(icd_erase_t *, ICDGEN_CAST(void *, procedure));
-    const icd_erase_form_t *const form = erase->form;
-    (void)outcome;
-    if (procedure->state == ICDGEN_ERASE_START) {
-        icdgen_command(procedure, &form->request, true, ICDGEN_ERASE_BEGUN);
-        icdgen_put(procedure->link, &form->request, procedure->data, ICD_ROLE_TYPE, erase->type);
-        icdgen_put(procedure->link, &form->request, procedure->data, ICD_ROLE_COUNTER, erase->counter);
-        icdgen_put(procedure->link, &form->request, procedure->data, ICD_ROLE_ALL, erase->all ? 1u : 0u);
-    } else if (procedure->state == ICDGEN_ERASE_BEGUN && erase->all) {
-        icdgen_poll(
-            procedure, &form->progress, ICD_ROLE_BUSY, false, form->poll_interval, form->timeout, ICDGEN_ERASE_ENDED);
-    } else {
-        icdgen_end(procedure, ICD_DONE);
-    }
-}
-
 /** Deletes a file, or all of them: then it is done when the node is no longer busy. */
-static inline icd_status_t icd_erase_init(
-    icd_erase_t *erase, const icd_link_t *link, uint8_t type, uint8_t counter, bool all)
-{
-    memset(erase, 0, sizeof *erase);
-    erase->form = link->erase;
-    erase->type = type;
-    erase->counter = counter;
-    erase->all = all;
-    return icdgen_procedure_init(&erase->procedure, link, link->erase != NULL, icdgen_erase_resume);
-}
+ICDGEN_API icd_status_t
+icd_erase_init(icd_erase_t *erase, const icd_link_t *link, uint8_t type, uint8_t counter, bool all);
 
 /** Formats the medium: done when the node is no longer busy. */
-static inline icd_status_t icd_format_init(icd_format_t *format, const icd_link_t *link)
-{
-    memset(format, 0, sizeof *format);
-    format->form = link->format;
-    format->all = true;
-    return icdgen_procedure_init(&format->procedure, link, link->format != NULL, icdgen_erase_resume);
-}
+ICDGEN_API icd_status_t icd_format_init(icd_format_t *format, const icd_link_t *link);
 
 /** What a node does with a stored program. `procedure` goes to the functions of icd_procedure_t. */
 typedef struct {
@@ -3670,67 +1242,18 @@ typedef struct {
 typedef icd_program_operation_t icd_program_copy_t;
 typedef icd_program_operation_t icd_program_information_t;
 
-enum { ICDGEN_PROGRAM_START, ICDGEN_PROGRAM_BEGUN, ICDGEN_PROGRAM_ENDED };
-
-/* The node says that it is done, or that it failed. */
-static inline void icdgen_program_ended(icd_program_operation_t *operation, const uint8_t *frame)
-{
-    const icd_link_t *const link = operation->procedure.link;
-    const icd_step_t *const step = &operation->form->progress;
-    if (icdgen_get(link, step, frame, ICD_ROLE_ERROR) != 0u) {
-        icdgen_end(&operation->procedure, ICD_FAILED);
-    } else {
-        operation->size = icdgen_get(link, step, frame, ICD_ROLE_SIZE);
-        operation->checksum = icdgen_get(link, step, frame, ICD_ROLE_CHECKSUM);
-        icdgen_end(&operation->procedure, ICD_DONE);
-    }
-}
-
-static inline void icdgen_program_resume(icd_procedure_t *procedure, const icd_event_t *outcome)
-{
-    icd_program_operation_t *const operation = ICDGEN_CAST(icd_program_operation_t *, ICDGEN_CAST(void *, procedure));
-    const icd_operation_form_t *const form = operation->form;
-    const bool tells_ready = icdgen_place(&form->progress, ICD_ROLE_READY) != NULL;
-    if (procedure->state == ICDGEN_PROGRAM_START) {
-        icdgen_command(procedure, &form->request, true, ICDGEN_PROGRAM_BEGUN);
-        icdgen_put(procedure->link, &form->request, procedure->data, ICD_ROLE_PROGRAM, procedure->program);
-    } else if (procedure->state == ICDGEN_PROGRAM_BEGUN) {
-        icdgen_poll(
-            procedure, &form->progress, tells_ready ? ICD_ROLE_READY : ICD_ROLE_BUSY, tells_ready, form->poll_interval,
-            form->timeout, ICDGEN_PROGRAM_ENDED);
-    } else {
-        icdgen_program_ended(operation, outcome->data);
-    }
-}
-
-static inline icd_status_t icdgen_program_init(
-    icd_program_operation_t *operation, const icd_link_t *link, const icd_operation_form_t *form, uint8_t program)
-{
-    const icd_status_t status = icdgen_procedure_init(&operation->procedure, link, form != NULL, icdgen_program_resume);
-    operation->form = form;
-    operation->size = 0;
-    operation->checksum = 0;
-    operation->procedure.program = program;
-    if (status == ICD_OK && !icdgen_allowed(form->programs, form->programs_count, program)) {
-        return ICD_ERROR_RANGE;
-    }
-    return status;
-}
-
 /**
  * Copies a stored program to where it can run. ICD_ERROR_RANGE if it may not be asked for, ICD_ERROR_UNSUPPORTED if the
  * node has no such operation.
  */
-static inline icd_status_t icd_program_copy_init(icd_program_copy_t *copy, const icd_link_t *link, uint8_t program)
-{
-    return icdgen_program_init(copy, link, link->program_copy, program);
-}
+ICDGEN_API icd_status_t icd_program_copy_init(icd_program_copy_t *copy, const icd_link_t *link, uint8_t program);
 
 /** Reads `size` and `checksum` of a stored program; refuses as icd_program_copy_init() does. */
-static inline icd_status_t icd_program_information_init(
-    icd_program_information_t *information, const icd_link_t *link, uint8_t program)
-{
-    return icdgen_program_init(information, link, link->program_information, program);
-}
+ICDGEN_API icd_status_t
+icd_program_information_init(icd_program_information_t *information, const icd_link_t *link, uint8_t program);
+
+#ifndef ICDGEN_SHARED
+#include "icdgen_wire.c"
+#endif
 
 #endif /* ICDGEN_WIRE_H */

@@ -7,10 +7,14 @@
  * looks at a clock or allocates: bytes go in, bytes and events come out, memory and time (milliseconds, which may wrap)
  * are the caller's. What differs from node to node is in its link, which NODE_link() of its header gives.
  *
+ * ICDGEN_SHARED     define it where the program has several units: this header declares the functions then, and
+ *                   icdgen_wire.c and NODE/link.c are compiled once. Else each unit has those that it uses for itself.
  * ICDGEN_NO_TABLES  define it to compute checksums without tables: slower, and smaller by 512 bytes each.
  */
 
 #include "icdgen.h"
+
+#include "wire/linkage.h"
 
 #include "wire/forms.h"
 
@@ -53,5 +57,9 @@
 #include "wire/erase.h"
 
 #include "wire/program.h"
+
+#ifndef ICDGEN_SHARED
+#include "icdgen_wire.c"
+#endif
 
 #endif /* ICDGEN_WIRE_H */

@@ -7,7 +7,7 @@ import textwrap
 
 from icdgen.backends.python.links import type_name
 from icdgen.protocol.declared import Fact, Kind, facts_of
-from icdgen.protocol.sections import PLACES, PROCEDURES, Settings
+from icdgen.protocol.sections import PLACES, Settings
 
 _TYPES = {
     Kind.FLAG: "bool", Kind.BUSES: "tuple[str, ...]", Kind.SPAN: "tuple[int, int]",
@@ -17,8 +17,7 @@ _TYPES = {
 
 def written(text: str) -> str:
     """The module with the members of all facts. Members that are no facts stand behind them."""
-    # A procedure of file transfer is looked up by the keys of the ICD, and has no type.
-    for part in dict.fromkeys(part for _, part in PLACES if part not in PROCEDURES.values()):
+    for part in dict.fromkeys(part for _, part in PLACES):
         text = _with_facts(text, part)
     return text
 

@@ -1,5 +1,5 @@
 "use strict";
-/* Bytes as people write them, and as they go over a wire: hexadecimal in any spelling, framing with escapes, checksums. */
+/* Bytes as people write them, and as they go over a wire: hexadecimal in any spelling, framing, checksums. */
 const icdgenFrames = (() => {
   const TOKEN = /(?<space>[\s,;:{}[\]()_.-]+)|(?<prefix>0[xX]|\\[xX]|[xX#$](?=[0-9A-Fa-f]))|(?<digits>[0-9A-Fa-f]+)/y;
 
@@ -51,69 +51,28 @@ const icdgenFrames = (() => {
     return (value ^ facts.xor_out) >>> 0;
   }
 
-  /** The checksum of a message, over the id too where the device says so. */
-  const checksum = (facts, id, data) => crc(facts, facts.covers_id ? [id, ...data] : data);
+  /** The bytes of a message's checksum, which covers the id too where the device says so. */
+  function checksum(facts, id, data) {
+    const value = crc(facts, facts.covers_id ? [id, ...data] : data);
+    const bytes = Array.from({ length: facts.bytes }, (_, place) => Math.floor(value / 256 ** place) % 256);
+    return facts.little ? bytes : bytes.reverse();
+  }
 
-  /** The message as it goes over the wire, with framing; `check` appends the checksum. */
-  function framed(wire, data, check) {
+  /** What must follow `length` bytes of data and whether it does, `{ right, fits }`; null without a checksum, or room for it. */
+  function check(facts, length, id, data) {
+    if (!facts || data.length !== length + facts.bytes) return null;
+    const right = checksum(facts, id, data.slice(0, length));
+    return { right, fits: right.every((byte, at) => byte === data[length + at]) };
+  }
+
+  /** The message as it goes over the wire, with framing; `checked` appends the checksum. */
+  function framed(wire, data, checked) {
     const [escape, start, end, doubled] = wire.framing;
-    const body = [wire.id, ...data, ...(check ? [checksum(wire.crc[0], wire.id, data)] : [])];
+    const body = [wire.id, ...data, ...(checked ? checksum(wire.crc[0], wire.id, data) : [])];
     const escaped = (byte, at) => (byte === escape && (at > 0 || !wire.plain_id) ? [escape, doubled] : [byte]);
     return Uint8Array.from([escape, start, ...body.flatMap(escaped), escape, end]);
   }
 
-  /** Id and data between the framing; null where there is none. Throws an Error where it is broken. */
-  function unframed(wire, bytes) {
-    if (!wire.framing || bytes.length < 2) return null;
-    const [escape, start, end, doubled] = wire.framing;
-    if (bytes[0] !== escape || bytes[1] !== start) return null;
-    const body = [];
-    for (let at = 2; at < bytes.length; at += 1) {
-      if (bytes[at] !== escape || (at === 2 && wire.plain_id)) {
-        body.push(bytes[at]);
-        continue;
-      }
-      at += 1;
-      if (bytes[at] === doubled) body.push(escape);
-      else if (bytes[at] === end && at === bytes.length - 1) return body;
-      else if (bytes[at] === end) throw new Error(`${bytes.length - 1 - at} bytes follow the end of the message`);
-      else throw new Error(`byte ${at}: the escape byte is followed by neither itself nor an end of message`);
-    }
-    throw new Error("the end of the message is missing");
-  }
-
-  /** The id that bytes begin with: its most significant byte comes first. */
-  const idOf = (wire, bytes) => bytes.slice(0, wire.id_bytes || 1).reduce((id, byte) => id * 256 + byte, 0);
-
-  /** The data in what was pasted, and remarks about what was around it. Throws an Error where it cannot be this message. */
-  function unwrap(wire, length, bytes) {
-    const remarks = [];
-    const size = wire.id_bytes || 1;
-    let data = bytes;
-    const body = unframed(wire, bytes);
-    if (body) {
-      if (!wire.ids.includes(body[0])) throw new Error(`framed with id ${body[0]}, which is another message's`);
-      remarks.push(`framing with id ${body[0]} removed`);
-      data = Uint8Array.from(body.slice(1));
-    }
-    const id = body ? body[0] : wire.id;
-    const checked = (some, of) => some.length > 0 && wire.crc.some((facts) => checksum(facts, of, some.slice(0, -1)) === some[some.length - 1]);
-    if (data.length === length + 1 && checked(data, id)) {
-      remarks.push("CRC is right");
-      data = data.slice(0, length);
-    } else if (!body && data.length === length + size && wire.ids.includes(idOf(wire, data))) {
-      remarks.push(`id ${idOf(wire, data)} removed`);
-      data = data.slice(size);
-    } else if (!body && data.length === length + 2 && wire.ids.includes(data[0]) && checked(data.slice(1), data[0])) {
-      remarks.push(`id ${data[0]} removed`, "CRC is right");
-      data = data.slice(1, -1);
-    } else if (data.length === length + 1 && wire.crc.length) {
-      const right = checksum(wire.crc[0], id, data.slice(0, length));
-      throw new Error(`one byte too many: as CRC it would have to be ${hex([right])}, not ${hex([data[length]])}`);
-    }
-    return { data, remarks };
-  }
-
-  return { parseHex, hex, crc, checksum, framed, unwrap };
+  return { parseHex, hex, crc, checksum, check, framed };
 })();
 if (typeof module !== "undefined") module.exports = icdgenFrames;

@@ -1,6 +1,6 @@
 "use strict";
 /* What a person copied -> bytes or CAN packets: the same spellings as `icdgen decode` takes. */
-const icdgenPasted = ((frames, packets) => {
+const icdgenPasted = ((frames) => {
   const BEFORE = /^(?:\([\d.:\s-]+\)\s*)?(?:[A-Za-z]+\d+\s+)?(?:[TR]X\s[-BEP ]*)?/.source;
   const ID = "(?<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})";
   const PACKETS = [
@@ -17,11 +17,14 @@ const icdgenPasted = ((frames, packets) => {
   const COMMENT = /\/\*[^]*?\*\/|\/\/[^\n]*/g;
   const LIST = /[[{(]([^[\]{}()]*)[\]})][)\]}\s;]*$/;
   const NUMBER = /^(0[xX][0-9A-Fa-f]+|\d+)(?:[uU]8?)?$/;
-  const LITERAL = /^b(["'])((?:\\[^]|(?!\1)[^\\])*\\(?:\\[^]|(?!\1)[^\\]|[^])*)\1$/;
+  const LITERAL = /^(?:bytearray\()?b(["'])((?:\\[^]|(?!\1)[^\\])*\\(?:\\[^]|(?!\1)[^\\]|[^])*)\1\)?$/;
   const STRING = /(["'])([0-9A-Fa-f\s]+)\1/g;
   const ESCAPED = { n: 10, r: 13, t: 9, 0: 0, a: 7, b: 8, f: 12, v: 11, "\\": 92, "'": 39, '"': 34 };
   const BASE64 = /^(?:[A-Za-z0-9+/_-]{4})*(?:[A-Za-z0-9+/_-]{2}==|[A-Za-z0-9+/_-]{3}=)?$/;
-  const LABEL = /^[ \t]*(?:\[[^\]\n]*\][ \t]*)?(?:\d+:\d\d[\d:.]*[ \t]+)?(?:(?:[rRtT][xX]|recv|sent|send)[ \t]*[:>]?|<+|>+|<-|->)[ \t]+/gm;
+  const MARKED = /(["'])(0[xX][0-9A-Fa-f]{1,2}|[0-9A-Fa-f]{2})\1|<([0-9A-Fa-f]{2})>|\b([0-9A-Fa-f]{2})[hH]\b/g;
+  const DECIMALS = /^[0-9]{1,3}(?:[\s,;]+[0-9]{1,3})+$/;
+  const LABEL =
+    /^[ \t]*(?:\[[^\]\n]*\][ \t]*)?(?:(?:\d{4}-\d\d-\d\d[T ])?\d+:\d\d[\d:.,]*[ \t]+)?(?:(?:[rRtT][xX]|recv|sent|send|frame)[ \t]*[:>]?|<+|>+|<-|->)[ \t]+|^[ \t]*\d{4}-\d\d-\d\d[T ]\d+:\d\d[\d:.,]*[ \t]+/gm;
 
   const digits = (text) => Uint8Array.from(text.match(/[0-9A-Fa-f]{2}/g) ?? [], (pair) => parseInt(pair, 16));
   const linesOf = (text) => text.split(/\r\n|\r|\n/).map((line) => line.trim()).filter(Boolean);
@@ -38,7 +41,7 @@ const icdgenPasted = ((frames, packets) => {
     try {
       return { data: frames.parseHex(text), form: "" };
     } catch (error) {
-      const other = ofCode(text.replace(COMMENT, " ")) ?? labelled(text) ?? base64(text);
+      const other = ofCode(text.replace(COMMENT, " ")) ?? labelled(text) ?? marked(text) ?? decimal(text) ?? base64(text);
       if (!other) throw error;
       return other;
     }
@@ -111,6 +114,17 @@ const icdgenPasted = ((frames, packets) => {
     return bare === text ? null : hexadecimal(bare);
   }
 
+  /** Each byte in quotes or angles, or followed by `h`. */
+  function marked(text) {
+    const bare = text.replace(MARKED, (whole, quote, quoted, angled, ended) => ` ${quoted ?? angled ?? ended} `);
+    return bare === text ? null : hexadecimal(bare);
+  }
+
+  function decimal(text) {
+    const values = DECIMALS.test(text.trim()) ? text.match(/[0-9]+/g).map(Number) : [];
+    return values.length && Math.max(...values) < 256 ? { data: Uint8Array.from(values), form: "decimal numbers" } : null;
+  }
+
   function base64(text) {
     const joined = text.replace(/\s+/g, "");
     const word = joined.length < 8 || joined === joined.toLowerCase() || joined === joined.toUpperCase();
@@ -127,29 +141,6 @@ const icdgenPasted = ((frames, packets) => {
     }
   }
 
-  /** The data of the message that CAN packets carry, and remarks. Throws an Error where they are of another one. */
-  function joined(wire, length, given) {
-    const { can } = wire;
-    if (!can) return { data: Uint8Array.from(given.flatMap((one) => [...one.data])), remarks: ["data of CAN packets"] };
-    const idOf = (one) => packets.partOf(can, "channel", one.id);
-    const mine = given.filter((one) => one.extended && wire.ids.includes(idOf(one)));
-    if (!mine.length) throw new Error(`CAN packets of id ${idOf(given[0])}, which is another message's`);
-    const { messages, open } = packets.join({ can }, mine, () => length);
-    const found = messages.find((one) => ["telecommand", "reply"].includes(one.kind));
-    if (found) return { data: found.data, remarks: [`data of CAN packets with id ${found.id}`] };
-    if (open.length) throw new Error(`${open[0].count - open[0].pieces.size} of ${open[0].count} packets are missing`);
-    throw new Error(`CAN packets with id ${idOf(mine[0])} that carry no data`);
-  }
-
-  /** Data of the message in whatever was pasted, and remarks. Throws an Error where it cannot be this message. */
-  function messageIn(wire, length, text) {
-    const given = read(text);
-    if (given.packets) return joined(wire, length, given.packets);
-    const { data, form } = given;
-    const found = frames.unwrap(wire, length, data);
-    return { data: found.data, remarks: form ? [...found.remarks, `read as ${form}`] : found.remarks };
-  }
-
-  return { read, messageIn };
-})(...(typeof icdgenFrames === "undefined" ? [require("./frames.js"), require("./packets.js")] : [icdgenFrames, icdgenPackets]));
+  return { read };
+})(typeof icdgenFrames === "undefined" ? require("./frames.js") : icdgenFrames);
 if (typeof module !== "undefined") module.exports = icdgenPasted;

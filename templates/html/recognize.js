@@ -59,18 +59,11 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
   function framed(index, talking, data) {
     const forms = new Map(talking.filter((one) => one.framing).map((one) => [JSON.stringify([one.framing, one.plain_id, one.ignores_other]), one]));
     for (const [form, first] of forms) {
-      const [escape, start] = first.framing;
-      const begins = (at) => data[at] === escape && data[at + 1] === start;
-      if (!data.some((_, at) => begins(at))) continue;
-      const { events, lost } = stream.decode(first, data);
-      const bodies = events.filter((one) => one.event === "message").map((one) => one.message);
-      if (!bodies.length) {
-        if (begins(0)) throw new Error(broken(events));
-        continue;
-      }
+      const read = stream.messages(first, data);
+      if (!read) continue;
       const same = talking.filter((one) => JSON.stringify([one.framing, one.plain_id, one.ignores_other]) === form);
       const [found, wrong] = [[], []];
-      for (const body of bodies) {
+      for (const body of read.messages) {
         try {
           found.push(ofBody(index, same, body));
         } catch (error) {
@@ -78,17 +71,10 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
         }
       }
       if (!found.length) throw wrong[0];
-      const around = lost ? [`${lost} byte${lost === 1 ? "" : "s"} around the frame belong to none`] : [];
-      const errors = events.filter((one) => one.event !== "message").map((one) => `the stream has an error: ${one.event}`);
       const left = wrong.map((error) => `another frame of the stream is left out: ${error.message}`);
-      return [noted(found[0], ...left, ...around, ...errors), ...found.slice(1)];
+      return [noted(found[0], ...left, ...read.remarks), ...found.slice(1)];
     }
     return [];
-  }
-
-  function broken(events) {
-    if (events.some((one) => one.event === "protocol error")) return "the framing is broken: the escape byte is followed by neither itself nor an end of message";
-    return events.length ? "the framing is empty" : "the framing begins, but the end of the message is missing";
   }
 
   function ofBody(index, talking, body) {
@@ -167,15 +153,8 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
   function withChecksum(index, speaker, what, id, number, data) {
     const length = lengthOf(index, number);
     if (data.length === length) return reading(index, speaker, what, number, id, data);
-    const right = checksum(speaker, length, id, data);
-    if (right === undefined || right !== data[length]) return null;
+    if (!frames.check(speaker.crc, length, id, data)?.fits) return null;
     return reading(index, speaker, what, number, id, data.slice(0, length), ["CRC is right"], true);
-  }
-
-  /** The byte that must follow the data of the message; undefined if there is none, or no room for it. */
-  function checksum(speaker, length, id, data) {
-    if (!speaker.crc || data.length !== length + 1) return undefined;
-    return frames.checksum(speaker.crc, id, data.slice(0, length));
   }
 
   // CAN
@@ -250,8 +229,8 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
       return new Error(`no message has the id ${[...ids].join(" or ")}`);
     }
     for (const { speaker, number, id, data } of known.values()) {
-      const right = checksum(speaker, lengthOf(index, number), id, data);
-      if (right !== undefined) return new Error(`${index.messages[number][0]}: as CRC ${frames.hex([right])} would be right, not ${frames.hex(data.slice(-1))}`);
+      const right = frames.check(speaker.crc, lengthOf(index, number), id, data)?.right;
+      if (right) return new Error(`${index.messages[number][0]}: as CRC ${frames.hex(right)} would be right, not ${frames.hex(data.slice(-right.length))}`);
     }
     const told = [...known.values()].map(({ number }) => `${index.messages[number][0]} has ${lengthOf(index, number)} bytes`);
     const [{ id, data }] = known.values();
@@ -259,7 +238,11 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
   }
 
   const noted = (one, ...remarks) => ({ ...one, remarks: [...one.remarks, ...remarks] });
-  const named = (found) => found.slice(0, 3).map((one) => one.message).join(", or ") + (found.length > 3 ? `, or one of ${found.length - 3} others` : "");
+  /** The readings by name, the first few of them; one that has two directions once. */
+  function named(found) {
+    const every = [...new Set(found.map((one) => one.message))];
+    return every.slice(0, 3).join(", or ") + (every.length > 3 ? `, or one of ${every.length - 3} others` : "");
+  }
 
   return { recognize, Ambiguous };
 })(...(typeof icdgenFrames === "undefined" ? ["frames", "pasted", "stream", "packets"].map((name) => require(`./${name}.js`)) : [icdgenFrames, icdgenPasted, icdgenStream, icdgenPackets]));

@@ -49,6 +49,25 @@ const icdgenStream = (() => {
     return { events, lost: lost + run };
   }
 
-  return { decode };
+  /** `{ messages, remarks }` of the stream; null where no message begins. Throws an Error where what begins is none. */
+  function messages(speaker, bytes) {
+    const [escape, start] = speaker.framing;
+    const begins = (at) => bytes[at] === escape && bytes[at + 1] === start;
+    if (!bytes.some((_, at) => begins(at))) return null;
+    const { events, lost } = decode(speaker, bytes);
+    const found = events.filter((one) => one.event === "message").map((one) => one.message);
+    if (!found.length && begins(0)) throw new Error(broken(events));
+    if (!found.length) return null;
+    const around = lost ? [`${lost} byte${lost === 1 ? "" : "s"} around the frame belong to none`] : [];
+    const errors = events.filter((one) => one.event !== "message").map((one) => `the stream has an error: ${one.event}`);
+    return { messages: found, remarks: [...around, ...errors] };
+  }
+
+  function broken(events) {
+    if (events.some((one) => one.event === "protocol error")) return "the framing is broken: the escape byte is followed by neither itself nor an end of message";
+    return events.length ? "the framing is empty" : "the framing begins, but the end of the message is missing";
+  }
+
+  return { messages };
 })();
 if (typeof module !== "undefined") module.exports = icdgenStream;

@@ -10,6 +10,7 @@ import subprocess
 import pytest
 
 from icdgen.backends.c import CBackend
+from icdgen.backends.c.declared_names import FILE
 from icdgen.backends.c.text import comment, literal, plain
 from icdgen.icd.model import Icd
 from tests.c import harness, odd
@@ -44,7 +45,7 @@ def test_a_message_or_an_enumeration_is_in_a_file_of_its_node(shipped):
     messages = sum(len(node.messages) for node in icd.nodes)
     enums = sum(bool(node.enums) for node in icd.nodes)
     links = sum(bool(icd.protocol_of(node)) for node in icd.nodes)
-    assert len(shipped) == 2 + len(icd.nodes) + enums + messages + links
+    assert len(shipped) == 3 + len(icd.nodes) + enums + messages + 2 * links
     assert "cubeacp/estimated_attitude_angles.h" in shipped and "cubeacp.h" in shipped and "icdgen.h" in shipped
 
 
@@ -83,14 +84,14 @@ def test_a_very_long_name_leaves_its_value_to_the_next_line():
 
 
 @pytest.mark.skipif(not shutil.which("clang-format"), reason="needs clang-format")
-def test_headers_are_as_clang_format_lays_them_out(shipped, tmp_path):
+def test_all_is_as_clang_format_lays_it_out(shipped, tmp_path):
     for path, text in shipped.items():
         target = tmp_path / path
         target.parent.mkdir(exist_ok=True)
         target.write_text(text, encoding="utf-8")
     style = f"--style=file:{harness.HERE.parent.parent / '.clang-format'}"
     done = subprocess.run(
-        ["clang-format", style, "--dry-run", "-Werror", *map(str, sorted(tmp_path.rglob("*.h")))],
+        ["clang-format", style, "--dry-run", "-Werror", *map(str, sorted(tmp_path.rglob("*.[ch]")))],
         capture_output=True,
         text=True,
     )
@@ -103,11 +104,11 @@ def test_every_declared_name_is_known_to_the_name_rules(tmp_path, odd_ones):
     known = {one.text for one in CBackend().identifiers(icd)}
     undeclared = []
     for path, text in files(icd).items():
-        if path in ("icdgen.h", "icdgen_wire.h"):
+        if path in ("icdgen.h", "icdgen_wide.h", "icdgen_wire.h", "icdgen_wire.c"):
             continue
         code = re.sub(r'/\*.*?\*/|"(?:\\.|[^"\\])*"', "", text, flags=re.S)
         names = re.findall(r"^#define (\w+)", code, re.M)
-        names += re.findall(r"^static inline [\w \n*]*?(\w+)\(", code, re.M)
+        names += re.findall(r"^(?:static inline|ICDGEN_API) [\w \n*]*?(\w+)\(", code, re.M)
         names += re.findall(r"^(?:typedef \w+|\}) (\w+);", code, re.M)
         names += re.findall(r"^    (\w+) = \w+,?$", code, re.M)
         for body in re.findall(r"^typedef struct \{(.*?)^\}", code, re.M | re.S):
@@ -122,6 +123,11 @@ def test_no_two_names_of_the_shipped_icds_clash():
     for one in CBackend().identifiers(harness.shipped()):
         assert (one.scope, one.text) not in seen, (one, seen[one.scope, one.text])
         seen[one.scope, one.text] = one
+
+
+def test_no_two_names_of_the_shipped_icds_are_the_same_in_the_63_characters_that_c_guarantees():
+    names = {one.text for one in CBackend().identifiers(harness.shipped()) if one.scope == FILE}
+    assert len(names) > 3000 and len({name[:63] for name in names}) == len(names)
 
 
 @pytest.mark.parametrize(

@@ -143,8 +143,7 @@ def _heard(known: Facts, bus: str, checked: bool, asked: tuple[str, int], source
 
 
 def _transfer(known: Facts, source: random.Random) -> dict:
-    known_steps = known.files.steps if known.files else {}
-    uploads = ["upload", "upload"] if "upload.initiate" in known_steps else []
+    uploads = ["upload", "upload"] if known.files and known.files.upload else []
     operations = ["program_copy", "program_information"] if known.program_copy and known.program_information else []
     what = source.choice(["list", "download", "download", "download", "erase", "format", *uploads, *operations])
     request: dict = {"op": "file", "do": what}

@@ -8,6 +8,8 @@ import sys
 
 import pytest
 
+from icdgen.diagnostics import Findings
+from icdgen.importer import profile
 from tests.importer.test_text import ENUM, LIST, MESSAGE, RAW
 
 TEXT = LIST.replace("\t6\n", "\t4\n").rsplit("141", 1)[0] + "\n" + MESSAGE + ENUM
@@ -119,6 +121,28 @@ def test_a_profile_that_is_wrong_is_a_finding_with_its_line(folder):
     assert "words.yaml:3:3: error[IMP001]: unknown key `fieldz`" in result.stderr
     assert "words.yaml:5:" in result.stderr
     assert not (folder / "icd").exists()
+
+
+@pytest.mark.parametrize(
+    "line, said",
+    [
+        ("captions: [1]", "this entry of `captions` must be text, not the number 1"),
+        ("titles: {telemetry: a}", "`telemetry` must be a list, not the text 'a'"),
+        ("types: {WORD: 3}", "`X` is a mapping such as `{type: uint, bits: 16}`".replace("X", "WORD")),
+        ("nodes: [{match: [a]}]", "`name` is missing from this entry of `nodes`"),
+        ("nodes: [{name: a, tables: [1]}]", "`tables` is the first and the last table number: `[57, 68]`"),
+        ("damage: [{table: 97}]", "add `before:`, the number in the row below the heading"),
+        ("damage: [{}]", "`{printed: ..., meant: ...}` or `{table: 97, before: 171, group: ...}`"),
+        ("shares: [Common]", "did you mean `shared`?"),
+    ],
+)
+def test_each_fault_of_a_profile_has_its_remedy(tmp_path, line, said):
+    path = tmp_path / "words.yaml"
+    path.write_text(f"profile: 1\n{line}\n", encoding="utf-8")
+    with pytest.raises(Findings) as caught:
+        profile.load(path)
+    assert {(f.code, f.place.line) for f in caught.value.findings} == {("IMP001", 2)}
+    assert any(said in f"{f.message}: {f.help}" for f in caught.value.findings)
 
 
 def test_a_profile_that_is_not_there_is_said_with_those_that_are(folder):

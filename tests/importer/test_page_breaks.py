@@ -6,7 +6,7 @@ import pytest
 
 from tests.importer.compare import differences
 from tests.importer.conftest import imported
-from tests.importer.manuals import browser, content
+from tests.importer.manuals import browser, content, freehand
 from tests.importer.manuals.further import FURTHER
 from tests.importer.test_layouts import TITLES
 
@@ -19,3 +19,10 @@ def test_tables_over_page_breaks_come_back_whole(layout, skip, tmp_path):
     FURTHER[layout](manual, tmp_path / "manual.pdf")
     _, trees = imported(tmp_path / "manual.pdf")
     assert [line for name, tree in manual.trees.items() for line in differences(tree, trees[name])] == []
+
+
+def test_captions_that_lean_for_want_of_an_italic_font_are_told_from_prose(tmp_path):
+    manual = content.manual(content.shipped("cubeacp", most=12, skip=60), TITLES)
+    freehand.draw(manual, tmp_path / "manual.pdf", freehand.Look(caption_style="", caption_slant=14))
+    _, trees = imported(tmp_path / "manual.pdf")
+    assert differences(manual.trees["cubeacp"], trees.get("cubeacp", {})) == []

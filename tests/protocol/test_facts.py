@@ -6,7 +6,8 @@ from dataclasses import asdict
 
 import pytest
 
-from icdgen.protocol import facts
+from icdgen.loading import load
+from icdgen.protocol import facts, uart
 
 
 def test_a_node_has_the_facts_of_what_it_includes_and_its_own(icd, known):
@@ -21,6 +22,26 @@ def test_a_node_without_a_protocol_has_none(icd):
     assert (alone.framing, alone.can, alone.files, alone.assumptions) == (None, None, None, ())
     with pytest.raises(facts.Unsupported, match="uart"):
         facts.need(alone.framing, "uart")
+
+
+WITHOUT_TELEMETRY = """\
+icdgen: 1
+node: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}
+protocol:
+  uart:
+    framing: {escape: 0x10, start_of_message: 0x02, end_of_message: 0x03, escaped_data: 0x10}
+    acknowledge:
+      data: [{byte: 0, bytes: 1, name: Id, role: id, type: uint}, {byte: 1, bytes: 1, name: Error, role: error, type: uint}]
+messages:
+  - {name: Stop, id: 7, kind: telecommand, length: 0}
+"""
+
+
+def test_without_telemetry_an_acknowledge_is_no_reply(tmp_path):
+    (tmp_path / "demo.yaml").write_text(WITHOUT_TELEMETRY)
+    loaded = load([tmp_path])
+    assert loaded.findings == []
+    assert uart.kind(facts.of(loaded.icd, loaded.icd.node("demo")), bytes([7, 0])) == uart.ACKNOWLEDGE
 
 
 def test_buffers_are_as_long_as_the_longest_message_with_id_and_checksum(known):
@@ -49,9 +70,10 @@ def test_a_telecommand_is_acknowledged_or_not_or_answered_by_a_reset(icd):
 
 def test_uploads_belong_to_the_nodes_that_the_icd_names(icd, known):
     boot = facts.of(icd, icd.node("bootloader"))
-    assert not any(path.startswith("upload.") for path in (*known.files.steps, *known.files.numbers))
-    assert boot.files.steps["upload.finalize"].fields["offset"] == "Offset"
-    assert (boot.files.destinations, boot.files.numbers["upload.destination_bytes"]) == ((3, 4, 5, 6, 7, 8, 9), 524_288)
+    assert known.files.upload is None and not any(path.startswith("upload.") for path in known.files.steps)
+    upload = boot.files.upload
+    assert upload.finalize.fields["offset"] == "Offset" and boot.files.steps["upload.finalize"] is upload.finalize
+    assert (upload.destinations, upload.destination_bytes) == ((3, 4, 5, 6, 7, 8, 9), 524_288)
 
 
 def test_operations_on_programs_are_those_of_the_node(icd, known):
@@ -60,6 +82,8 @@ def test_operations_on_programs_are_those_of_the_node(icd, known):
     assert (known.program_copy, known.program_information) == (None, None)
 
 
-def test_numbers_of_the_procedures_are_found_by_path(known):
-    assert known.files.numbers["download.message_length"] == 20
+def test_procedures_have_their_numbers_and_times_are_milliseconds(icd, known):
+    assert known.files.download.message_length == 20
+    section = icd.protocol_of(icd.node("bootloader"))["file_transfer"]["upload"]
+    assert facts.of(icd, icd.node("bootloader")).files.upload.erase_timeout == section["erase_timeout_s"] * 1000
     assert known.boot_ms == 5000

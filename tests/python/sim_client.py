@@ -27,18 +27,21 @@ from icdgen_messages.wire import (
 
 from icdgen.protocol import facts
 from tests.sim.client import log_message
-from tests.sim.device import ICD, hasty
+from tests.sim.device import ICD
 
 if TYPE_CHECKING:
     from icdgen_messages import Message
 
-KNOWN = hasty(facts.of(ICD, ICD.node("cubeacp")))
-LINK = cubeacp.LINK._replace(files=cubeacp.LINK.files._replace(numbers=dict(KNOWN.files.numbers)))
-BOOT = bootloader.LINK._replace(
-    files=bootloader.LINK.files._replace(
-        numbers={**bootloader.LINK.files.numbers, **KNOWN.files.numbers, "upload.poll_interval_ms": 5}
-    ),
-)
+
+def hasty(link):
+    """The link with short waits, for a device that is never slow."""
+    procedures = {name: getattr(link.files, name) for name in ("list", "download", "upload", "erase", "format")}
+    short = {name: one._replace(poll_interval=5) for name, one in procedures.items() if one}
+    short["download"] = short["download"]._replace(silence=60)
+    return link._replace(files=link.files._replace(**short))
+
+
+LINK, BOOT = hasty(cubeacp.LINK), hasty(bootloader.LINK)
 DESTINATION, RUNNING = 3, bootloader.ProgramsList.INTERNAL_FLASH_PROGRAM
 LOGS = next(m for _, m in LINK.TELECOMMANDS.items() if log_message() == m.NAME)
 FAST = Settings(reply_timeout=150, retries=4, poll_interval=5, poll_timeout=2000)
@@ -75,7 +78,7 @@ def main(host: str, number: str, size: str) -> int:
 
 def started(device: Session, boot: Session, data: bytes) -> None:
     """Uploads a program, copies it to where it can run, and starts it. The boot program runs."""
-    data = data[: BOOT.files.numbers["upload.destination_bytes"]]
+    data = data[: BOOT.files.upload.destination_bytes]
     transfer(boot, lambda: Upload(BOOT, DESTINATION, data))
     transfer(boot, lambda: ProgramCopy(BOOT, DESTINATION))
     told = transfer(boot, lambda: ProgramInformation(BOOT, RUNNING))
@@ -110,7 +113,7 @@ def numbered(message: type[Message]) -> Message:
 
 def every_telecommand(device: Session) -> None:
     others = [message for _, message in LINK.TELECOMMANDS.items() if message.KIND != "configuration"]
-    resets = {m.name for m in KNOWN.telecommands.values() if m.expects_reset}
+    resets = {m.name for m in facts.of(ICD, ICD.node("cubeacp")).telecommands.values() if m.expects_reset}
     for message in sorted(others, key=lambda message: message.NAME in resets):
         if message.NAME in resets:
             device.send(message())

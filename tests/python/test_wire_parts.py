@@ -248,7 +248,7 @@ def test_what_is_assumed_has_its_reason_in_a_comment(shipped, node):
     link = shipped.module(node).LINK
     assert len(link.assumptions) > 20
     elsewhere = {"unsolicited_log.configured_by", "boot"}  # no part of the link: of a message, of the device alone
-    if "upload.initiate" not in link.files.steps:
+    if link.files.upload is None:
         elsewhere.add("file_transfer.upload")  # another program takes them
     rest = [one for one in link.assumptions if one.section not in elsewhere]
     assert [one for one in rest if " ".join(one.why.split()) not in told] == []

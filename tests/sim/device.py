@@ -48,19 +48,14 @@ def session(*options: str, node: str = "cubeacp", settings: Settings = FAST, **m
 
 def hasty(known):
     """The facts with short waits, for a device that is never slow."""
-    numbers = known.files.numbers | {
-        "download.silence_ms": 60,
-        "download.poll_interval_ms": 5,
-        "upload.poll_interval_ms": 5,
-        "list.poll_interval_ms": 5,
-        "erase.poll_interval_ms": 5,
-        "format.poll_interval_ms": 5,
-    }
+    procedures = {name: replace(one, poll_interval=5) for name, one in known.files.procedures.items()}
+    if "download" in procedures:
+        procedures["download"] = replace(procedures["download"], silence=60)
     operations = {
         name: form and replace(form, poll_interval=5)
         for name, form in (("program_copy", known.program_copy), ("program_information", known.program_information))
     }
-    return replace(known, files=replace(known.files, numbers=numbers), **operations)
+    return replace(known, files=replace(known.files, **procedures), **operations)
 
 
 def download(client: Session, type_: int, counter: int, size: int | None) -> tuple[str, bytes]:

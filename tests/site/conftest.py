@@ -14,7 +14,7 @@ from icdgen.loading import load
 from icdgen.site import make, write
 from icdgen.site.serve import HOST, Source, handler
 from tests.conftest import ROOT
-from tests.site import hostile
+from tests.site import hostile, pages
 
 TOOLS = Path(__file__).parent / "npm" / "node_modules"
 
@@ -37,16 +37,7 @@ def tool(path: str) -> Path:
 def site(tmp_path_factory) -> Path:
     """A folder with the site of the shipped ICDs, compared with an older release."""
     out = tmp_path_factory.mktemp("site")
-    old = tmp_path_factory.mktemp("old")
-    shutil.copytree(ROOT / "icd", old / "icd")
-    acp = old / "icd" / "cubeacp.yaml"
-    acp.write_text(
-        acp.read_text("utf-8")
-        .replace("name: Estimated Roll Angle,", "name: Roll Angle,")
-        .replace("name: Emulation", "name: Simulation"),
-        "utf-8",
-    )
-    write(make([ROOT / "icd"], str(old / "icd")), out)
+    pages.shipped(out, tmp_path_factory.mktemp("old"))
     return out
 
 

@@ -1,6 +1,12 @@
-"""A page of each kind of the shipped site."""
+"""The site that is looked at, and a page of each kind of it."""
 
 from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+from icdgen.site import make, write
+from tests.conftest import ROOT
 
 KINDS = {
     "home": "index.html",
@@ -18,3 +24,16 @@ KINDS = {
     "changes": "changes.html",
     "print": "cubewheel/all-messages.html",
 }
+
+
+def shipped(out: Path, old: Path) -> None:
+    """Writes the site of the shipped ICDs, compared with an older release that is made in ``old``."""
+    shutil.copytree(ROOT / "icd", old / "icd")
+    acp = old / "icd" / "cubeacp.yaml"
+    acp.write_text(
+        acp.read_text("utf-8")
+        .replace("name: Estimated Roll Angle,", "name: Roll Angle,")
+        .replace("name: Emulation", "name: Simulation"),
+        "utf-8",
+    )
+    write(make([ROOT / "icd"], str(old / "icd")), out)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import tempfile
 from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
-from icdgen.site import make, write
 from tests.conftest import ROOT
 from tests.site.conftest import program
-from tests.site.pages import KINDS
+from tests.site.pages import KINDS, shipped
 
 WIDTHS = {1440: 1000, 768: 1000, 390: 844}
 LOOKS = {
@@ -24,11 +24,11 @@ README = {"viewport": {"width": 1180, "height": 900}, "device_scale_factor": 1.5
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m tests.site.pictures", description=__doc__)
     parser.add_argument("folder", type=Path, help="where the pictures go")
-    parser.add_argument("--previous", help="as of `icdgen docs`: adds the page of what changed")
     parser.add_argument("--readme", action="store_true", help="only the picture of the README, into docs/images")
     options = parser.parse_args()
     site = options.folder / "site"
-    write(make([ROOT / "icd"], options.previous), site)
+    with tempfile.TemporaryDirectory() as old:
+        shipped(site, Path(old))
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program("chromium"), args=["--no-sandbox"])
         if options.readme:
@@ -47,8 +47,6 @@ def main() -> None:
             page.screenshot(path=options.folder / f"search-{look}.png")
             page.close()
         for kind, name in KINDS.items():
-            if not (site / name).is_file():
-                continue
             for look, settings in LOOKS.items():
                 page = browser.new_page(**settings)
                 page.goto((site / name).as_uri())

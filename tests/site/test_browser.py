@@ -8,8 +8,7 @@ from contextlib import contextmanager
 import pytest
 
 from tests.conformance.icds import COMMITTED
-from tests.recognize.ways import BARE, WHOLE
-from tests.site.conftest import tool
+from tests.site import measure
 from tests.site.pages import KINDS
 
 NODES = ["common", "bootloader", "cubeacp", "cubemag", "cubewheel"]
@@ -139,17 +138,6 @@ def test_the_decoder_takes_framing_and_checksums_and_physical_values(browser, si
         assert "takes -327.68 to 327.67" in page.inner_text("#verdict")
 
 
-def test_every_way_to_paste_a_frame_shows_the_same_values(browser, site):
-    with opened(browser, site.as_uri() + "/", KINDS["numbers"]) as page:
-        for name, text in {**BARE, **WHOLE}.items():
-            if name == "UART, after noise":  # a stream, which only the command line takes
-                continue
-            page.fill("#frame", text)
-            assert page.input_value("#value-1") == "-12.34", (name, page.inner_text("#verdict"))
-            page.fill("#frame", "1F 7F 93 00 1F FF")
-            assert "another message's" in page.inner_text("#verdict") and page.input_value("#value-1") == ""
-
-
 def test_drawing_and_table_are_tied_together_by_pointer_and_keyboard(browser, top):
     with opened(browser, top, KINDS["message"]) as page:
         lit = "getComputedStyle(document.documentElement).getPropertyValue('--lit').trim()"
@@ -200,26 +188,18 @@ def test_the_chosen_language_is_remembered(browser, served):
 
 
 @pytest.mark.parametrize("path", KINDS.values(), ids=KINDS.keys())
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("scheme", measure.SCHEMES)
 def test_axe_finds_nothing(browser, site, path, scheme):
     with opened(browser, site.as_uri() + "/", path, color_scheme=scheme) as page:
-        page.evaluate(tool("axe-core/axe.min.js").read_text("utf-8"))
-        found = page.evaluate("axe.run({ resultTypes: ['violations'], preload: false })")
-        assert [(v["id"], [n["target"] for n in v["nodes"]][:5]) for v in found["violations"]] == []
+        assert measure.broken_rules(page) == []
 
 
 @pytest.mark.parametrize("path", KINDS.values(), ids=KINDS.keys())
-@pytest.mark.parametrize("width", [1440, 768, 390])
+@pytest.mark.parametrize("width", measure.WIDTHS)
 def test_nothing_is_cut_and_nothing_endless(browser, site, path, width):
     """No page is wider than the screen, or longer than 8,000 pixels before anything is unfolded."""
-    outside = """() => [...document.querySelectorAll("body *")].filter((one) => {
-        const box = one.getBoundingClientRect();
-        const hidden = one.closest(".scroll, pre, .hidden, .skip, legend, details:not([open]) > :not(summary), svg, .local, .tabs");
-        return !hidden && box.width > 0 && box.right > innerWidth + 1;
-    }).map((one) => one.outerHTML.slice(0, 80))"""
     with opened(browser, site.as_uri() + "/", path, viewport={"width": width, "height": 900}) as page:
-        wide, high = page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
-        assert wide <= width and page.evaluate(outside) == [] and high <= 8000
+        assert measure.faults(page, width) == []
 
 
 def test_dark_mode_follows_the_system_and_the_button(browser, served):

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 import random
 import subprocess
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import pytest
 
+from icdgen.backends.html.wire import crc_facts
 from icdgen.protocol import crc, declared, i2c, uart
 from icdgen.protocol.facts import of as facts_of
 from icdgen.protocol.sections import Crc
@@ -24,6 +25,7 @@ def node(script: str, argument: object) -> object:
     """What a script gives that is called with the frames module and the argument."""
     code = f"""
         const frames = require({json.dumps(str(FRAMES))});
+        const {{ unwrap }} = require({json.dumps(str(FRAMES.with_name("given.js")))});
         const argument = JSON.parse(require("node:fs").readFileSync(0, "utf8"));
         const attempt = (call) => {{ try {{ return call(); }} catch (error) {{ return {{ error: error.message }}; }} }};
         process.stdout.write(JSON.stringify(({script})(argument)));
@@ -81,31 +83,41 @@ def test_checksums_give_the_check_value_of_the_icd(shipped, node_name, key):
     assert crc.compute(declared.read(Crc, protocol), b"123456789") == protocol["check"]
 
 
-WIRE = {
-    "ids": [0x1F, 200], "id": 0x1F, "command": True, "framing": [0x1F, 0x7F, 0xFF, 0x1F],
-    "crc": [{"width": 8, "polynomial": 0x12, "init": 0, "reflect_in": True, "reflect_out": True, "xor_out": 0, "empty": 255}],
+CRC8 = {
+    "width": 8, "polynomial": 0x12, "init": 0, "reflect_in": True, "reflect_out": True, "xor_out": 0, "empty": 255,
+    "bytes": 1,
 }  # fmt: skip
+WIRE = {"ids": [0x1F, 200], "id": 0x1F, "command": True, "framing": [0x1F, 0x7F, 0xFF, 0x1F], "crc": [CRC8]}
 
 
 def test_an_id_of_several_bytes_comes_off():
     wire = {"ids": [0x0135], "id": 0x0135, "id_bytes": 2, "crc": []}
     found = node(
-        "([wire, texts]) => texts.map((text) => [...frames.unwrap(wire, 2, frames.parseHex(text)).data])",
+        "([wire, texts]) => texts.map((text) => [...unwrap(wire, 2, frames.parseHex(text)).data])",
         [wire, ["01 35 aa bb", "aa bb", "01 36 aa bb", "35 aa bb"]],
     )
     assert found == [[0xAA, 0xBB], [0xAA, 0xBB], [0x01, 0x36, 0xAA, 0xBB], [0x35, 0xAA, 0xBB]]
 
 
+WIDER = {  # as the catalogues have them
+    8: {},
+    16: {"width": 16, "polynomial": 0x1021, "init": 0xFFFF, "reflect_in": False, "reflect_out": False, "xor_out": 0},
+    24: {"width": 24, "polynomial": 0x864CFB, "init": 0xB704CE, "reflect_in": False, "reflect_out": False, "xor_out": 0},
+    32: {"width": 32, "polynomial": 0x04C11DB7, "init": 0xFFFFFFFF, "reflect_in": True, "reflect_out": True, "xor_out": 0xFFFFFFFF},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("width", WIDER)
+@pytest.mark.parametrize("little", [False, True])
 @pytest.mark.parametrize("plain_id", [False, True])
 @pytest.mark.parametrize("covers_id", [False, True])
-def test_framing_is_that_of_the_generator(shipped, plain_id, covers_id):
+def test_framing_is_that_of_the_generator(shipped, plain_id, covers_id, little, width):
     known = facts_of(shipped, shipped.node("cubeacp"))
-    known = replace(
-        known,
-        framing=replace(known.framing, escapes_id=not plain_id),
-        checksum=replace(known.checksum, covers_id=covers_id),
-    )
-    wire = {**WIRE, "plain_id": plain_id, "crc": [{**asdict(known.checksum.crc), "covers_id": covers_id}]}
+    form = replace(known.checksum, covers_id=covers_id, bytes=width // 8)
+    if WIDER[width]:
+        form = replace(form, crc=declared.read(Crc, WIDER[width]))
+    known = replace(known, framing=replace(known.framing, escapes_id=not plain_id), checksum=form, little=little)
+    wire = {**WIRE, "plain_id": plain_id, "crc": [crc_facts(known)]}
     cases = [list(random.Random(seed).choices([0x1F, 0x7F, 0xFF, 0, 7], k=seed % 9)) for seed in range(100)]
     found = node(
         "([wire, cases]) => cases.map((data) => [false, true].map((check) => [...frames.framed(wire, data, check)]))",
@@ -117,7 +129,7 @@ def test_framing_is_that_of_the_generator(shipped, plain_id, covers_id):
     ]
     back = node(
         """([wire, cases]) => cases.map((data) => {
-            const { data: back, remarks } = frames.unwrap(wire, data.length, frames.framed(wire, data, true));
+            const { data: back, remarks } = unwrap(wire, data.length, frames.framed(wire, data, true));
             return [[...back], remarks.includes("CRC is right")];
         })""",
         [wire, cases],
@@ -129,7 +141,7 @@ def test_framing_and_checksum_come_off_again_whatever_the_data():
     cases = [list(random.Random(seed).choices([0x1F, 0x7F, 0xFF, 0, 7], k=seed % 9)) for seed in range(200)]
     found = node(
         """([wire, cases]) => cases.map((data) => [false, true].map((check) => {
-            const { data: back, remarks } = frames.unwrap(wire, data.length, frames.framed(wire, data, check));
+            const { data: back, remarks } = unwrap(wire, data.length, frames.framed(wire, data, check));
             return [[...back], remarks.includes("CRC is right")];
         }))""",
         [WIRE, cases],
@@ -146,14 +158,16 @@ def test_framing_and_checksum_come_off_again_whatever_the_data():
         ("1f 7f 05 01 02 1f ff", 2, "another message's"),
         ("1f 7f 1f 1f 01 02", 2, "end of the message is missing"),
         ("1f 7f 1f 1f 01 1f 02 1f ff", 2, "followed by neither"),
-        ("1f 7f 1f 1f 01 1f ff 02", 2, "follow the end"),
+        ("1f 7f 1f 1f 01 1f ff 02", 2, "wrong length"),
+        ("00 1f 7f 1f 1f 01 02 1f ff 02", 2, "2 bytes around the frame belong to none"),
+        ("1f 7f 1f 1f 1f ff", 2, "a request, which carries no data"),
         ("01 02 03", 2, "one byte too many: as CRC"),
     ],
 )
 def test_what_is_around_the_data_is_named(text, length, says):
     found = node(
         """([wire, text, length]) => attempt(() => {
-            const { data, remarks } = frames.unwrap(wire, length, frames.parseHex(text));
+            const { data, remarks } = unwrap(wire, length, frames.parseHex(text));
             if (data.length !== length) throw new Error("wrong length");
             return { error: remarks.join() };
         })""",

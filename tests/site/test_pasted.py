@@ -6,22 +6,28 @@ import json
 import random
 import subprocess
 
+import pytest
+
 from icdgen.backends.html import wire
+from icdgen.backends.html.relations import Relations
 from icdgen.backends.python.objects.links import link_of
+from icdgen.errors import UserError
 from icdgen.protocol.facts import of
-from icdgen.recognize import read
+from icdgen.recognize import read, recognize
 from icdgen.values.errors import BadHex
+from icdgen.values.find import find_message
 from tests.conftest import ROOT
 from tests.recognize.ways import BARE, DATA, WHOLE
 from tests.site.conftest import program
 
-PASTED = ROOT / "templates" / "html" / "pasted.js"
+GIVEN = ROOT / "templates" / "html" / "given.js"
 
 
 def node(script: str, argument: object) -> object:
-    """What a script gives that is called with the module and the argument."""
+    """What a script gives that is called with the argument."""
     code = f"""
-        const pasted = require({json.dumps(str(PASTED))});
+        const given = require({json.dumps(str(GIVEN))});
+        const pasted = require({json.dumps(str(GIVEN.with_name("pasted.js")))});
         const argument = JSON.parse(require("node:fs").readFileSync(0, "utf8"));
         const attempt = (call) => {{ try {{ return call(); }} catch (error) {{ return {{ error: error.message }}; }} }};
         process.stdout.write(JSON.stringify(({script})(argument)));
@@ -70,12 +76,53 @@ def facts(icd, id: int) -> tuple[dict, int]:
 
 
 def test_the_page_of_the_message_takes_every_way(shipped):
-    texts = [text for name, text in {**BARE, **WHOLE}.items() if name != "UART, after noise"]
+    texts = [*BARE.values(), *WHOLE.values()]
     found = node(
-        "([[wire, length], texts]) => texts.map((t) => attempt(() => [...pasted.messageIn(wire, length, t).data]))",
+        "([[wire, length], texts]) => texts.map((t) => attempt(() => [...given.messageIn(wire, length, t).data]))",
         [facts(shipped, 146), texts],
     )
     assert [(t, f) for t, f in zip(texts, found, strict=True) if f != list(DATA)] == []
+
+
+def around(source: random.Random, message, ids: list[int]) -> str:
+    """Frames of the message and of others, whole and damaged, with noise between them, or no framing at all."""
+    found = b""
+    for _ in range(source.randint(1, 3)):
+        id = source.choice([*message.ids, source.choice(ids)])
+        body = bytes([id]) + source.randbytes(source.choice([message.length, message.length, message.length + 1, 0, 2]))
+        line = b"\x1f\x7f" + body.replace(b"\x1f", b"\x1f\x1f") + b"\x1f\xff"
+        at = source.randrange(len(line)) if source.random() < 0.2 else len(line)
+        found += source.choice([line, body]) if source.random() < 0.2 else line[:at] + line[at + 1 :]
+        found += source.randbytes(source.choice([0, 0, 1, 4]))
+    return found.hex(" ")
+
+
+@pytest.mark.parametrize("key", ["146", "1", "Commanded Attitude Angles"])
+def test_the_page_of_a_message_makes_of_a_stream_what_the_command_line_makes(shipped, key):
+    source = random.Random(key)
+    message = find_message(shipped, "cubeacp", key)
+    ids = [id for one in shipped.messages_of(shipped.node("cubeacp")) for id in one.ids]
+    texts = [around(source, message, ids) for _ in range(400)]
+
+    def expected(text: str) -> str | None:
+        try:
+            found = recognize(shipped, text, "cubeacp", key)
+        except UserError:
+            return None
+        whole = [one.data for one in found if one.what in ("telecommand", "telemetry", "configuration")]
+        return whole[0].hex() if whole else None
+
+    known = of(shipped, shipped.node("cubeacp"))
+    travels = Relations(shipped).wire(message)
+    travels = travels._replace(facts=known, checked=[one for one in travels.checked if one.facts.node is known.node])
+    found = node(
+        """([wire, length, texts]) => texts.map((text) =>
+            attempt(() => Buffer.from(given.messageIn(wire, length, text).data).toString("hex")))""",
+        [wire.page_facts(message, travels), message.length, texts],
+    )
+    shown = [one if isinstance(one, str) and len(one) == 2 * message.length else None for one in found]
+    assert [(t, f, expected(t)) for t, s, f in zip(texts, shown, found, strict=True) if s != expected(t)] == []
+    assert 50 < sum(one is not None for one in shown) < 390
 
 
 def test_packets_of_a_long_message_are_joined_whatever_their_order(shipped):
@@ -86,10 +133,10 @@ def test_packets_of_a_long_message_are_joined_whatever_their_order(shipped):
     lines = [f"08{id:02X}0201#{piece.hex()}{len(pieces) - 1 - n:02x}" for n, piece in enumerate(pieces)]
     found = node(
         """([[wire, length], lines]) => [
-            [...pasted.messageIn(wire, length, lines.toReversed().join("\\n")).data],
-            attempt(() => pasted.messageIn(wire, length, lines.slice(1).join("\\n"))).error,
-            attempt(() => pasted.messageIn(wire, length, "04110201#")).error,
-            attempt(() => pasted.messageIn(wire, length, `04${wire.ids[0].toString(16)}0201#`)).error,
+            [...given.messageIn(wire, length, lines.toReversed().join("\\n")).data],
+            attempt(() => given.messageIn(wire, length, lines.slice(1).join("\\n"))).error,
+            attempt(() => given.messageIn(wire, length, "04110201#")).error,
+            attempt(() => given.messageIn(wire, length, `04${wire.ids[0].toString(16)}0201#`)).error,
         ]""",
         [facts(shipped, id), lines],
     )

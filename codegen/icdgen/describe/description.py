@@ -44,7 +44,7 @@ class FieldDescription(Named[Field]):
 
     @property
     def fresh(self) -> int:
-        """The raw value in a new message, as a number: see `icdgen.describe.fresh`."""
+        """The raw value in a new message, as a number."""
         return self.model.const or 0
 
     @property
@@ -58,8 +58,20 @@ class FieldDescription(Named[Field]):
         return layout.pieces(self.model, self.message.node)
 
     @property
+    def is_text(self) -> bool:
+        """Whether its bytes are characters: its physical value is a text, which every language gives and takes."""
+        return self.model.type == "text"
+
+    @property
+    def has_physical(self) -> bool:
+        """Whether there are accessors of a physical value that is not the raw one."""
+        return self.is_text or self.steps is not None
+
+    @property
     def unit_name(self) -> str:
-        """What names of the physical value end in: the unit's identifier, or ``physical``."""
+        """What names of the physical value end in: the unit's identifier, ``physical`` or ``text``."""
+        if self.is_text:
+            return "text"
         return self.model.unit.identifier if self.model.unit else "physical"
 
     @cached_property
@@ -132,6 +144,11 @@ class MessageDescription(Named[Message]):
     @property
     def has_floats(self) -> bool:
         return any(field.type == "float" for field in self.model.fields)
+
+    @cached_property
+    def has_wide_steps(self) -> bool:
+        """Whether the formula of a field has numbers of many digits."""
+        return any(field.steps is not None and field.steps.is_wide for field in self.fields)
 
     @cached_property
     def comment(self) -> Comment:

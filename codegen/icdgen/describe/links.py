@@ -5,17 +5,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from icdgen import codec
 from icdgen.describe.description import Description, FieldDescription
-from icdgen.describe.fresh import fresh_values
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.protocol import facts as protocol_facts
-from icdgen.protocol.declared import Fact, facts_of
+from icdgen.protocol.declared import Fact
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Can, Index, Step, TimePart
 
@@ -158,9 +156,7 @@ class LinkDescription:
         message = self._describe(step.message)
         fields = {field.model.name: field for field in message.fields}
         found = tuple(Place(role, fields[name]) for role, name in step.fields.items() if name in fields)
-        return StepDescription(
-            step.message, found, codec.encode(message.node, step.message, fresh_values(step.message))
-        )
+        return StepDescription(step.message, found, step.frame(message.node))
 
     @property
     def joined_bytes(self) -> int:
@@ -182,13 +178,6 @@ class LinkDescription:
     def _in_procedures(self) -> Iterator[Message]:
         facts = self.facts
         yield from (step.message for step in (facts.files.steps.values() if facts.files else ()))
-        yield from (
-            step.message for one in (facts.program_copy, facts.program_information) if one for step in steps_of(one)
-        )
+        operations = [one for one in (facts.program_copy, facts.program_information) if one]
+        yield from (step.message for one in operations for step in (one.request, one.progress))
         yield from (facts.hole_map.messages if facts.hole_map else ())
-
-
-def steps_of(part: object) -> Iterable[Step]:
-    """The steps among the declared facts of a part."""
-    values = (getattr(part, fact.name) for fact in facts_of(part))
-    return (value for value in values if isinstance(value, Step))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from operator import itemgetter
 
 from icdgen.diff.change import Change
 from icdgen.diff.changes import (  # noqa: F401  (importing a theme registers its rules)
@@ -21,14 +22,14 @@ from icdgen.diff.context import Context
 from icdgen.diff.layers import LAYERS
 from icdgen.diff.match import match
 from icdgen.diff.pairs import Match, MessagePair, NodePair, Pair
-from icdgen.diff.rule import REGISTERED, Found, Rule
+from icdgen.diff.rule import REGISTERED, Check, Found, Rule
 from icdgen.icd.model import Erratum, Icd
 
 RULES: dict[str, Rule] = dict(sorted(REGISTERED.items()))
-_OF: dict[tuple[str, str], list[Rule]] = {}
+_CHECKS: dict[tuple[str, str], dict[Check, str]] = {}  # and the code of what it finds, unless it names another
 for _rule in RULES.values():
     for _of in _rule.of:
-        _OF.setdefault((_of, _rule.when), []).append(_rule)
+        _CHECKS.setdefault((_of, _rule.when), {})[_rule.check] = _rule.code
 
 
 @dataclass
@@ -39,9 +40,6 @@ class Comparison:
     changes: list[Change]
     context: Context
 
-    def of_layer(self, layer: str) -> list[Change]:
-        return [change for change in self.changes if change.layer == layer]
-
 
 def compare(old: Icd, new: Icd) -> Comparison:
     """Everything that differs between two sound sets of ICDs. Order, formatting and spelling of formulas are no difference."""
@@ -51,9 +49,10 @@ def compare(old: Icd, new: Icd) -> Comparison:
 
 
 def _all(context: Context) -> Iterator[Change]:
-    for one in _OF["icd", "both"]:
-        for found in one.check(context):
-            yield _change(one, _pair(context, found), found)
+    for check, code in _CHECKS["icd", "both"].items():
+        for found in check(context):
+            assert found.pair is not None
+            yield _change(RULES[code], found.pair, found)
     for node in context.match.nodes:
         yield from _run("node", node, context)
         for owner in node.declared:
@@ -66,17 +65,12 @@ def _all(context: Context) -> Iterator[Change]:
                     yield from _run(parts, part, context)
 
 
-def _pair(context: Context, found: Found) -> Pair:
-    """The message that a finding about the whole ICD is about."""
-    messages = (pair for node in context.match.nodes for pair in node.messages)
-    return next(pair for pair in messages if pair.where() == found.where)
-
-
 def _run(of: str, pair: Pair, context: Context) -> Iterator[Change]:
     when = "both" if pair.both else "gone" if pair.after is None else "come"
-    for one in _OF.get((of, when), ()):
-        for found in one.check(pair, context):
-            yield _change(one, pair, found)
+    checks = _CHECKS.get((of, when), {})
+    said = [(found.code or code, found) for check, code in checks.items() for found in check(pair, context)]
+    for code, found in sorted(said, key=itemgetter(0)):
+        yield _change(RULES[code], pair, found)
 
 
 def _change(rule: Rule, pair: Pair, found: Found) -> Change:

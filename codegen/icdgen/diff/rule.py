@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 from icdgen.diff.layers import LAYERS
+from icdgen.diff.pairs import Pair
 from icdgen.diff.where import Places, Where
 from icdgen.icd.rules import pages
 
 
 class Found(NamedTuple):
-    """What a rule has to say about a pair. ``keys`` are those of the ICD that differ, the most telling first."""
+    """What a check has to say about a pair. ``keys`` are those of the ICD that differ, the most telling first."""
 
     message: str
     keys: tuple[str, ...] = ()
@@ -24,6 +25,8 @@ class Found(NamedTuple):
     addition: bool | None = None
     where: Where | None = None  # where it is not the pair's
     places: Places | None = None  # where they are not those of the keys
+    pair: Pair | None = None  # where both ICDs were looked at, and not one pair
+    code: str = ""  # of the rule, where a check is registered for several
 
 
 Check = Callable[..., Iterator[Found]]
@@ -60,7 +63,10 @@ REGISTERED: dict[str, Rule] = {}
 def rule(
     code: str, *of: str, severity: str = "error", addition: bool = False, when: str = "both"
 ) -> Callable[[Check], Check]:
-    """Registers the decorated function, which looks at one pair of things; its module's name is the theme."""
+    """Registers the decorated function, which looks at one pair of things; its module's name is the theme.
+
+    A function that tells several kinds of change from one another is registered for each, and names the code in what it finds.
+    """
 
     def register(check: Check) -> Check:
         if code in REGISTERED:

@@ -99,7 +99,7 @@ class Field:
     name: str
     at: int
     bits: int
-    type: str  # "uint" | "int" | "bool" | "enum" | "float" | "bytes"
+    type: str  # "uint" | "int" | "bool" | "enum" | "float" | "bytes" | "text"
     identifier: str | None = None
     enum: Enum | None = None
     unit: Unit | None = None
@@ -119,8 +119,18 @@ class Field:
         return self.byte_order or node.byte_order, self.bit_order or node.bit_order
 
     @property
+    def is_bytes(self) -> bool:
+        """Whether the raw value is whole bytes in order, and no number."""
+        return self.type in ("bytes", "text")
+
+    @property
     def signed(self) -> bool:
         return self.type == "int"
+
+    @property
+    def fresh(self) -> int | bytes:
+        """The raw value in a new message: the only valid one, or 0; of a float its bits, of bytes all of them."""
+        return bytes(self.bits // 8) if self.is_bytes else self.const or 0
 
     @property
     def raw_min(self) -> int:
@@ -166,6 +176,11 @@ class Message:
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
+
+    @property
+    def fresh(self) -> dict[str, int | bytes]:
+        """The raw values of a new message by the names of its fields."""
+        return {field.name: field.fresh for field in self.fields}
 
     @property
     def telecommand_id(self) -> int | None:

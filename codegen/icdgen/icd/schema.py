@@ -13,7 +13,7 @@ from icdgen.icd.located import Map, Seq
 PATH = Path(__file__).with_name("schema.json")
 CODE = "ICD010"
 
-_ABOUT_KEYS = ("required", "additionalProperties", "dependentRequired", "minProperties")
+_ABOUT_KEYS = ("required", "additionalProperties", "minProperties")
 
 _TYPES = {
     "string": "text",
@@ -102,12 +102,9 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
     elif name == "pattern":
         message = f"{what} cannot be {_describe(error.instance)}"
     elif name in ("minItems", "minProperties"):
-        message = f"{what} is empty"
+        message = f"{what} is empty" if rule[name] == 1 else f"{what} has less than {rule[name]} entries"
     elif name == "maxItems":
         message = f"{what} has more than {rule[name]} entries"
-    elif name == "dependentRequired":
-        message = f"{what} lacks a key that another of its keys needs"
-        help = "`held` needs `printed`, and `printed` needs `where`"
     elif name == "anyOf":
         keys = (f"`{key}`" for choice in rule["anyOf"] for key in choice["required"])
         message = f"{what} has neither {' nor '.join(keys)}"

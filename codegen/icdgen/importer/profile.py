@@ -6,10 +6,10 @@ import re
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
-from icdgen.diagnostics import Finding, Findings, Place
-from icdgen.icd import source
+from icdgen.diagnostics import Findings
+from icdgen.icd import schema, source
 from icdgen.icd.located import Map, plain
 from icdgen.importer.words import folded
 
@@ -194,7 +194,7 @@ def load(path: Path | None = None) -> Profile:
     if path is None:
         return Profile(base)
     tree = source.read(path)
-    _check(tree, base, str(path))
+    _check(tree)
     own = plain(tree)
     return Profile(_laid_over(_without_moved(base, own), own), str(path), own)
 
@@ -224,101 +224,8 @@ def _laid_over(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
     return merged
 
 
-class Add(Protocol):
-    """Takes a finding."""
-
-    def __call__(self, message: str, place: Place, help: str = ...) -> None: ...
-
-
-_NODE_KEYS = {
-    "name",
-    "title",
-    "summary",
-    "node_type",
-    "interface_version",
-    "byte_order",
-    "bit_order",
-    "id_bits",
-    "source",
-}
-_SELECTORS = {"match": list, "tables": list, "group": int, "include": list}
-
-
-def _check(tree: Map, base: dict[str, Any], name: str) -> None:
-    """Raises `Findings` where the file does not have the form of the profile that comes with icdgen."""
-    findings: list[Finding] = []
-
-    def add(message: str, place: Place, help: str = "see docs/import.md") -> None:
-        findings.append(Finding(CODE, message, place, help))
-
-    if tree.get("profile") != 1:
-        add("this is not an import profile: `profile: 1` is missing", tree.place, "a profile begins with `profile: 1`")
-        raise Findings(findings)
-    known = {*base, "nodes", "name"}
-    for key, value in tree.items():
-        if key not in known:
-            add(f"unknown key `{key}`", tree.key_at(key), "known keys: " + ", ".join(sorted(known)))
-        elif key == "nodes":
-            _check_nodes(value, tree.at(key), add)
-        elif key == "damage":
-            _check_damage(value, tree.at(key), add)
-        elif key not in ("profile", "name"):
-            _check_like(value, base[key], tree.at(key), key, add)
+def _check(tree: Map) -> None:
+    """Raises `Findings` where the file does not have the form of a profile."""
+    findings, _ = schema.check(tree, "profile")
     if findings:
-        raise Findings(findings)
-
-
-def _check_like(value: object, like: object, place: Place, key: str, add: Add) -> None:
-    if isinstance(like, list):
-        if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
-            add(f"`{key}` must be a list of texts", place)
-    elif isinstance(like, dict) and key in ("types", "node"):
-        if not isinstance(value, Map):
-            add(f"`{key}` must be a mapping", place)
-        elif key == "types":
-            for word, rule in value.items():
-                good = ("uint", "int", "bool", "enum", "float", "bytes")
-                if not isinstance(rule, dict) or rule.get("type") not in good or not rule.keys() <= {"type", "bits"}:
-                    add(f"the type name `{word}` must say {{type: {'|'.join(good)}}}", value.at(word))
-    elif isinstance(like, dict):
-        if not isinstance(value, Map):
-            add(f"`{key}` must be a mapping", place)
-            return
-        for inner, item in value.items():
-            if inner in like:
-                _check_like(item, like[inner], value.at(inner), inner, add)
-            else:
-                add(f"unknown key `{inner}`", value.key_at(inner), "known keys: " + ", ".join(like))
-    elif type(value) is not type(like):
-        add(f"`{key}` must be {type(like).__name__}", place)
-
-
-_DAMAGE = ({"printed": str, "meant": str}, {"table": int, "before": int, "group": str})
-
-
-def _check_damage(value: object, place: Place, add: Add) -> None:
-    for item in value if isinstance(value, list) else [None]:
-        if not isinstance(item, Map) or not any(
-            item.keys() == form.keys() and all(type(item[key]) is kind for key, kind in form.items())
-            for form in _DAMAGE
-        ):
-            forms = "{printed: ..., meant: ...} or {table: 97, before: 171, group: ...}"
-            add(f"each of `damage` must be {forms}", getattr(item, "place", place))
-
-
-def _check_nodes(value: object, place: Place, add: Add) -> None:
-    if not isinstance(value, list):
-        add("`nodes` must be a list", place)
-        return
-    for item in value:
-        if not isinstance(item, Map) or not isinstance(item.get("name"), str):
-            add("each of `nodes` must be a mapping with a `name`", getattr(item, "place", place))
-            continue
-        for key, entry in item.items():
-            if key not in _NODE_KEYS and key not in _SELECTORS:
-                names = ", ".join(sorted(_NODE_KEYS | set(_SELECTORS)))
-                add(f"unknown key `{key}`", item.key_at(key), f"known keys: {names}")
-            elif key in _SELECTORS and not isinstance(entry, _SELECTORS[key]):
-                add(f"`{key}` must be {'a list' if _SELECTORS[key] is list else 'a number'}", item.at(key))
-            elif key == "tables" and (len(entry) != 2 or not all(type(n) is int for n in entry)):
-                add("`tables` must be the first and the last table number: [57, 68]", item.at(key))
+        raise Findings([finding._replace(code=CODE) for finding in findings])

@@ -223,7 +223,7 @@ def identify(known: Facts, request: Request) -> dict[str, Any]:
 
 def link_data(known: Facts, request: Request) -> dict[str, Any]:
     """Facts that nothing but a user's own code reads."""
-    download = known.files.procedures.get("download") if known.files else None
+    download = known.files.download if known.files else None
     return {
         "boot_ms": known.boot_ms,
         "log_file_type": known.log_file.file_type if known.log_file else None,

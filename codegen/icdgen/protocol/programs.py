@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from icdgen.protocol.errors import RangeError
 from icdgen.protocol.facts import Facts, need
-from icdgen.protocol.sections import Operation, Step
+from icdgen.protocol.sections import Operation
 from icdgen.protocol.transfer import Ended, Procedure, Steps
 
 
@@ -21,17 +21,12 @@ class ProgramOperation(Procedure):
         if self.form.programs and program not in self.form.programs:
             raise RangeError("program")
 
-    def step(self, name: str) -> Step:
-        return self.form.request if name == "request" else self.form.progress
-
-    def number(self, name: str) -> int:
-        return self.form.poll_interval
-
     def _run(self) -> Steps:
-        yield from self.telecommand("request", program=self.program)
-        role, wanted = ("ready", 1) if "ready" in self.form.progress.fields else ("busy", 0)
+        form = self.form
+        yield from self.telecommand(form.request, program=self.program)
+        role, wanted = ("ready", 1) if "ready" in form.progress.fields else ("busy", 0)
         self.values, _ = yield from self.poll(
-            "progress", role, wanted, "poll_interval", self.form.timeout, self.program
+            form.progress, role, wanted, form.poll_interval, form.timeout, self.program
         )
         if self.values.get("error"):
             raise Ended("error")

@@ -77,8 +77,9 @@ class Reader:
 
     def telemetry_ids(self) -> Direction:
         ids = self.section("message_id", "telemetry")
+        # Without telemetry there is none of them, first above last, and what comes is no reply.
         return Direction(
-            ids.get("first", min(self.telemetry, default=0)), ids.get("last", max(self.telemetry, default=255))
+            ids.get("first", min(self.telemetry, default=1)), ids.get("last", max(self.telemetry, default=0))
         )
 
     def acknowledge(self) -> Acknowledge | None:
@@ -193,32 +194,15 @@ class Reader:
         return self.part("file_transfer.hole_map", HoleMap, messages=messages, field=given["field"])
 
     def files(self) -> Files | None:
-        steps, numbers, packet_ids, procedures = {}, {}, {}, {}
+        packet_ids, procedures = {}, {}
         for name, part in PROCEDURES.items():
-            section = self.section("file_transfer", name)
-            if self.node.name not in section.get("nodes", [self.node.name]):
-                continue
-            procedures[name] = self.part(f"file_transfer.{name}", part)
-            for key, value in section.items():
-                if isinstance(value, int):
-                    numbers[f"{name}.{key}"] = int(value)
-                elif isinstance(value, dict) and "message" in value:
-                    step = self.step(value)
-                    if step:
-                        steps[f"{name}.{key}"] = step
+            nodes = self.section("file_transfer", name).get("nodes", [self.node.name])
+            procedures[name] = self.part(f"file_transfer.{name}", part) if self.node.name in nodes else None
         for bus in BUSES:
             message = self.messages.get(self.section("file_transfer", "download", bus).get("id_of", ""))
             if message:
                 packet_ids[bus] = message.ids[0]
-        return self.part(
-            "file_transfer",
-            Files,
-            steps=steps,
-            numbers=numbers,
-            packet_ids=packet_ids,
-            destinations=tuple(self.section("file_transfer", "upload").get("destinations", ())),
-            procedures={name: one for name, one in procedures.items() if one is not None},
-        )
+        return self.part("file_transfer", Files, packet_ids=packet_ids, **procedures)
 
     def step(self, given: dict[str, Any]) -> Step | None:
         message = self.messages.get(given.get("message", ""))

@@ -5,17 +5,21 @@ A part stands for a section of the ICD (`PLACES`). Times are milliseconds, sizes
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message
+from icdgen import codec
+from icdgen.icd.model import CAN_DATA_BYTES, CAN_PACKETS, Message, Node
 from icdgen.protocol.declared import (
     BYTE,
     U16,
     U32,
+    Kind,
     allowed,
     buses,
     code,
+    facts_of,
     flag,
     number,
     octet,
@@ -251,6 +255,11 @@ class Step:
     message: Message
     fields: dict[str, str] = field(default_factory=dict)
 
+    def frame(self, node: Node, values: Mapping[str, int | bytes] | None = None) -> bytes:
+        """Its bytes with these values by role; the others are those of a fresh message."""
+        given = {self.fields[role]: value for role, value in (values or {}).items()}
+        return codec.encode(node, self.message, self.message.fresh | given)
+
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Listing:
@@ -324,7 +333,7 @@ PROCEDURES: dict[str, type[Any]] = {
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Files:
-    """File transfer. Steps by path: ``list.reset``, ``download.load``, ``upload.packet``, ``erase.request`` ..."""
+    """File transfer. A procedure that the ICD does not describe completely is None."""
 
     packet_bytes: int = octets("packet_bytes", "bytes of the file in a packet")
     counter_bytes: int = octets("packet_counter_bytes", "bytes of the packet counter before them", 0, 4)
@@ -332,11 +341,27 @@ class Files:
     fill: int = octet("fill", "value of the bytes of the last packet beyond the end of the file", 0)
     block_packets: int = octets("block_packets", "most packets of a block", 1, U16 + 1)
     block_bytes: int = octets("block_bytes", "most bytes of a block", 1, U32)
-    steps: dict[str, Step]
-    numbers: dict[str, int]  # ``download.silence_ms`` and the like, as the ICD has them; truth values as 0 and 1
     packet_ids: dict[str, int]  # bus -> id that heads a download packet there
-    destinations: tuple[int, ...]  # of uploads; none: all
-    procedures: dict[str, Any]  # those of `PROCEDURES` that the ICD describes completely
+    list: Listing | None
+    download: Download | None
+    upload: Upload | None
+    erase: Erasure | None
+    format: Erasure | None
+
+    @property
+    def procedures(self) -> dict[str, Any]:
+        """Those that there are, by name."""
+        return {name: getattr(self, name) for name in PROCEDURES if getattr(self, name)}
+
+    @property
+    def steps(self) -> dict[str, Step]:
+        """Their messages by path: ``list.reset``, ``download.load``, ``upload.packet``, ``erase.request`` ..."""
+        return {
+            f"{name}.{fact.name}": getattr(one, fact.name)
+            for name, one in self.procedures.items()
+            for fact in facts_of(one)
+            if fact.kind is Kind.STEP
+        }
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)

@@ -106,45 +106,31 @@ class Procedure:
     def wait(self, milliseconds: int) -> Steps:
         yield Wait(self.now + milliseconds)
 
-    def telecommand(self, step: str, repeat: bool = True, **values: int | bytes) -> Asking[dict[str, Any]]:
+    def telecommand(self, step: Step, repeat: bool = True, **values: int | bytes) -> Asking[dict[str, Any]]:
         """Sends the telecommand of a step with values by role; others as a fresh message has them."""
         return self.demand(self.request(step, repeat, **values))
 
-    def once(self, step: str, **values: int | bytes) -> Steps:
+    def once(self, step: Step, **values: int | bytes) -> Steps:
         """Sends a telecommand once, whatever becomes of it but a refusal: what follows tells whether it arrived."""
         outcome = yield from self.ask(self.request(step, False, **values))
         if outcome["event"] == "refused":
             raise Ended("refused")
 
-    def step(self, name: str) -> Step:
-        """The message of a step and its fields by role. Raises `icdgen.protocol.facts.Unsupported`."""
-        raise NotImplementedError
-
-    def number(self, name: str) -> int:
-        """A number of the ICD by its path. Raises `icdgen.protocol.facts.Unsupported`."""
-        raise NotImplementedError
-
-    def request(self, step: str, repeat: bool = True, /, **values: int | bytes) -> Request:
+    def request(self, step: Step, repeat: bool = True, /, **values: int | bytes) -> Request:
         """The telecommand of a step."""
-        part = self.step(step)
-        message, raw = part.message, {}
-        for field in message.fields:
-            raw[field.name] = bytes(field.bits // 8) if field.type == "bytes" else field.const or 0
-        raw.update({part.fields[role]: value for role, value in values.items()})
-        assert message.telecommand_id is not None
-        return Request(TELECOMMAND, message.telecommand_id, codec.encode(self.known.node, message, raw), repeat)
+        assert step.message.telecommand_id is not None
+        return Request(TELECOMMAND, step.message.telecommand_id, step.frame(self.known.node, values), repeat)
 
-    def telemetry(self, step: str) -> Asking[tuple[dict[str, Any], bytes]]:
+    def telemetry(self, step: Step) -> Asking[tuple[dict[str, Any], bytes]]:
         """Requests the frame of a step: its values by role, and its bytes."""
-        part = self.step(step)
-        assert part.message.telemetry_id is not None
-        outcome = yield from self.demand(Request(TELEMETRY, part.message.telemetry_id, repeat=True))
+        assert step.message.telemetry_id is not None
+        outcome = yield from self.demand(Request(TELEMETRY, step.message.telemetry_id, repeat=True))
         frame = bytes.fromhex(outcome["bytes"])
-        raw = codec.decode(self.known.node, part.message, frame)
-        return {role: raw[name] for role, name in part.fields.items()}, frame
+        raw = codec.decode(self.known.node, step.message, frame)
+        return {role: raw[name] for role, name in step.fields.items()}, frame
 
     def poll(
-        self, step: str, role: str, wanted: int, interval: str, timeout: int, program: int | None = None
+        self, step: Step, role: str, wanted: int, interval: int, timeout: int, program: int | None = None
     ) -> Asking[tuple[dict[str, Any], bytes]]:
         """Requests the frame until the flag is as wanted, of that program if the frame says of which one."""
         end = self.now + timeout
@@ -155,7 +141,7 @@ class Procedure:
                 return values, frame
             if self.now >= end:
                 raise Ended("timeout")
-            yield from self.wait(self.number(interval))
+            yield from self.wait(interval)
 
 
 class Transfer(Procedure):
@@ -165,27 +151,20 @@ class Transfer(Procedure):
         super().__init__(known)
         self.files = need(known.files, "file_transfer")
 
-    def step(self, name: str) -> Step:
-        return need(self.files.steps.get(name), f"file_transfer.{name}")
-
-    def number(self, name: str) -> int:
-        return need(self.files.numbers.get(name), f"file_transfer.{name}")
-
 
 class FileList(Transfer):
     """The files of the node, one after the other, in ``entries``: values of the information frame by role."""
 
     def __init__(self, known: Facts) -> None:
         super().__init__(known)
+        self.form = need(self.files.list, "file_transfer.list")
         self.entries: list[dict[str, Any]] = []
 
     def _run(self) -> Steps:
-        last, again = None, 0
-        yield from self.telecommand("list.reset")
+        form, last, again = self.form, None, 0
+        yield from self.telecommand(form.reset)
         while True:
-            values, frame = yield from self.poll(
-                "list.information", "busy", 0, "list.poll_interval_ms", self.number("list.timeout_ms")
-            )
+            values, frame = yield from self.poll(form.information, "busy", 0, form.poll_interval, form.timeout)
             if not any(frame):
                 return
             if frame != last:
@@ -195,7 +174,7 @@ class FileList(Transfer):
                 raise Ended("timeout")
             last, again = frame, again + 1
             # Sent once: if only its acknowledge was lost, the next frame tells that it arrived.
-            yield from self.once("list.advance")
+            yield from self.once(form.advance)
 
 
 class Download(Transfer):
@@ -205,6 +184,7 @@ class Download(Transfer):
         self, known: Facts, bus: str, type: int, counter: int, size: int | None, block: int | None = None
     ) -> None:
         super().__init__(known)
+        self.form = need(self.files.download, "file_transfer.download")
         self.bus, self.type, self.counter, self.size = bus, type, counter, size
         self.block = min(block or self.files.block_bytes, self.files.block_bytes)
         self.blocks: list[tuple[int, bytes]] = []
@@ -232,14 +212,12 @@ class Download(Transfer):
                 return
 
     def _block(self, want: int) -> Asking[bytes]:
-        rounds = 0
+        form, rounds = self.form, 0
         while True:
             self.got, self.count = {}, 0
             place = {"type": self.type, "counter": self.counter, "offset": self.offset}
-            yield from self.telecommand("download.load", True, **place, length=want)
-            ready, _ = yield from self.poll(
-                "download.ready", "ready", 1, "download.poll_interval_ms", self.number("download.ready_timeout_ms")
-            )
+            yield from self.telecommand(form.load, True, **place, length=want)
+            ready, _ = yield from self.poll(form.ready, "ready", 1, form.poll_interval, form.ready_timeout)
             if ready["error"]:
                 raise Ended("parameter")
             size = ready["length"]
@@ -247,15 +225,15 @@ class Download(Transfer):
                 raise Ended("length")
             self.count = self.known.packets_of(size)
             while len(self.got) < self.count:
-                if rounds == self.number("download.rounds"):
+                if rounds == form.rounds:
                     raise Ended("rounds")
                 rounds += 1
                 yield from self._round()
             packets = b"".join(self.got[position] for position in range(self.count))
-            covered = packets if self.files.numbers.get("download.checksum_covers_fill") else packets[:size]
+            covered = packets if form.checksum_covers_fill else packets[:size]
             if crc.compute(need(self.known.crc16, "crc16"), covered) == ready["checksum"]:
                 return packets[:size]
-            if rounds == self.number("download.rounds"):
+            if rounds == form.rounds:
                 raise Ended("checksum")
             if not size:
                 rounds += 1
@@ -267,8 +245,7 @@ class Download(Transfer):
         everything = not self.got
         self.last = self.now
         # Sent once: that packets come, or none, tells more than its acknowledge.
-        length = self.number("download.message_length")
-        yield from self.once("download.burst", length=length, ignore_hole_map=int(everything))
+        yield from self.once(self.form.burst, length=self.form.message_length, ignore_hole_map=int(everything))
         if self.bus != UART:
             counter = self.files.counter_bytes
             id = need(self.files.packet_ids.get(self.bus), f"file_transfer.download.{self.bus}")
@@ -279,8 +256,8 @@ class Download(Transfer):
                     self.packet(self.known.number(data[:counter]), data[counter:])
             return
         self.last = max(self.last, self.now)
-        while len(self.got) < self.count and self.now < self.last + self.number("download.silence_ms"):
-            yield Wait(self.last + self.number("download.silence_ms"))
+        while len(self.got) < self.count and self.now < self.last + self.form.silence:
+            yield Wait(self.last + self.form.silence)
 
     def _send_hole_map(self) -> Steps:
         form, first = need(self.known.hole_map, "file_transfer.hole_map"), self.files.first_packet
@@ -300,10 +277,10 @@ class Upload(Transfer):
 
     def __init__(self, known: Facts, destination: int, data: bytes, block: int | None = None) -> None:
         super().__init__(known)
-        self.step("upload.initiate")
-        if self.files.destinations and destination not in self.files.destinations:
+        form = self.form = need(self.files.upload, "file_transfer.upload")
+        if form.destinations and destination not in form.destinations:
             raise RangeError("destination")
-        most = self.files.numbers.get("upload.destination_bytes")
+        most = form.destination_bytes
         if most is not None and len(data) > most:
             raise TooLongError(most, len(data))
         self.destination, self.data = destination, data
@@ -311,45 +288,42 @@ class Upload(Transfer):
         self.sent = 0
 
     def _run(self) -> Steps:
-        yield from self.telecommand(
-            "upload.initiate", destination=self.destination, block_size=self.number("upload.block_size")
-        )
-        timeout = self.number("upload.erase_timeout_s") * 1000
-        yield from self.poll("upload.initiated", "busy", 0, "upload.poll_interval_ms", timeout)
+        form = self.form
+        yield from self.telecommand(form.initiate, destination=self.destination, block_size=form.block_size)
+        yield from self.poll(form.initiated, "busy", 0, form.poll_interval, form.erase_timeout)
         while self.sent < len(self.data):
             data = self.data[self.sent : self.sent + self.block]
             yield from self._block(data)
             self.sent += len(data)
 
     def _block(self, data: bytes) -> Steps:
-        size, rounds = self.files.packet_bytes, 0
+        form, size, rounds = self.form, self.files.packet_bytes, 0
         count = self.known.packets_of(len(data))
         filled = data.ljust(count * size, bytes([self.files.fill]))
-        covered = filled if self.files.numbers.get("upload.checksum_covers_fill") else data
+        covered = filled if form.checksum_covers_fill else data
         while True:
-            yield from self.telecommand("upload.begin")
+            yield from self.telecommand(form.begin)
             missing = list(range(count))
             while missing:
-                if rounds == self.number("upload.rounds"):
+                if rounds == form.rounds:
                     raise Ended("rounds")
                 rounds += 1
                 for position in missing:
                     packet = filled[position * size : (position + 1) * size]
-                    yield from self.telecommand(
-                        "upload.packet", False, number=self.files.first_packet + position, bytes=packet
-                    )
+                    number = self.files.first_packet + position
+                    yield from self.telecommand(form.packet, False, number=number, bytes=packet)
                 missing = yield from self._missing(count)
-            checksum, _ = yield from self.telemetry("upload.checksum")
+            checksum, _ = yield from self.telemetry(form.checksum)
             if checksum["checksum"] == crc.compute(need(self.known.crc16, "crc16"), covered):
                 yield from self.telecommand(
-                    "upload.finalize", destination=self.destination, offset=self.sent, length=len(data)
+                    form.finalize, destination=self.destination, offset=self.sent, length=len(data)
                 )
                 finalized, _ = yield from self.poll(
-                    "upload.finalized", "busy", 0, "upload.poll_interval_ms", self.number("upload.finalize_timeout_ms")
+                    form.finalized, "busy", 0, form.poll_interval, form.finalize_timeout
                 )
                 if not finalized["error"]:
                     return
-            if rounds == self.number("upload.rounds"):
+            if rounds == form.rounds:
                 raise Ended("checksum")
 
     def _missing(self, count: int) -> Asking[list[int]]:
@@ -370,19 +344,23 @@ class Erase(Transfer):
 
     def __init__(self, known: Facts, type: int, counter: int, all: bool) -> None:
         super().__init__(known)
+        self.form = need(self.files.erase, "file_transfer.erase")
         self.values = {"type": type, "counter": counter, "all": int(all)}
 
     def _run(self) -> Steps:
-        yield from self.telecommand("erase.request", True, **self.values)
+        yield from self.telecommand(self.form.request, True, **self.values)
         if self.values["all"]:
-            timeout = self.number("erase.timeout_ms")
-            yield from self.poll("erase.progress", "busy", 0, "erase.poll_interval_ms", timeout)
+            yield from self.poll(self.form.progress, "busy", 0, self.form.poll_interval, self.form.timeout)
 
 
 class Format(Transfer):
     """Formats the medium."""
 
+    def __init__(self, known: Facts) -> None:
+        super().__init__(known)
+        self.form = need(self.files.format, "file_transfer.format")
+
     def _run(self) -> Steps:
-        yield from self.telecommand("format.request")
-        timeout = self.number("format.timeout_ms")
-        yield from self.poll("format.progress", "busy", 0, "format.poll_interval_ms", timeout)
+        form = self.form
+        yield from self.telecommand(form.request)
+        yield from self.poll(form.progress, "busy", 0, form.poll_interval, form.timeout)

@@ -72,8 +72,8 @@ class Line:
             for _, one in self.faults.spoil("request", message):
                 self._request(now, one)
             return
-        step = known.files.steps.get("upload.packet") if known.files else None
-        upload = step is not None and step.message.telecommand_id == message[0]
+        form = known.files.upload if known.files else None
+        upload = form is not None and form.packet.message.telecommand_id == message[0]
         for _, one in self.faults.spoil("upload" if upload else "telecommand", message):
             self._telecommand(now, one)
 

@@ -151,8 +151,8 @@ def _type(known: facts.Facts, text: str) -> int | None:
     """The number of a file type by itself or by its name."""
     from icdgen.values.entry import from_physical
 
-    step = known.files.steps.get("download.load") if known.files else None
-    one = next((f for f in step.message.fields if f.name == step.fields.get("type")), None) if step else None
+    load = known.files.download.load if known.files and known.files.download else None
+    one = next((f for f in load.message.fields if f.name == load.fields.get("type")), None) if load else None
     if one is None:
         raise UserError("the ICD describes no files", "leave --file out")
     return from_physical(one, text)  # type: ignore[return-value]

@@ -49,14 +49,15 @@ class Transfers:
         self.maps = {m.name: at for at, m in enumerate(known.hole_map.messages)} if known.hole_map else {}
         self.telecommands: dict[str, tuple[str, Callable[[int, Raw], None]]] = {}
         self.frames: dict[str, list[tuple[str, Callable[[int], Raw]]]] = {}
-        for step, take in self._takers():
-            if step in form.steps:
-                self.telecommands[form.steps[step].message.name] = step, take
-        for step, give in self._givers():
-            if step in form.steps:
-                self.frames.setdefault(form.steps[step].message.name, []).append((step, give))
+        self.steps = form.steps
+        for step, take in self._telecommand_handlers():
+            if step in self.steps:
+                self.telecommands[self.steps[step].message.name] = step, take
+        for step, give in self._frame_values():
+            if step in self.steps:
+                self.frames.setdefault(self.steps[step].message.name, []).append((step, give))
 
-    def _takers(self) -> Iterator[tuple[str, Callable[[int, Raw], None]]]:
+    def _telecommand_handlers(self) -> Iterator[tuple[str, Callable[[int, Raw], None]]]:
         yield "list.reset", self._reset_list
         yield "list.advance", self._advance
         yield "download.load", self._load
@@ -68,7 +69,7 @@ class Transfers:
         yield "erase.request", self._erase
         yield "format.request", self._format
 
-    def _givers(self) -> Iterator[tuple[str, Callable[[int], Raw]]]:
+    def _frame_values(self) -> Iterator[tuple[str, Callable[[int], Raw]]]:
         yield "list.information", self._information
         yield "download.ready", self._ready
         yield "upload.initiated", lambda now: {"busy": self._is_busy("upload.initiate", now)}
@@ -88,7 +89,7 @@ class Transfers:
             self.map[at : at + size] = raw[self.known.hole_map.field]  # type: ignore[assignment]
         if message.name in self.telecommands:
             step, handler = self.telecommands[message.name]
-            handler(now, {role: raw[name] for role, name in self.form.steps[step].fields.items()})
+            handler(now, {role: raw[name] for role, name in self.steps[step].fields.items()})
 
     def answer(self, now: int, message: Message) -> dict[str, int | bytes]:
         """Values of the fields that play a part in a transfer."""
@@ -99,7 +100,7 @@ class Transfers:
             found[self.known.hole_map.field] = bytes(self.map[at : at + size])
         for step, handler in self.frames.get(message.name, ()):
             values = handler(now)
-            found |= {name: values[role] for role, name in self.form.steps[step].fields.items() if role in values}
+            found |= {name: values[role] for role, name in self.steps[step].fields.items() if role in values}
         return found
 
     def fetch(self) -> Packet:
@@ -154,13 +155,13 @@ class Transfers:
         if not self.loaded or self._is_busy("download.load", now):
             return {"ready": 0, "error": 0, "checksum": 0, "length": 0}
         covered = self.block
-        if self.form.numbers.get("download.checksum_covers_fill"):
+        if self.form.download and self.form.download.checksum_covers_fill:
             covered = b"".join(self._packet_at(at).data for at in range(self.known.packets_of(len(covered))))
         checksum = checksum_of(self.link, covered)
         return {"ready": 1, "error": int(self.bad), "checksum": checksum, "length": len(self.block)}
 
     def _burst(self, now: int, values: Raw) -> None:
-        if values.get("length", 0) != self.form.numbers.get("download.message_length", values.get("length", 0)):
+        if self.form.download and values.get("length", 0) != self.form.download.message_length:
             self.bad = True
             raise Refused(0)
         count = self.known.packets_of(len(self.block))
@@ -186,7 +187,7 @@ class Transfers:
 
     def _destination(self, values: Raw) -> int:
         destination = int(values["destination"])
-        if self.form.destinations and destination not in self.form.destinations:
+        if self.form.upload and self.form.upload.destinations and destination not in self.form.upload.destinations:
             raise Refused()
         return destination
 
@@ -218,7 +219,7 @@ class Transfers:
     def _finalize(self, now: int, values: Raw) -> None:
         block, length = self._upload_block(), int(values["length"])
         destination, offset = self._destination(values), int(values["offset"])
-        room = self.form.numbers.get("upload.destination_bytes")
+        room = self.form.upload.destination_bytes if self.form.upload else None
         self.failed = length > len(block) or not self.storage.write(destination, offset, block[:length], room)
         self._work("upload.finalize", now)
 

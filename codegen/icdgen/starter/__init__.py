@@ -30,9 +30,9 @@ def write(folder: Path, name: str, style: Style | None = None, origin: str = "")
         raise UserError(f"`{name}` cannot name a node: lower-case letters, digits and _, a letter first", help)
     device = _filled("device.yaml", name)
     if style is not None:
-        from icdgen.starter.style import dress
+        from icdgen.starter.style import in_style
 
-        device = dress(device, style, origin)
+        device = in_style(device, style, origin)
     files = {
         folder / "icd" / f"{name}.yaml": device,
         folder / "icd" / "errata" / f"{name}.yaml": _filled("errata.yaml", name),

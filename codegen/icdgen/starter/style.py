@@ -59,7 +59,7 @@ def of(icd: Icd, node: Node, texts: Mapping[str, str]) -> Style:
     )
 
 
-def dress(text: str, style: Style, origin: str) -> str:
+def in_style(text: str, style: Style, origin: str) -> str:
     """The ICD ``text`` in that style: its own protocol, and what it calls as the style does, gives way. Comments stay."""
     root = read.read(text, source.parse(text.encode(), "the first ICD"))
     parts = {scalars.name(child.key): child for child in root.children}

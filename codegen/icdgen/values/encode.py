@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from icdgen import codec
-from icdgen.describe.fresh import fresh_value
 from icdgen.describe.numbers import exact_text
 from icdgen.describe.steps import steps
 from icdgen.errors import UserError
@@ -88,7 +87,7 @@ def _values(
     values: dict[str, int | bytes] = {}
     notes: dict[str, str] = {}
     for field in message.fields:
-        values[field.name] = fresh_value(field)
+        values[field.name] = field.fresh
         if field.name not in given:
             continue
         text = given[field.name]

@@ -2,6 +2,7 @@
 #define ICDGEN_WIRE_CAN_H
 
 #include "../icdgen.h"
+#include "linkage.h"
 #include "forms.h"
 #include "link.h"
 
@@ -14,26 +15,8 @@ typedef struct {
     uint8_t data[8];
 } icd_can_packet_t;
 
-static inline uint32_t icdgen_can_part(icd_can_part_t part, uint32_t id)
-{
-    return (id >> part.shift) & ((UINT32_C(1) << part.bits) - 1u);
-}
-
-/* Whether the kind of message has data. */
-static inline bool icdgen_can_has_data(icd_can_kind_t kind)
-{
-    return kind == ICD_CAN_TELECOMMAND || kind == ICD_CAN_REPLY;
-}
-
 /** The most data that a message of the kind can have. The node is on CAN. */
-static inline size_t icd_can_most(const icd_link_t *link, icd_can_kind_t kind)
-{
-    const icd_can_form_t *const can = link->can;
-    if (can->extended != NULL && can->extended_types[kind] >= 0) {
-        return can->extended->bytes;
-    }
-    return icdgen_can_has_data(kind) ? can->data_bytes : 0u;
-}
+ICDGEN_API size_t icd_can_most(const icd_link_t *link, icd_can_kind_t kind);
 
 /** Gives the packets of a message one by one. */
 typedef struct {
@@ -50,7 +33,7 @@ typedef struct {
  * Begins a message, whose data must stay where they are. ICD_ERROR_LENGTH if they are too long, ICD_ERROR_RANGE if an
  * id or address does not fit the identifier.
  */
-static inline icd_status_t icd_can_split(
+ICDGEN_API icd_status_t icd_can_split(
     icd_can_splitter_t *splitter,
     const icd_link_t *link,
     icd_can_kind_t kind,
@@ -58,61 +41,9 @@ static inline icd_status_t icd_can_split(
     uint8_t source,
     uint8_t destination,
     const uint8_t *data,
-    size_t length)
-{
-    const icd_can_form_t *const can = link->can;
-    int32_t type;
-    memset(splitter, 0, sizeof *splitter);
-    if (can == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    splitter->extended = length > (icdgen_can_has_data(kind) ? can->data_bytes : 0u);
-    if (splitter->extended && length > icd_can_most(link, kind)) {
-        return ICD_ERROR_LENGTH;
-    }
-    type = splitter->extended ? can->extended_types[kind] : can->types[kind];
-    if (type < 0) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    splitter->id = (ICDGEN_U32(type) << can->type.shift) | (ICDGEN_U32(id) << can->channel.shift) |
-        (ICDGEN_U32(source) << can->source.shift) | (ICDGEN_U32(destination) << can->destination.shift);
-    if (icdgen_can_part(can->channel, splitter->id) != id || icdgen_can_part(can->source, splitter->id) != source ||
-        icdgen_can_part(can->destination, splitter->id) != destination) {
-        return ICD_ERROR_RANGE;
-    }
-    splitter->can = can;
-    splitter->data = data;
-    splitter->length = length;
-    splitter->count = splitter->extended
-        ? ICDGEN_U32((length + can->extended->data_bytes - 1u) / can->extended->data_bytes)
-        : ICDGEN_U32(1);
-    return ICD_OK;
-}
+    size_t length);
 
 /** The next packet; false after the last. */
-static inline bool icd_can_next(icd_can_splitter_t *splitter, icd_can_packet_t *packet)
-{
-    const icd_can_extended_t *form;
-    size_t at, size;
-    if (splitter->next >= splitter->count) {
-        return false;
-    }
-    form = splitter->can->extended;
-    packet->id = splitter->id;
-    at = splitter->extended ? splitter->next * form->data_bytes : 0u;
-    size = splitter->length - at;
-    memset(packet->data, 0, sizeof packet->data);
-    if (splitter->extended) {
-        size = size < form->data_bytes ? size : form->data_bytes;
-        memset(packet->data, form->fill, form->left_at);
-        packet->data[form->left_at] = ICDGEN_U8(form->left_in_last + splitter->count - 1u - splitter->next);
-    }
-    if (size != 0u) {
-        memcpy(packet->data, splitter->data + at, size);
-    }
-    packet->length = ICDGEN_U8(splitter->extended ? form->left_at + 1u : size);
-    splitter->next++;
-    return true;
-}
+ICDGEN_API bool icd_can_next(icd_can_splitter_t *splitter, icd_can_packet_t *packet);
 
 #endif /* ICDGEN_WIRE_CAN_H */

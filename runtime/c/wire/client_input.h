@@ -2,6 +2,7 @@
 #define ICDGEN_WIRE_CLIENT_INPUT_H
 
 #include "../icdgen.h"
+#include "linkage.h"
 #include "forms.h"
 #include "link.h"
 #include "events.h"
@@ -11,292 +12,22 @@
 #include "can_join.h"
 #include "client.h"
 
-/* The node refused it. A wrong checksum is no fault of the request: it is sent again. */
-static inline void icdgen_client_refused(
-    icd_client_t *client, uint32_t now, int64_t code, int64_t parameter, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(ICD_EVENT_REFUSED, 0);
-    for (size_t i = client->link->error_count; i-- != 0u;) {
-        if (client->link->errors[i].code == code) {
-            event.reason = client->link->errors[i].reason;
-        }
-    }
-    if (event.reason == ICD_REASON_CHECKSUM && client->checks_telecommands &&
-        client->attempts <= client->settings.retries) {
-        icdgen_client_send(client, now, on_event, context);
-        return;
-    }
-    event.code = code;
-    event.parameter = parameter;
-    icdgen_client_end(client, now, &event, on_event, context);
-}
-
-/* There was no reply, or none that can be used: once more, or the end. */
-static inline void icdgen_client_no_reply(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    if (!client->repeat || client->attempts > client->settings.retries) {
-        icdgen_client_timeout(client, now, on_event, context);
-    } else if (client->bus == ICD_BUS_I2C) { /* the bus said so at once: give the node some time */
-        client->state = ICD_CLIENT_PAUSE;
-        client->until = now + client->settings.poll_interval;
-        client->give_up = now + client->settings.poll_timeout;
-    } else {
-        icdgen_client_send(client, now, on_event, context);
-    }
-}
-
-/* Polls once more after a while. */
-static inline void icdgen_client_again(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    if (icdgen_reached(now, client->give_up)) {
-        icdgen_client_timeout(client, now, on_event, context);
-    } else {
-        client->state = ICD_CLIENT_PAUSE;
-        client->until = now + client->settings.poll_interval;
-    }
-}
-
-static inline void icdgen_client_poll(icd_client_t *client, uint32_t now)
-{
-    client->state = ICD_CLIENT_POLL;
-    client->until = now + client->settings.reply_timeout;
-    client->poll = true;
-    client->poll_id = ICDGEN_U8(client->link->polled->telemetry);
-}
-
-static inline void icdgen_client_tell(
-    icd_event_kind_t kind, uint8_t id, const uint8_t *data, size_t length, icd_event_fn *on_event, void *context)
-{
-    icd_event_t event = icdgen_event(kind, id);
-    event.data = data;
-    event.length = length;
-    on_event(context, &event);
-}
-
-/* A client and who is told of its events, while its decoder or joiner is fed. */
-typedef struct {
-    icd_client_t *client;
-    uint32_t now;
-    icd_event_fn *on_event;
-    void *context;
-} icdgen_client_call_t;
-
-static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, const uint8_t *message, size_t length)
-{
-    icd_client_t *const client = call->client;
-    const icd_link_t *const link = client->link;
-    const icd_uart_kind_t kind = icd_uart_kind(link, message, length);
-    const bool waits = client->state == ICD_CLIENT_WAIT;
-    if (kind == ICD_UART_LOG) {
-        icdgen_client_tell(ICD_EVENT_LOG, message[0], message, length, call->on_event, call->context);
-        return;
-    }
-    if (kind == ICD_UART_PACKET) {
-        icd_event_t event = icdgen_event(ICD_EVENT_PACKET, message[0]);
-        event.number = icdgen_number(link, message + 1, link->files->counter_bytes);
-        event.data = message + 1 + link->files->counter_bytes;
-        event.length = link->files->packet_bytes;
-        call->on_event(call->context, &event);
-        return;
-    }
-    if (waits && kind == ICD_UART_REPLY && client->direction == ICD_TELEMETRY && message[0] == client->message->id) {
-        if (length - 1u == client->message->length) {
-            icdgen_client_done(client, call->now, message + 1, length - 1u, call->on_event, call->context);
-        } else {
-            icdgen_client_tell(ICD_EVENT_MALFORMED, message[0], NULL, 0, call->on_event, call->context);
-        }
-        return;
-    }
-    if (waits && kind == ICD_UART_ACKNOWLEDGE && client->direction == ICD_TELECOMMAND &&
-        message[link->acknowledge->id_at] == client->message->id) {
-        const uint8_t code = message[link->acknowledge->error_at];
-        if (code == link->no_error) {
-            icdgen_client_done(client, call->now, NULL, 0, call->on_event, call->context);
-        } else {
-            icdgen_client_refused(client, call->now, code, -1, call->on_event, call->context);
-        }
-        return;
-    }
-    icdgen_client_tell(ICD_EVENT_STRAY, message[0], message, length, call->on_event, call->context);
-}
-
-static inline void icdgen_client_on_uart(void *context, const icd_event_t *event)
-{
-    const icdgen_client_call_t *const call = ICDGEN_CAST(const icdgen_client_call_t *, context);
-    if (event->kind == ICD_EVENT_MESSAGE) {
-        icdgen_client_uart_message(call, event->data, event->length);
-    } else {
-        call->on_event(call->context, event);
-    }
-}
-
-static inline void icdgen_client_on_can(void *context, const icd_event_t *event)
-{
-    const icdgen_client_call_t *const call = ICDGEN_CAST(const icdgen_client_call_t *, context);
-    icd_client_t *const client = call->client;
-    if (event->kind != ICD_EVENT_MESSAGE) {
-        call->on_event(call->context, event);
-        return;
-    }
-    if (client->state == ICD_CLIENT_WAIT && event->id == client->message->id &&
-        event->source == client->link->can->node_address) {
-        const bool telecommand = client->direction == ICD_TELECOMMAND;
-        if (telecommand && event->can_kind == ICD_CAN_ACKNOWLEDGE) {
-            icdgen_client_done(client, call->now, NULL, 0, call->on_event, call->context);
-            return;
-        }
-        if (event->can_kind == (telecommand ? ICD_CAN_REFUSAL : ICD_CAN_REQUEST_REFUSAL)) {
-            icdgen_client_refused(client, call->now, -1, -1, call->on_event, call->context);
-            return;
-        }
-        if (!telecommand && event->can_kind == ICD_CAN_REPLY) {
-            if (event->length == client->message->length) {
-                icdgen_client_done(client, call->now, event->data, event->length, call->on_event, call->context);
-            } else {
-                icdgen_client_tell(ICD_EVENT_MALFORMED, event->id, NULL, 0, call->on_event, call->context);
-            }
-            return;
-        }
-    }
-    icdgen_client_tell(ICD_EVENT_STRAY, event->id, event->data - 1, event->length + 1u, call->on_event, call->context);
-}
-
 /** Lets time pass. */
-static inline void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
-{
-    if (client->bus == ICD_BUS_CAN) {
-        icd_can_expire(&client->joiner, now, on_event, context);
-    }
-    if (client->echo && icdgen_reached(now, client->echo_end)) {
-        client->echo = false;
-    }
-    if (client->state == ICD_CLIENT_IDLE || !icdgen_reached(now, client->until)) {
-        return;
-    }
-    switch (client->state) {
-    case ICD_CLIENT_HOLD:
-        icdgen_client_send(client, now, on_event, context);
-        break;
-    case ICD_CLIENT_PAUSE:
-        if (icdgen_reached(now, client->give_up)) {
-            icdgen_client_timeout(client, now, on_event, context);
-        } else if (client->sent_whole) {
-            icdgen_client_poll(client, now);
-        } else {
-            icdgen_client_send(client, now, on_event, context);
-        }
-        break;
-    case ICD_CLIENT_POLL:
-        icdgen_client_again(client, now, on_event, context);
-        break;
-    case ICD_CLIENT_WAIT:
-        icdgen_client_no_reply(client, now, on_event, context);
-        break;
-    case ICD_CLIENT_IDLE:
-    default:
-        break;
-    }
-}
+ICDGEN_API void icd_client_tick(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context);
 
 /** UART: takes the next bytes of the stream. */
-static inline void icd_client_received(
-    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
-{
-    icdgen_client_call_t call;
-    call.client = client;
-    call.now = now;
-    call.on_event = on_event;
-    call.context = context;
-    icd_client_tick(client, now, on_event, context);
-    if (client->ready) {
-        icd_uart_feed(&client->decoder, bytes, count, icdgen_client_on_uart, &call);
-    }
-}
+ICDGEN_API void icd_client_received(
+    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);
 
 /** CAN: takes a packet. */
-static inline void icd_client_packet(
-    icd_client_t *client, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context)
-{
-    icdgen_client_call_t call;
-    call.client = client;
-    call.now = now;
-    call.on_event = on_event;
-    call.context = context;
-    icd_client_tick(client, now, on_event, context);
-    if (client->ready) {
-        icd_can_feed(&client->joiner, now, packet, icdgen_client_on_can, &call);
-    }
-}
-
-/* I2C: what was read of the acknowledge frame. */
-static inline void icdgen_client_polled(
-    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
-{
-    const icd_link_t *const link = client->link;
-    const icd_step_t *const step = link->polled;
-    size_t length = 0;
-    uint32_t code;
-    if (icd_i2c_reply(link, client->poll_id, bytes, count, client->checks_telemetry, &length) != ICD_OK) {
-        icdgen_client_tell(ICD_EVENT_MALFORMED, client->poll_id, NULL, 0, on_event, context);
-        icdgen_client_again(client, now, on_event, context);
-        return;
-    }
-    if (icdgen_get(link, step, bytes, ICD_ROLE_ID) != client->message->id ||
-        icdgen_get(link, step, bytes, ICD_ROLE_PROCESSED) == 0u) {
-        icdgen_client_again(client, now, on_event, context);
-        return;
-    }
-    code = icdgen_get(link, step, bytes, ICD_ROLE_ERROR);
-    if (code == link->no_error) {
-        icdgen_client_done(client, now, NULL, 0, on_event, context);
-    } else {
-        icdgen_client_refused(client, now, code, icdgen_get(link, step, bytes, ICD_ROLE_PARAMETER), on_event, context);
-    }
-}
-
-/* I2C: whether the last transaction was taken, and is that of the request. */
-static inline bool icdgen_client_awaits_transfer(const icd_client_t *client, uint32_t owed)
-{
-    return client->owed == owed && (client->state == ICD_CLIENT_WAIT || client->state == ICD_CLIENT_POLL) &&
-        !icdgen_client_has_output(client);
-}
+ICDGEN_API void icd_client_packet(
+    icd_client_t *client, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context);
 
 /**
  * I2C: takes what was read in the oldest transaction that was taken and not told of; `bytes` NULL: it failed. Of a
  * write without reading, anything but NULL. What a request owed that is over is ICD_EVENT_STRAY.
  */
-static inline void icd_client_transferred(
-    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context)
-{
-    size_t length = 0;
-    const bool awaited = icdgen_client_awaits_transfer(client, 1);
-    client->owed -= client->owed != 0u ? 1u : 0u;
-    icd_client_tick(client, now, on_event, context); /* may end that request, and begin the next one */
-    if (!awaited || !icdgen_client_awaits_transfer(client, 0)) {
-        icdgen_client_tell(ICD_EVENT_STRAY, 0, bytes, bytes != NULL ? count : 0u, on_event, context);
-    } else if (client->state == ICD_CLIENT_POLL) {
-        if (bytes == NULL) {
-            icdgen_client_again(client, now, on_event, context);
-        } else {
-            icdgen_client_polled(client, now, bytes, count, on_event, context);
-        }
-    } else if (bytes == NULL) {
-        icdgen_client_no_reply(client, now, on_event, context);
-    } else if (client->direction == ICD_TELEMETRY) {
-        const uint8_t id = client->message->id;
-        if (icd_i2c_reply(client->link, id, bytes, count, client->checks_telemetry, &length) == ICD_OK) {
-            icdgen_client_done(client, now, bytes, length, on_event, context);
-        } else {
-            icdgen_client_tell(ICD_EVENT_MALFORMED, id, NULL, 0, on_event, context);
-            icdgen_client_no_reply(client, now, on_event, context);
-        }
-    } else if ((client->message->flags & ICD_ACKNOWLEDGED) == 0u || client->link->polled == NULL) {
-        icdgen_client_done(client, now, NULL, 0, on_event, context);
-    } else {
-        client->sent_whole = true;
-        client->give_up = now + client->settings.poll_timeout;
-        icdgen_client_again(client, now, on_event, context);
-    }
-}
+ICDGEN_API void icd_client_transferred(
+    icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count, icd_event_fn *on_event, void *context);
 
 #endif /* ICDGEN_WIRE_CLIENT_INPUT_H */

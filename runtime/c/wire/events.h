@@ -47,21 +47,4 @@ typedef struct {
 /** Is told of each event, with the context that was given along. */
 typedef void icd_event_fn(void *context, const icd_event_t *event);
 
-static inline icd_event_t icdgen_event(icd_event_kind_t kind, uint8_t id)
-{
-    icd_event_t event;
-    memset(&event, 0, sizeof event);
-    event.kind = kind;
-    event.id = id;
-    event.code = -1;
-    event.parameter = -1;
-    return event;
-}
-
-/* Whether a time has come; times may wrap. */
-static inline bool icdgen_reached(uint32_t now, uint32_t time)
-{
-    return now - time < UINT32_C(0x80000000);
-}
-
 #endif /* ICDGEN_WIRE_EVENTS_H */

@@ -2,6 +2,7 @@
 #define ICDGEN_WIRE_I2C_H
 
 #include "../icdgen.h"
+#include "linkage.h"
 #include "forms.h"
 #include "link.h"
 #include "crc.h"
@@ -9,19 +10,10 @@
 /* ---- I2C --------------------------------------------------------------------------------------------------------- */
 
 /** The checksum of a message's data. The node has checksums. */
-static inline uint32_t icd_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length)
-{
-    icd_crc_t crc;
-    icd_crc_init(&crc, &link->checksum->crc);
-    if (link->checksum->covers_id) {
-        icd_crc_feed(&crc, &id, 1);
-    }
-    icd_crc_feed(&crc, data, length);
-    return icd_crc_result(&crc);
-}
+ICDGEN_API uint32_t icd_checksum(const icd_link_t *link, uint8_t id, const uint8_t *data, size_t length);
 
 /** Id, data and, if asked for, the checksum of a telecommand: what is written on I2C, and framed on the UART. */
-static inline icd_status_t icd_i2c_write(
+ICDGEN_API icd_status_t icd_i2c_write(
     const icd_link_t *link,
     uint8_t id,
     const uint8_t *data,
@@ -29,60 +21,13 @@ static inline icd_status_t icd_i2c_write(
     bool checked,
     uint8_t *buffer,
     size_t capacity,
-    size_t *written)
-{
-    size_t extra = 0;
-    if (checked) {
-        if (link->checksum == NULL) {
-            return ICD_ERROR_UNSUPPORTED;
-        }
-        extra = link->checksum->bytes;
-    }
-    if (capacity < extra + 1u || capacity - extra - 1u < length) {
-        return ICD_ERROR_LENGTH;
-    }
-    buffer[0] = id;
-    if (length != 0u) {
-        memmove(buffer + 1, data, length);
-    }
-    *written = 1u + length + extra;
-    return checked ? icdgen_put_number(link, buffer + 1 + length, extra, icd_checksum(link, id, buffer + 1, length))
-                   : ICD_OK;
-}
+    size_t *written);
 
 /** Bytes to read for a frame. */
-static inline icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, bool checked, size_t *length)
-{
-    const icd_message_t *const message = icd_find_message(link, ICD_TELEMETRY, id);
-    if (message == NULL) {
-        return ICD_ERROR_UNKNOWN_ID;
-    }
-    if (checked && link->checksum == NULL) {
-        return ICD_ERROR_UNSUPPORTED;
-    }
-    *length = ICDGEN_U32(message->length) + (checked ? link->checksum->bytes : 0u);
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, bool checked, size_t *length);
 
 /** The bytes of the frame in what was read; ICD_ERROR_LENGTH or ICD_ERROR_CHECKSUM if it is not as it must be. */
-static inline icd_status_t icd_i2c_reply(
-    const icd_link_t *link, uint8_t id, const uint8_t *bytes, size_t length, bool checked, size_t *frame_length)
-{
-    size_t expected = 0;
-    const icd_status_t status = icd_i2c_read_length(link, id, checked, &expected);
-    if (status != ICD_OK) {
-        return status;
-    }
-    if (length != expected) {
-        return ICD_ERROR_LENGTH;
-    }
-    *frame_length = expected - (checked ? link->checksum->bytes : 0u);
-    if (checked &&
-        icdgen_number(link, bytes + *frame_length, link->checksum->bytes) !=
-            icd_checksum(link, id, bytes, *frame_length)) {
-        return ICD_ERROR_CHECKSUM;
-    }
-    return ICD_OK;
-}
+ICDGEN_API icd_status_t icd_i2c_reply(
+    const icd_link_t *link, uint8_t id, const uint8_t *bytes, size_t length, bool checked, size_t *frame_length);
 
 #endif /* ICDGEN_WIRE_I2C_H */

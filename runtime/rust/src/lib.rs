@@ -5,6 +5,10 @@
 #![warn(missing_docs)]
 // What clippy's pedantic lints would have otherwise, and why it is so:
 #![allow(
+    // a user sees most names without the module's, which re-exports them (pedantic until Rust 1.85);
+    clippy::module_name_repetitions,
+    // `put` puts into `out`;
+    clippy::similar_names,
     // a state says what it does, whatever others do;
     clippy::match_same_arms,
     // flags of a client are not states of a machine;

@@ -12,4 +12,4 @@ def build(source: Path, out: Path) -> list[str]:
     return ["node", str(source / "js-testee" / "testee.js")]
 
 
-LANGUAGES = [Language("javascript", ("js-testee",), ("node",), build, front=False)]
+LANGUAGES = [Language("javascript", ("js-testee",), ("node",), build)]

@@ -1,4 +1,4 @@
-"""The JavaScript testee: a program for Node that answers the requests of the conformance run about the codec of the site.
+"""The JavaScript testee: a program for Node that is asked about the codec of the site.
 
 The codec is the very file that the pages load, and the plans are those that they hold.
 """
@@ -11,7 +11,7 @@ from pathlib import PurePosixPath
 
 from icdgen.backends import Identifier
 from icdgen.backends.html.plan import enum_plan, message_plan
-from icdgen.icd.model import Icd, Message, Node
+from icdgen.icd.model import Icd, Message
 from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
 
@@ -27,33 +27,39 @@ class JsTesteeBackend:
     def files(self, icd: Icd, render) -> Iterator[tuple[PurePosixPath, str]]:
         """``testee.js`` and what it needs."""
         yield PurePosixPath("codec.js"), Renderer("html")("codec.js")
-        for name in ("json.js", "testee.js"):
-            yield PurePosixPath(name), render(name)
-        nodes = [_node(icd, node) for node in icd.nodes]
-        yield PurePosixPath("nodes.json"), json.dumps(nodes, separators=(",", ":")) + "\n"
+        yield PurePosixPath("testee.js"), render("testee.js")
+        yield PurePosixPath("nodes.json"), json.dumps(_plans(icd), separators=(",", ":")) + "\n"
 
     def identifiers(self, icd: Icd) -> Iterator[Identifier]:
         """None: JSON strings may hold any name."""
         return iter(())
 
 
-def _node(icd: Icd, node: Node) -> dict[str, object]:
-    return {
-        "name": node.name,
-        "node_type": node.node_type,
-        "interface_version": node.interface_version,
-        "speaks": [one.name for one in (*icd.included(node), node)],
-        "enums": [[enum.name, enum_plan(enum)] for enum in node.enums],
-        "messages": [_message(message, node) for message in node.messages],
-    }
+def _plans(icd: Icd) -> dict[str, object]:
+    """The plans of all messages, and for each node its enumerations and the messages by id, of telecommands and of telemetry."""
+    places = {(one.node, one.name): place for place, one in enumerate(_messages(icd))}
+    nodes = []
+    for node in icd.nodes:
+        spoken = {places[one.node, one.name]: one for one in icd.messages_of(node)}
+        nodes.append(
+            {
+                "facts": {"node_type": node.node_type, "interface_version": node.interface_version},
+                "enums": [enum_plan(enum) for enum in node.enums],
+                "ways": [
+                    {one.telecommand_id: place for place, one in spoken.items() if one.telecommand_id is not None},
+                    {one.telemetry_id: place for place, one in spoken.items() if one.telemetry_id is not None},
+                ],
+            }
+        )
+    declaring = {node.name: node for node in icd.nodes}
+    plans = []
+    for message in _messages(icd):
+        plan: dict = message_plan(message, declaring[message.node])
+        for field, row in zip(message.fields, plan["fields"], strict=True):
+            row |= {"enum": enum_plan(field.enum)} if field.enum else {}
+        plans.append(plan | {"ids": list(message.ids)})
+    return {"messages": plans, "nodes": nodes}
 
 
-def _message(message: Message, node: Node) -> dict[str, object]:
-    ways = {
-        "telecommand": message.telecommand_id,
-        "telemetry": message.telemetry_id,
-        "set": message.set_id,
-        "get": message.get_id,
-    }
-    present = {way: id for way, id in ways.items() if id is not None}
-    return message_plan(message, node) | {"ids": list(message.ids), "ways": present}
+def _messages(icd: Icd) -> Iterator[Message]:
+    return (message for node in icd.nodes for message in node.messages)

@@ -28,6 +28,7 @@ class Look:
     caption_below: bool = False
     mark: str = ": "
     caption_style: str = "B"
+    caption_slant: float = 0  # degrees that the letters lean, for want of an italic font
     figures: str = "LEFT"
     two_lines: bool = False
     padding: float = 1.0
@@ -98,7 +99,8 @@ class _Artist:
 
     def caption(self, part) -> None:
         self.font(self.look.caption_style)
-        self.pdf.multi_cell(0, 5, f"Table {part.number}{self.look.mark}{part.title}", new_x="LMARGIN", new_y="NEXT")
+        with self.pdf.skew(ax=self.look.caption_slant, x=self.pdf.x, y=self.pdf.y):
+            self.pdf.multi_cell(0, 5, f"Table {part.number}{self.look.mark}{part.title}", new_x="LMARGIN", new_y="NEXT")
         self.pdf.ln(1)
 
     def prose(self, part: Prose) -> None:

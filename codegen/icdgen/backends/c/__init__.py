@@ -1,4 +1,4 @@
-"""C99 headers: one a message, one a node, one of the enumerations of a node, and one for support."""
+"""C99: headers of messages, nodes, enumerations and support, and the sources of the wire layer and of links."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from icdgen.backends import Identifier
 from icdgen.backends.c import accessors, bits, constants, decoding, encoding, names, types
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.reserved_words import RESERVED
-from icdgen.backends.c.runtime import header
+from icdgen.backends.c.runtime import whole
 from icdgen.backends.c.statement import call, define, head
 from icdgen.backends.c.text import comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
-from icdgen.describe.comments import sentence, words
+from icdgen.describe.comments import sentence, text_comment, words
 from icdgen.describe.numbers import byte_count
 from icdgen.icd.model import Icd
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 _SPELLING = (
     byte_count, call, comment, define, described, head, literal, prose, names.constant, names.enumerator, names.stem,
+    text_comment, words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}
 """What templates spell names and text with."""
@@ -35,17 +36,21 @@ class CBackend:
 
     name = "c"
     reserved = RESERVED
+    significant = 63  # characters of a name that C99 warrants to tell it from others
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
-        """Every header, the support header first, then node by node."""
+        """Every file, the support header first, then node by node."""
         first = f"/* {origin()} */\n"
-        yield PurePosixPath("icdgen.h"), first + header("icdgen.h", {}, render)
+        yield PurePosixPath("icdgen.h"), first + whole("icdgen.h", {}, render)
         description = describe(icd)
+        if _is_wide(description):
+            yield PurePosixPath("icdgen_wide.h"), first + whole("icdgen_wide.h", {}, render)
         links = _links(description)
         if links:
             step_bytes = max(1, *(link.longest_step for link in links.values()))
             made = {"wire/sizes.h": render("sizes.h.j2", step_bytes=step_bytes)}
-            yield PurePosixPath("icdgen_wire.h"), first + header("icdgen_wire.h", made, render)
+            yield PurePosixPath("icdgen_wire.h"), first + whole("icdgen_wire.h", made, render)
+            yield PurePosixPath("icdgen_wire.c"), first + whole("icdgen_wire.c", {}, render)
         for node in description.nodes:
             folder = PurePosixPath(node.name)
             shared = {"origin": origin(node.model), "title": prose(words(node.model.title)), **_FUNCTIONS}
@@ -55,7 +60,9 @@ class CBackend:
             for message in node.messages:
                 yield folder / f"{message.name}.h", render("message.h.j2", m=message, **_message(message), **shared)
             if node.name in links:
-                yield folder / "link.h", render("link.h.j2", **_link(node, links[node.name]), **shared)
+                link = {**_link(node, links[node.name]), **shared}
+                yield folder / "link.h", render("link.h.j2", **link)
+                yield folder / "link.c", render("link.c.j2", **link)
             values = {**_node(node), "id_type": f"uint{description.id_bits}_t"}
             yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", node=node, **values, **shared)
 
@@ -70,7 +77,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
     about = message.comment
     return {
         "about": comment(["@file", about.head, *about.rest, *noted(about)]),
-        "includes": ["../icdgen.h", *enums],
+        "includes": ["../icdgen_wide.h" if message.has_wide_steps else "../icdgen.h", *enums],
         "constants": constants.of_fields(message),
         "initial": constants.initial(message),
         "declaration": types.declaration,
@@ -82,6 +89,11 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "whole_accessors": accessors.whole_accessors(message),
         "accessors": accessors.accessors(message),
     }
+
+
+def _is_wide(description: Description) -> bool:
+    """Whether a formula needs more than the support header computes with."""
+    return any(message.has_wide_steps for node in description.nodes for message in node.messages)
 
 
 def _links(description: Description) -> dict[str, LinkDescription]:

@@ -13,7 +13,7 @@ FILE = "C names at file scope"
 FILES = "C header files"
 
 _STATUS = ("LENGTH", "RANGE", "UNKNOWN_ID", "UNSUPPORTED", "CHECKSUM", "BUSY")
-_SUPPORT = ("icd_status_t", "ICD_OK", *(f"ICD_ERROR_{end}" for end in _STATUS))
+_SUPPORT = ("ICDGEN_SHARED", "icd_status_t", "ICD_OK", *(f"ICD_ERROR_{end}" for end in _STATUS))
 _SIZES = ("LONGEST", "CAN_SLOT_BYTES", "CLIENT_BYTES", "LOG_BYTES", "BLOCK_BYTES", "BLOCK_BITMAP_BYTES")
 
 
@@ -22,7 +22,9 @@ def declared_names(description: Description) -> Iterator[Identifier]:
     for name in _SUPPORT:
         yield Identifier(FILE, name, "the support header", None)
     yield Identifier(FILES, "icdgen.h", "the support header", None)
-    yield Identifier(FILES, "icdgen_wire.h", "the wire layer", None)
+    yield Identifier(FILES, "icdgen_wide.h", "formulas of many digits", None)
+    for end in ("h", "c"):
+        yield Identifier(FILES, f"icdgen_wire.{end}", "the wire layer", None)
     for node in description.nodes:
         yield from _node(node)
         if node.is_linked:
@@ -54,9 +56,10 @@ def _node(node: NodeDescription) -> Iterator[Identifier]:
 
 def _link(node: NodeDescription) -> Iterator[Identifier]:
     owner, source = f"the link of node `{node.name}`", node.model.source
-    yield Identifier(FILES, f"{node.name}/link.h", owner, source)
+    for end in ("h", "c"):
+        yield Identifier(FILES, f"{node.name}/link.{end}", owner, source)
     yield Identifier(FILE, f"{node.name}_link", owner, source)
-    for end in (*_SIZES, "NODE", "LINK_H"):
+    for end in (*_SIZES, "NODE", "LINK_H", "LINK_C"):
         yield Identifier(FILE, f"{node.name.upper()}_{end}", owner, source)
 
 
@@ -73,12 +76,12 @@ def _message(message: MessageDescription, linked: bool) -> Iterator[Identifier]:
         yield field.identifier(members, field.name)
         for one in field.constants:
             yield field.identifier(FILE, names.constant(message, one.name))
-        for end in _physical_names(field) if field.steps is not None else ():
+        for end in _physical_names(field) if field.has_physical else ():
             yield field.identifier(FILE, f"{stem}_{end}")
             yield field.identifier(FILE, f"{stem}_set_{end}")
 
 
 def _physical_names(field: FieldDescription) -> tuple[str, ...]:
-    """What its accessors are called by: the physical value as a double, and in whole parts of its unit."""
-    whole = physical.scaled(field).whole
+    """What its accessors are called by: the physical value as a text or a double, and in whole parts of its unit."""
+    whole = None if field.is_text else physical.scaled(field).whole
     return (field.physical_name,) if whole is None else (field.physical_name, whole_name(field, whole))

@@ -266,8 +266,7 @@ class _Tables:
 
     def procedure(self, name: str) -> str:
         """A procedure of file transfer."""
-        files = self.known.files
-        return self.part(name, files and files.procedures.get(name), f"file_transfer.{name}")
+        return self.part(name, getattr(self.known.files, name, None), f"file_transfer.{name}")
 
 
 def _short(messages: Iterable[SentMessage]) -> list[SentMessage]:

@@ -1,4 +1,4 @@
-"""The headers of the runtime, each as one file: in the runtime they are made of parts, which a user need not see."""
+"""The files of the runtime, each as one: in the runtime they are made of parts, which a user need not see."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from collections.abc import Mapping
 
 from icdgen.render import Renderer
 
-_PART = re.compile(r'^#include "(?P<file>\w+/\w+\.h)"\n', re.MULTILINE)
+_PART = re.compile(r'^#include "(?P<file>\w+/\w+\.[ch])"\n', re.MULTILINE)
 _GUARDED = re.compile(
-    r"\s*#ifndef (?P<guard>\w+_H)\n#define (?P=guard)\n\n"
+    r"\s*#ifndef (?P<guard>\w+_[CH])\n#define (?P=guard)\n\n"
     r"(?:(?:#include \"[^\n]*\n)+\n)?(?P<body>.*)\n#endif /\* (?P=guard) \*/\s*",
     re.DOTALL,
 )
 
 
-def header(file: str, made: Mapping[str, str], render: Renderer) -> str:
-    """The text of a header with its parts in place. ``made`` are those that come from the ICD, instead of the runtime's samples."""
+def whole(file: str, made: Mapping[str, str], render: Renderer) -> str:
+    """The text of a file with its parts in place. ``made`` are those that come from the ICD, instead of the runtime's samples."""
 
     def part(include: re.Match[str]) -> str:
         name = include["file"]

@@ -11,7 +11,6 @@ from icdgen.backends.html.relations import Relations
 from icdgen.backends.html.usage import names, snippets
 from icdgen.describe import describe
 from icdgen.describe.errata import errata_of_message
-from icdgen.describe.fresh import fresh_values
 from icdgen.icd import wire_ids
 from icdgen.icd.model import Message, Node
 
@@ -79,7 +78,7 @@ def _fresh(message: Message, node: Node) -> bytes:
     """The frame of a new message: zeros, and what is constant."""
     from icdgen import codec
 
-    return codec.encode(node, message, fresh_values(message))
+    return codec.encode(node, message, message.fresh)
 
 
 def _pictures(message: Message, node: Node, anchors: list[str], parts: list[sections.Section]) -> list[drawing.Drawing]:

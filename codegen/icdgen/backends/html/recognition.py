@@ -42,7 +42,7 @@ def _speaker(relations: Relations, node: Node, numbers: dict[tuple[str, str], in
         "errors": {str(code): key.replace("_", " ") for key, code in known.errors.items()},
     }
     found |= wire.framing_facts(known)
-    if known.checksum and known.checksum.crc.width == 8:
+    if known.checksum:
         found["crc"] = wire.crc_facts(known)
     if known.can:
         found["can"] = wire.can_facts(known.can)

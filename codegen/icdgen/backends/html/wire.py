@@ -73,7 +73,7 @@ def page_facts(message: Message, wire: Wire) -> dict[str, object]:
         "id": message.telecommand_id if message.telecommand_id is not None else message.telemetry_id,
         "command": message.telecommand_id is not None,
         "telemetry": message.telemetry_id,
-        "crc": [crc_facts(one.facts) for one in wire.checked if one.section["crc8"]["width"] == 8],
+        "crc": [crc_facts(one.facts) for one in wire.checked],
     }
     facts |= framing_facts(wire.facts)
     if wire.facts.can:
@@ -110,11 +110,12 @@ def can_facts(form: Can) -> dict[str, object]:
 
 
 def crc_facts(facts: Facts) -> dict[str, object]:
-    """Parameters of the checksum of messages, and whether it covers the id."""
+    """Parameters of the checksum of messages, its bytes and their order, and whether it covers the id."""
     form = facts.checksum
     assert form is not None
-    found = {key: value for key, value in asdict(form.crc).items() if value is not None}
-    return found | ({"covers_id": True} if form.covers_id else {})
+    found = {key: value for key, value in asdict(form.crc).items() if value is not None} | {"bytes": form.bytes}
+    told = {"covers_id": form.covers_id, "little": facts.little and form.bytes > 1}
+    return found | {key: True for key, value in told.items() if value}
 
 
 def _hex(data: bytes) -> str:
@@ -138,8 +139,10 @@ def _check(wire: Wire, direction: str, bus: str) -> Speaker | None:
 
 
 def _crc_chunk(sent: bytes, speaker: Speaker, direction: str) -> Chunk:
+    form = speaker.facts.checksum
+    assert form is not None
     optional = speaker.section["crc8"][direction].get("optional")
-    return Chunk("crc", _hex(sent), "CRC-8" + (", optional" if optional else ""))
+    return Chunk("crc", _hex(sent), f"CRC-{form.crc.width}" + (", optional" if optional else ""))
 
 
 # UART

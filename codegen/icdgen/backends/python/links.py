@@ -8,11 +8,23 @@ from typing import Any
 from icdgen.backends.python.literals import Call, Noted, Verbatim, expression
 from icdgen.describe.links import Assumptions, LinkDescription, SentMessage
 from icdgen.protocol.declared import facts_of
-from icdgen.protocol.sections import Crc, HoleMap, LogFile, LogMessage, Settings, Step
+from icdgen.protocol.sections import (
+    Crc,
+    Download,
+    Erasure,
+    HoleMap,
+    Listing,
+    LogFile,
+    LogMessage,
+    Settings,
+    Step,
+    Upload,
+)
 
 # Types whose names in generated code are not those of the facts.
 _TYPES = {
     Settings: "Settings", Crc: "CrcForm", LogFile: "LogFileForm", LogMessage: "LogMessageForm", HoleMap: "HoleMapForm",
+    Listing: "ListForm", Download: "DownloadForm", Upload: "UploadForm", Erasure: "ErasureForm",
 }  # fmt: skip
 
 
@@ -171,16 +183,9 @@ class _Maker:
         return self.part(
             files,
             "file_transfer",
-            steps={path: self.in_procedure(path, self.step(step)) for path, step in files.steps.items()},
-            numbers={path: self.in_procedure(path, number) for path, number in files.numbers.items()},
-            packet_ids={bus: self.in_procedure(f"download.{bus}", id) for bus, id in files.packet_ids.items()},
-            destinations=files.destinations,
+            packet_ids={bus: self.noted(id, "file_transfer.download", bus) for bus, id in files.packet_ids.items()},
+            **{name: self.part(one, f"file_transfer.{name}") for name, one in files.procedures.items()},
         )
-
-    def in_procedure(self, path: str, value: object) -> object:
-        """A value of a procedure of file transfer, by its path there."""
-        procedure, _, key = path.partition(".")
-        return self.noted(value, f"file_transfer.{procedure}", key)
 
     def step(self, step: Step) -> Call:
         message = step.message

@@ -196,7 +196,7 @@ class _Literal:
             "file_transfer",
             part("packet_ids", struct("PerBus", *ids)),
             part("hole_map", some(self.hole_map())),
-            *(part(name, some(self.struct(form.procedures.get(name), f"file_transfer.{name}"))) for name in PROCEDURES),
+            *(part(name, some(self.struct(getattr(form, name), f"file_transfer.{name}"))) for name in PROCEDURES),
         )
 
     def hole_map(self) -> Brackets | None:
@@ -250,7 +250,7 @@ def _step(step: StepDescription | None, direction: str) -> Brackets | None:
         return None
     places, payload = [], None
     for role, field in step.places:
-        if field.model.type == "bytes":
+        if field.model.is_bytes:
             payload = _span(field)
         elif role not in _ONLY_POLLED and field.model.bits <= _NUMBER_BITS:
             name = Item(f"link::Role::{camel(tuple(role.split('_')))}")

@@ -61,7 +61,7 @@ def id_taken_over(ctx: Context) -> Iterator[Found]:
                     was=old.name,
                     now=new.name,
                     details=(f"Old software takes one for the other.{same}",),
-                    where=come.where(),
+                    pair=come,
                     places=(gone.places(_ID)[0], come.places(_ID)[1]),
                 )
 
@@ -120,19 +120,13 @@ def node_added(pair: NodePair, ctx: Context) -> Iterator[Found]:
 
 
 @rule("DIF132", "node")
-def speaks_less(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    names = [m.name for m in ctx.unspoken(pair, 0)]
-    if names:
-        text = f"`{pair.new.name}` no longer speaks {some(names, 'message')}"
-        yield Found(text, ("include",), count(len(names), "message"), "", _INCLUDES)
-
-
 @rule("DIF133", "node", severity="note", addition=True)
-def speaks_more(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    names = [m.name for m in ctx.unspoken(pair, 1)]
-    if names:
-        text = f"`{pair.new.name}` speaks {some(names, 'message')} too"
-        yield Found(text, ("include",), "", count(len(names), "message"), _INCLUDES)
-
-
-_INCLUDES = ("They are still there, and declared or included elsewhere.",)
+def speaks_others(pair: NodePair, ctx: Context) -> Iterator[Found]:
+    details = ("They are still there, and declared or included elsewhere.",)
+    less, more = ([m.name for m in ctx.unspoken(pair, side)] for side in (0, 1))
+    if less:
+        text = f"`{pair.new.name}` no longer speaks {some(less, 'message')}"
+        yield Found(text, ("include",), count(len(less), "message"), "", details, code="DIF132")
+    if more:
+        text = f"`{pair.new.name}` speaks {some(more, 'message')} too"
+        yield Found(text, ("include",), "", count(len(more), "message"), details, code="DIF133")

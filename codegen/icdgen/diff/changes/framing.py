@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diff.context import Context
-from icdgen.diff.facts import Fact, facts, shown
+from icdgen.diff.facts import facts, shown
 from icdgen.diff.pairs import NodePair, differing, place_of
 from icdgen.diff.rule import Found, rule
 from icdgen.icd.model import Loggable
@@ -14,67 +14,49 @@ from icdgen.icd.rules.wording import quote
 LONGEST = 80
 
 
-def _found(pair: NodePair, fact: Fact, said: str) -> Found:
-    where = pair.where()._replace(section=fact.path)
-    was, now = _short(shown(fact.old)), _short(shown(fact.new))
-    text = f"`{fact.path}` {said.format(was=was, now=now)}"
-    return Found(text, (fact.path.rsplit(".", 1)[-1],), was, now, where=where, places=fact.places)
-
-
 def _short(text: str) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
 @rule("DIF120", "node")
-def fact_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    for fact in facts(pair.old, pair.new):
-        if not fact.is_word and fact.old is not None and fact.new is not None:
-            yield _found(pair, fact, "is {now}, was {was}")
-
-
 @rule("DIF121", "node", severity="warning")
-def fact_stated(pair: NodePair, ctx: Context) -> Iterator[Found]:
+@rule("DIF413", "node", severity="note")
+def fact_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
     for fact in facts(pair.old, pair.new):
-        if not fact.is_word and (fact.old is None) != (fact.new is None):
-            yield _found(
-                pair, fact, "is no longer stated; it was {was}" if fact.new is None else "is stated now: {now}"
-            )
-
-
-def _mask_bits(pair: NodePair) -> Iterator[tuple[int, Loggable | None, Loggable | None]]:
-    """Bits of the log mask that select another frame, one where there was none, or none any more."""
-    for bit, old, new in differing(pair.old.loggable, pair.new.loggable, lambda row: row.bit):
-        if old is None or new is None or old.id != new.id:
-            yield bit, old, new
-
-
-def _mask_bit(pair: NodePair, bit: int, old: Loggable | None, new: Loggable | None, said: str) -> Found:
-    where = pair.where()._replace(section=f"loggable {bit}")
-    places = (place_of(old, ("id",)), place_of(new, ("id",)))
-    was, now = (f"telemetry {row.id}" if row else "" for row in (old, new))
-    return Found(f"log mask bit {bit} {said}", ("id",), was, now, where=where, places=places)
-
-
-def _frame(row: Loggable) -> str:
-    return f"telemetry {row.id}" + (f" {quote(row.name)}" if row.name else "")
+        was, now = shown(fact.old), shown(fact.new)
+        keys: tuple[str, ...] = (fact.path.rsplit(".", 1)[-1],)
+        if fact.is_word:
+            code, said, keys = "DIF413", "says otherwise", ()
+        else:
+            was, now = _short(was), _short(now)
+            if fact.new is None:
+                code, said = "DIF121", f"is no longer stated; it was {was}"
+            elif fact.old is None:
+                code, said = "DIF121", f"is stated now: {now}"
+            else:
+                code, said = "DIF120", f"is {now}, was {was}"
+        where = pair.where()._replace(section=fact.path)
+        yield Found(f"`{fact.path}` {said}", keys, was, now, where=where, places=fact.places, code=code)
 
 
 @rule("DIF122", "node")
-def mask_bit_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    for bit, old, new in _mask_bits(pair):
-        if old and new:
-            yield _mask_bit(pair, bit, old, new, f"selects {_frame(new)}, selected {_frame(old)}")
-
-
 @rule("DIF123", "node")
-def mask_bit_removed(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    for bit, old, new in _mask_bits(pair):
-        if old and not new:
-            yield _mask_bit(pair, bit, old, new, f"no longer selects {_frame(old)}")
-
-
 @rule("DIF124", "node", severity="note", addition=True)
-def mask_bit_added(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    for bit, old, new in _mask_bits(pair):
-        if new and not old:
-            yield _mask_bit(pair, bit, old, new, f"selects {_frame(new)}")
+def mask_bit_differs(pair: NodePair, ctx: Context) -> Iterator[Found]:
+    for bit, old, new in differing(pair.old.loggable, pair.new.loggable, lambda row: row.bit):
+        if new is None:
+            code, said = "DIF123", f"no longer selects {_frame(old)}"
+        elif old is None:
+            code, said = "DIF124", f"selects {_frame(new)}"
+        elif old.id != new.id:
+            code, said = "DIF122", f"selects {_frame(new)}, selected {_frame(old)}"
+        else:
+            continue  # it is only called otherwise
+        where = pair.where()._replace(section=f"loggable {bit}")
+        places = (place_of(old, ("id",)), place_of(new, ("id",)))
+        was, now = (f"telemetry {row.id}" if row else "" for row in (old, new))
+        yield Found(f"log mask bit {bit} {said}", ("id",), was, now, where=where, places=places, code=code)
+
+
+def _frame(row: Loggable | None) -> str:
+    return "" if row is None else f"telemetry {row.id}" + (f" {quote(row.name)}" if row.name else "")

@@ -8,48 +8,38 @@ from icdgen.diff.context import Context, free_before
 from icdgen.diff.moves import Move
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind, orders
 from icdgen.diff.rule import Found, rule
+from icdgen.diff.where import Places
 from icdgen.diff.wording import bits, some, span, type_of
 from icdgen.icd.rules.wording import count, listing, quote
 from icdgen.icd.wire_ids import size
 
 
 @rule("DIF107", "message")
-def field_moved(pair: MessagePair, ctx: Context) -> Iterator[Found]:
-    for move in ctx.moves(pair).moves:
-        if len(move.fields) == 1 and not move.is_shift:
-            one = move.fields[0]
-            text = f"{quote(one.new.name)} is at bit {one.new.at:,}, was at bit {one.old.at:,}"
-            yield Found(
-                text, (), f"bit {one.old.at}", f"bit {one.new.at}", where=one.where(), places=one.places(("at",))
-            )
-
-
 @rule("DIF108", "message")
-def fields_shifted(pair: MessagePair, ctx: Context) -> Iterator[Found]:
-    for move in ctx.moves(pair).moves:
-        if move.is_shift:
-            yield _moved(
-                pair, move, f"{_cause(move)}: {_fields(move)} {_by(move)}", move.gained + move.lost + move.resized
-            )
-
-
 @rule("DIF109", "message")
-def block_moved(pair: MessagePair, ctx: Context) -> Iterator[Found]:
+def fields_moved(pair: MessagePair, ctx: Context) -> Iterator[Found]:
     for move in ctx.moves(pair).moves:
-        if len(move.fields) > 1 and not move.is_shift:
-            yield _moved(pair, move, f"{_fields(move)} moved as a block: they {_by(move)}", [])
+        first, last = move.fields[0], move.fields[-1]
+        if move.is_shift:
+            code, text = "DIF108", f"{_cause(move)}: {_fields(move)} {_by(move)}"
+        elif first is last:
+            code, text = "DIF107", f"{quote(first.new.name)} is at bit {first.new.at:,}, was at bit {first.old.at:,}"
+        else:
+            code, text = "DIF109", f"{_fields(move)} moved as a block: they {_by(move)}"
+        causes = move.gained + move.lost + move.resized
+        details = () if first is last else (f"From {quote(first.new.name)} to {quote(last.new.name)}.",)
+        where = causes[0].where() if causes else first.where() if first is last else pair.where()
+        was, now = f"bit {first.old.at}", f"bit {first.new.at}"
+        yield Found(text, (), was, now, details, where=where, places=_places(first, causes), code=code)
 
 
-def _moved(pair: MessagePair, move: Move, text: str, causes: list[FieldPair]) -> Found:
-    first = move.fields[0]
+def _places(first: FieldPair, causes: list[FieldPair]) -> Places:
+    """Where the first field stands that moved, or what made it move."""
     old, new = first.places(("at",))
     for cause in causes:
         one, other = cause.places(("at", "bits"))
         old, new = (one if cause.before is not None else old), (other if cause.after is not None else new)
-    names = [p.new.name for p in move.fields]
-    details = (f"From {quote(names[0])} to {quote(names[-1])}.",) if len(names) > 1 else ()
-    where = causes[0].where() if causes else first.where() if len(names) == 1 else pair.where()
-    return Found(text, (), f"bit {first.old.at}", f"bit {first.new.at}", details, where=where, places=(old, new))
+    return old, new
 
 
 def _fields(move: Move) -> str:

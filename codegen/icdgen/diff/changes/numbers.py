@@ -10,36 +10,24 @@ from icdgen.diff.pairs import FieldPair, differing
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.similar import same_sense
 from icdgen.diff.wording import formula, number
-from icdgen.icd.formula import RAW, Scale
+from icdgen.icd.formula import RAW
 from icdgen.icd.model import Field, Limits
 from icdgen.icd.rules.wording import quote
 
 
-def _scales(pair: FieldPair) -> tuple[Scale, Scale]:
-    return pair.old.scale or RAW, pair.new.scale or RAW
-
-
-def _is_turned(old: Scale, new: Scale) -> bool:
-    return old.factor == -new.factor
-
-
 @rule("DIF201", "field")
-def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    old, new = _scales(pair)
-    if old == new or _is_turned(old, new):
-        return
-    details = (f"The same bits give {number(new.factor / old.factor)} times the value.",)
-    text = f"the value of {quote(pair.new.name)} is {formula(new)}, was {formula(old)}"
-    same_offset = old.offset == new.offset
-    yield Found(text, ("formula", "unit"), formula(old), formula(new), details if same_offset else ())
-
-
 @rule("DIF203", "field")
-def sign_turned(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    old, new = _scales(pair)
-    if _is_turned(old, new):
-        text = f"the sign of {quote(pair.new.name)} is turned: {formula(new)}, was {formula(old)}"
-        yield Found(text, ("formula",), formula(old), formula(new))
+def scale_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    old, new = pair.old.scale or RAW, pair.new.scale or RAW
+    was, now = formula(old), formula(new)
+    if old.factor == -new.factor:
+        text = f"the sign of {quote(pair.new.name)} is turned: {now}, was {was}"
+        yield Found(text, ("formula",), was, now, code="DIF203")
+    elif old != new:
+        text = f"the value of {quote(pair.new.name)} is {now}, was {was}"
+        times = f"The same bits give {number(new.factor / old.factor)} times the value."
+        details = (times,) if old.offset == new.offset else ()
+        yield Found(text, ("formula", "unit"), was, now, details, code="DIF201")
 
 
 @rule("DIF202", "field")
@@ -65,19 +53,20 @@ def const_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
 
 
 @rule("DIF210", "field", severity="warning")
+@rule("DIF412", "field", severity="note")
 def special_changed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     for value, old, new in differing(pair.old.special, pair.new.special, lambda one: one.value):
         was, now = old.meaning if old else "", new.meaning if new else ""
-        if was and now and same_sense(was, now):
-            continue
-        said = f"the raw value {value} of {quote(pair.new.name)}"
+        code, text = "DIF210", f"the raw value {value} of {quote(pair.new.name)}"
         if not was:
-            text = f"{said} stands for {quote(now)} now"
+            text += f" stands for {quote(now)} now"
         elif not now:
-            text = f"{said} no longer stands for {quote(was)}"
+            text += f" no longer stands for {quote(was)}"
+        elif same_sense(was, now):
+            code, text = "DIF412", f"what {value} of {quote(pair.new.name)} stands for is spelled otherwise"
         else:
-            text = f"{said} stands for {quote(now)}, stood for {quote(was)}"
-        yield Found(text, ("special",), was, now)
+            text += f" stands for {quote(now)}, stood for {quote(was)}"
+        yield Found(text, ("special",), was, now, code=code)
 
 
 def _limits(field: Field) -> str:

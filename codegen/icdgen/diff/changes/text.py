@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from icdgen.diff.context import Context
-from icdgen.diff.facts import facts, shown
 from icdgen.diff.pairs import (
     EnumPair,
-    FieldPair,
     IdentifiedPair,
     MessagePair,
     NodePair,
@@ -19,7 +17,6 @@ from icdgen.diff.pairs import (
     place_of,
 )
 from icdgen.diff.rule import Found, rule
-from icdgen.diff.similar import same_sense
 from icdgen.diff.where import Places
 from icdgen.icd.rules.wording import quote
 
@@ -110,23 +107,6 @@ def order_restated(pair: NodePair, ctx: Context) -> Iterator[Found]:
     was, now = (" ".join(orders(side)) for side in (pair.old, pair.new))
     text = f"the order of bytes and bits of `{pair.new.name}` is stated otherwise, no field is read otherwise"
     yield Found(text, ("byte_order", "bit_order"), was, now)
-
-
-@rule("DIF412", "field", severity="note")
-def special_respelled(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    for value, old, new in differing(pair.old.special, pair.new.special, lambda one: one.value):
-        if old and new and same_sense(old.meaning, new.meaning):
-            text = f"what {value} of {quote(pair.new.name)} stands for is spelled otherwise"
-            yield Found(text, ("special",), old.meaning, new.meaning)
-
-
-@rule("DIF413", "node", severity="note")
-def protocol_words(pair: NodePair, ctx: Context) -> Iterator[Found]:
-    for fact in facts(pair.old, pair.new):
-        if fact.is_word:
-            where = pair.where()._replace(section=fact.path)
-            text = f"`{fact.path}` says otherwise"
-            yield Found(text, (), shown(fact.old), shown(fact.new), where=where, places=fact.places)
 
 
 @rule("DIF414", "node", severity="note")

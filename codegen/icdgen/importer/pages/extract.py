@@ -26,7 +26,7 @@ class Word(NamedTuple):
     x1: float
     bottom: float
     size: float
-    style: str  # font and colour, to tell captions and headings from text
+    style: str  # font, slant and colour, to tell captions and headings from text
 
     @property
     def middle(self) -> float:
@@ -126,6 +126,9 @@ class _Shift(NamedTuple):
 def _char(thing: Any, shift: _Shift) -> dict[str, Any]:
     """A character as pdfplumber puts them together to words."""
     x0, top, x1, bottom = shift.box(thing)
+    if thing.upright and _slanted(thing):  # its box leans over the next character's
+        x0 = thing.matrix[4] + shift.x
+        x1 = x0 + thing.adv * thing.matrix[0]
     return {"text": thing.get_text(), "x0": x0, "x1": x1, "top": top, "bottom": bottom, "doctop": top,
             "upright": thing.upright, "size": thing.size, "from": thing}  # fmt: skip
 
@@ -154,7 +157,13 @@ def _style(char: Any) -> str:
     if isinstance(name, bytes):
         name = name.decode("utf-8", "replace")
     shade = " ".join(f"{v:.2f}" for v in _values(char.graphicstate.ncolor) if isinstance(v, (int, float)))
-    return f"{name.rsplit('+', 1)[-1]} {shade}"
+    return f"{name.rsplit('+', 1)[-1]} {shade}{' slanted' if _slanted(char) else ''}"
+
+
+def _slanted(char: Any) -> bool:
+    """Whether it is an upright font's, made italic by its matrix: what writers do that lack the italic font."""
+    a, b, c, _, _, _ = char.matrix
+    return not b and abs(c) > 0.1 * abs(a)
 
 
 def _values(colour: Any) -> tuple[Any, ...]:

@@ -33,7 +33,7 @@ class Units(NamedTuple):
 
 def decide(header: Header, rows: list[Extent], length: int | None, profile: Profile) -> Units | None:
     """The units of the table's offsets and widths; None where nothing tells."""
-    at, width = _said(header, "at", profile), _said(header, "bits", profile)
+    at, width = _unit_of_column(header, "at", profile), _unit_of_column(header, "bits", profile)
     has_widths = "bits" in header.roles or "bits_bytes" in header.roles
     if not has_widths:
         width = at  # ranges of positions
@@ -57,7 +57,7 @@ def decide(header: Header, rows: list[Extent], length: int | None, profile: Prof
     return ranked[0][1]
 
 
-def _said(header: Header, role: str, profile: Profile) -> int:
+def _unit_of_column(header: Header, role: str, profile: Profile) -> int:
     """The unit that the column's heading says, or the profile; 0 where neither does."""
     for name, bits in ((f"{role}_bytes", 8), (role, 1)):
         if name in header.roles:

@@ -106,13 +106,7 @@ class FileNode:
             return self._packet(position)
         name, step = self.steps[id]
         busy, self.polls = int(self.polls > 0), max(0, self.polls - 1)
-        return self.frame(step, self._values_of(name, busy))
-
-    def frame(self, step: Step, values: dict[str, Any]) -> bytes:
-        """The frame of a step that says this by role."""
-        raw = {f.name: bytes(f.bits // 8) if f.type == "bytes" else 0 for f in step.message.fields}
-        raw.update({step.fields[role]: value for role, value in values.items()})
-        return codec.encode(self.known.node, step.message, raw)
+        return step.frame(self.known.node, self._values_of(name, busy))
 
     def _sum(self, data: bytes) -> int:
         assert self.known.crc16

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from icdgen import codec
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import Operation
 from icdgen.vectors.wire import Requests
@@ -52,12 +51,8 @@ class _Frames:
         step = self.form.progress
         bits = {field.name: field.bits for field in step.message.fields}
         told = {"busy": int(not done), "ready": int(done), "program": self.program, **values}
-        raw: dict[str, int | bytes] = {
-            field.name: bytes(field.bits // 8) if field.type == "bytes" else field.const or 0
-            for field in step.message.fields
-        }
-        raw |= {name: told.get(role, 0) & (1 << bits[name]) - 1 for role, name in step.fields.items()}
-        frame = codec.encode(self.known.node, step.message, raw)
+        given = {role: told.get(role, 0) & (1 << bits[name]) - 1 for role, name in step.fields.items()}
+        frame = step.frame(self.known.node, given)
         return {"at": at, "event": {"event": "done", "bytes": frame.hex()}}
 
 

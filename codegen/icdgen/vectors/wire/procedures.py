@@ -8,7 +8,7 @@ from typing import Any
 from icdgen.protocol import transfer
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.scripts import LONGEST, procedure_of
-from icdgen.protocol.sections import UART
+from icdgen.protocol.sections import UART, Upload
 from icdgen.vectors.wire import Requests
 from icdgen.vectors.wire.node import FileNode
 from icdgen.vectors.wire.operations import neighbours
@@ -45,26 +45,25 @@ def scripts(known: Facts) -> Requests:
     form = known.files
     if not form or not known.hole_map or not known.crc16:
         return
-    if {"list.reset", "list.advance", "list.information"} <= set(form.steps):
+    if form.list:
         yield from _lists(known)
-    if {"download.load", "download.ready", "download.burst"} <= set(form.steps):
+    if form.download:
         yield from _downloads(known)
-    if "upload.packet" in form.steps:
-        yield from _uploads(known)
+    if form.upload:
+        yield from _uploads(known, form.upload)
     else:
         request = {"op": "file", "do": "upload", "destination": 3, "bytes": "00", "script": [{"at": 0}]}
         yield "the node takes no uploads", request
-    if {"erase.request", "erase.progress"} <= set(form.steps):
+    if form.erase:
         for all_ in (False, True):
             yield from _recorded(known, "erased", {"do": "erase", "type": 2, "counter": 3, "all": all_}, 0.0)
-    if {"format.request", "format.progress"} <= set(form.steps):
+    if form.format:
         yield from _recorded(known, "formatted", {"do": "format"}, 0.0)
         refusal = {"event": "refused", "code": 3}
         yield "refused", {"op": "file", "do": "format", "script": [{"at": 0}, {"at": 1, "event": refusal}]}
         busy = [{"at": 0}, {"at": 1, "event": {"event": "done", "bytes": ""}}]
-        late = form.numbers["format.timeout_ms"] + 1
-        frame = b"\xff".ljust(form.steps["format.progress"].message.length, b"\0").hex()
-        for at in (2, 2 + form.numbers["format.poll_interval_ms"], late):
+        frame = b"\xff".ljust(form.format.progress.message.length, b"\0").hex()
+        for at in (2, 2 + form.format.poll_interval, form.format.timeout + 1):
             busy += [{"at": at}, {"at": at, "event": {"event": "done", "bytes": frame}}]
         yield "busy for ever", {"op": "file", "do": "format", "script": busy}
 
@@ -116,10 +115,9 @@ class _Wrong(FileNode):
         return super()._sum(data) ^ 1
 
 
-def _uploads(known: Facts) -> Requests:
+def _uploads(known: Facts, form: Upload) -> Requests:
     assert known.files
-    size, most = known.files.packet_bytes, known.files.numbers.get("upload.destination_bytes")
-    allowed = known.files.destinations
+    size, most, allowed = known.files.packet_bytes, form.destination_bytes, form.destinations
     destination = allowed[0] if allowed else 3
     first = {"op": "file", "do": "upload", "destination": destination, "bytes": "00", "script": [{"at": 0}]}
     for number in allowed:

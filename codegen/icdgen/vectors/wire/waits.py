@@ -6,20 +6,19 @@ from collections.abc import Iterator
 from random import Random
 from typing import Any
 
-from icdgen import codec
 from icdgen.protocol import i2c
 from icdgen.protocol.client import TELEMETRY
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.scripts import procedure_of
-from icdgen.protocol.sections import CAN, I2C, UART
+from icdgen.protocol.sections import CAN, I2C, UART, Step
 from icdgen.vectors.wire import Requests
 from icdgen.vectors.wire.node import FileNode
 
 Script = list[dict[str, Any]]
-Told = dict[str, Any]  # what the frame of a step says, by role
+Values = dict[str, Any]  # what the frame of a step says, by role
 
 # Where a procedure waits: its request, what its frame says meanwhile, and how the time is called.
-HELD_UP: tuple[tuple[str, dict[str, Any], Told, str], ...] = (
+PROCEDURES_THAT_WAIT: tuple[tuple[str, dict[str, Any], Values, str], ...] = (
     ("list.information", {"do": "list"}, {"busy": 1}, "timeout"),
     ("download.ready", {"do": "download", "bus": UART, "type": 2, "counter": 0, "size": 1}, {}, "ready_timeout"),
     ("upload.initiated", {"do": "upload", "bytes": "00"}, {"busy": 1}, "erase_timeout"),
@@ -34,26 +33,26 @@ def scripts(known: Facts) -> Requests:
     yield from _clients(known)
     if not known.files or not known.hole_map or not known.crc16:
         return
-    for name, request, told, time in HELD_UP:
+    for name, request, values, time in PROCEDURES_THAT_WAIT:
         procedure = known.files.procedures.get(name.partition(".")[0])
-        if procedure is None or name not in known.files.steps:
+        if procedure is None:
             continue
         if request["do"] == "upload":
-            request = {**request, "destination": next(iter(known.files.destinations), 0)}
+            request = {**request, "destination": next(iter(procedure.destinations), 0)}
         for early in (1, 0):
             why = "a millisecond before its time is over" if early else "when its time is over"
             asked = {"op": "file", **request}
-            script = _held_up(known, asked, name, told, getattr(procedure, time) - early)
+            script = _never_done(known, asked, name, values, getattr(procedure, time) - early)
             yield f"{name}: nothing new {why}", {**asked, "script": script}
 
 
-def _held_up(known: Facts, request: dict[str, Any], name: str, told: Told, last: int) -> Script:
-    """The script of a procedure whose frame says `told` for the last time after that many milliseconds."""
+def _never_done(known: Facts, request: dict[str, Any], name: str, values: Values, last: int) -> Script:
+    """The script of a procedure whose frame says `values` for the last time after that many milliseconds."""
     assert known.files
     step = known.files.steps[name]
     node = FileNode(known, UART, Random(f"{known.node.name} {name}"))
     node.files[2, 0] = bytes(1)
-    waiting = {"event": "done", "bytes": node.frame(step, told).hex()}
+    waiting = {"event": "done", "bytes": step.frame(known.node, values).hex()}
     procedure, now, begun = procedure_of(known, request), 0, -1
     script: Script = [{"at": 0}]
     asked = procedure.next(0)
@@ -97,8 +96,7 @@ def _polls(known: Facts, early: int) -> Iterator[dict[str, Any]]:
     """A telecommand that is still not processed at the end of its time."""
     assert known.polled
     sent = next(m for m in known.telecommands.values() if m.acknowledge)
-    raw: Told = {field.name: 0 for field in known.polled.message.fields} | {known.polled.id: sent.telecommand_id}
-    data = codec.encode(known.node, known.polled.message, raw)
+    data = Step(known.polled.message, {"id": known.polled.id}).frame(known.node, {"id": sent.telecommand_id or 0})
     state = i2c.telecommand(known, known.polled.message.telemetry_id or 0, data, False)[1:].hex()
     yield {"at": 0, "telecommand": sent.telecommand_id, "bytes": bytes(sent.length).hex()}
     yield {"at": 1, "receive": ""}

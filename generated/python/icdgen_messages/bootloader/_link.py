@@ -215,16 +215,25 @@ LINK = link.Link(
         fill=255,
         block_packets=1024,
         block_bytes=20480,
-        steps={
-            "list.reset": link.Step(
+        packet_ids={
+            "uart": 119,
+            # Assumed: That the reads are headed by the id of the frame with the
+            #   packet's format is not said.
+            "i2c": 241,
+            # Assumed: Download over CAN is not described. The packets are requested
+            #   one by one as on I2C.
+            "can": 241,
+        },
+        list=link.ListForm(
+            reset=link.Step(
                 telecommand=118,
                 fields={},
             ),
-            "list.advance": link.Step(
+            advance=link.Step(
                 telecommand=113,
                 fields={},
             ),
-            "list.information": link.Step(
+            information=link.Step(
                 telemetry=243,
                 fields={
                     "busy": "busy_updating",
@@ -235,7 +244,14 @@ LINK = link.Link(
                     "checksum": "file_crc16_checksum",
                 },
             ),
-            "download.load": link.Step(
+            # Assumed: No time is given.
+            poll_interval=50,
+            # Assumed: No time is given. The checksum of a large file has to be
+            #   computed meanwhile.
+            timeout=10000,
+        ),
+        download=link.DownloadForm(
+            load=link.Step(
                 telecommand=112,
                 fields={
                     "type": "file_type",
@@ -244,7 +260,7 @@ LINK = link.Link(
                     "length": "block_length",
                 },
             ),
-            "download.ready": link.Step(
+            ready=link.Step(
                 telemetry=242,
                 fields={
                     "ready": "ready",
@@ -253,38 +269,57 @@ LINK = link.Link(
                     "length": "block_length",
                 },
             ),
-            "download.burst": link.Step(
+            burst=link.Step(
                 telecommand=119,
                 fields={
                     "length": "message_length",
                     "ignore_hole_map": "ignore_hole_map",
                 },
             ),
-            "upload.initiate": link.Step(
+            # Assumed: The field is not explained. Drivers in use send 20, the bytes
+            #   of the file in a packet.
+            message_length=20,
+            # Assumed: Not said. The checksum comes with the length of the block,
+            #   which does not count the fill.
+            checksum_covers_fill=False,
+            # Assumed: Which counter goes with the index file is not said.
+            index_counter=0,
+            # Assumed: No time is given.
+            poll_interval=50,
+            # Assumed: No time is given.
+            ready_timeout=10000,
+            # Assumed: How a burst ends is not said. Packets follow one another in
+            #   rapid succession.
+            silence=500,
+            # Assumed: Nothing is said about giving up.
+            rounds=32,
+        ),
+        upload=link.UploadForm(
+            initiate=link.Step(
                 telecommand=114,
                 fields={
                     "destination": "destination",
                     "block_size": "block_size",
                 },
             ),
-            "upload.initiated": link.Step(
+            initiated=link.Step(
                 telemetry=244,
                 fields={
                     "busy": "busy",
                 },
             ),
-            "upload.begin": link.Step(
+            begin=link.Step(
                 telecommand=117,
                 fields={},
             ),
-            "upload.packet": link.Step(
+            packet=link.Step(
                 telecommand=115,
                 fields={
                     "number": "packet_number",
                     "bytes": "file_bytes",
                 },
             ),
-            "upload.checksum": link.Step(
+            checksum=link.Step(
                 telemetry=246,
                 fields={
                     "checksum": "checksum",
@@ -292,7 +327,7 @@ LINK = link.Link(
             ),
             # Assumed: The procedure ends with the checksum and does not name the
             #   telecommand that commits the block.
-            "upload.finalize": link.Step(
+            finalize=link.Step(
                 telecommand=116,
                 fields={
                     "destination": "destination",
@@ -300,14 +335,29 @@ LINK = link.Link(
                     "length": "block_length",
                 },
             ),
-            "upload.finalized": link.Step(
+            finalized=link.Step(
                 telemetry=245,
                 fields={
                     "busy": "busy",
                     "error": "error",
                 },
             ),
-            "erase.request": link.Step(
+            block_size=0,
+            # Assumed: Not said. The node learns the length of the block only when the
+            #   block is committed, after the checksum.
+            checksum_covers_fill=True,
+            # Assumed: No time is given.
+            poll_interval=50,
+            erase_timeout=8000,
+            # Assumed: No time is given.
+            finalize_timeout=5000,
+            # Assumed: Nothing is said about giving up.
+            rounds=32,
+            destination_bytes=524288,
+            destinations=(3, 4, 5, 6, 7, 8, 9),
+        ),
+        erase=link.ErasureForm(
+            request=link.Step(
                 telecommand=108,
                 fields={
                     "type": "file_type",
@@ -315,77 +365,33 @@ LINK = link.Link(
                     "all": "erase_all",
                 },
             ),
-            "erase.progress": link.Step(
+            progress=link.Step(
                 telemetry=234,
                 fields={
                     "busy": "erase_all_busy",
                 },
             ),
-            "format.request": link.Step(
+            # Assumed: No time is given.
+            poll_interval=200,
+            # Assumed: No time is given.
+            timeout=60000,
+        ),
+        format=link.ErasureForm(
+            request=link.Step(
                 telecommand=33,
                 fields={},
             ),
-            "format.progress": link.Step(
+            progress=link.Step(
                 telemetry=234,
                 fields={
                     "busy": "format_busy",
                 },
             ),
-        },
-        numbers={
             # Assumed: No time is given.
-            "list.poll_interval_ms": 50,
-            # Assumed: No time is given. The checksum of a large file has to be
-            #   computed meanwhile.
-            "list.timeout_ms": 10000,
-            # Assumed: The field is not explained. Drivers in use send 20, the bytes
-            #   of the file in a packet.
-            "download.message_length": 20,
-            # Assumed: Not said. The checksum comes with the length of the block,
-            #   which does not count the fill.
-            "download.checksum_covers_fill": 0,
-            # Assumed: Which counter goes with the index file is not said.
-            "download.index_counter": 0,
+            poll_interval=200,
             # Assumed: No time is given.
-            "download.poll_interval_ms": 50,
-            # Assumed: No time is given.
-            "download.ready_timeout_ms": 10000,
-            # Assumed: How a burst ends is not said. Packets follow one another in
-            #   rapid succession.
-            "download.silence_ms": 500,
-            # Assumed: Nothing is said about giving up.
-            "download.rounds": 32,
-            "upload.block_size": 0,
-            # Assumed: No time is given.
-            "upload.poll_interval_ms": 50,
-            "upload.erase_timeout_s": 8,
-            # Assumed: Nothing is said about giving up.
-            "upload.rounds": 32,
-            # Assumed: Not said. The node learns the length of the block only when the
-            #   block is committed, after the checksum.
-            "upload.checksum_covers_fill": 1,
-            # Assumed: No time is given.
-            "upload.finalize_timeout_ms": 5000,
-            "upload.destination_bytes": 524288,
-            # Assumed: No time is given.
-            "erase.poll_interval_ms": 200,
-            # Assumed: No time is given.
-            "erase.timeout_ms": 60000,
-            # Assumed: No time is given.
-            "format.poll_interval_ms": 200,
-            # Assumed: No time is given.
-            "format.timeout_ms": 60000,
-        },
-        packet_ids={
-            "uart": 119,
-            # Assumed: That the reads are headed by the id of the frame with the
-            #   packet's format is not said.
-            "i2c": 241,
-            # Assumed: Download over CAN is not described. The packets are requested
-            #   one by one as on I2C.
-            "can": 241,
-        },
-        destinations=(3, 4, 5, 6, 7, 8, 9),
+            timeout=60000,
+        ),
     ),
     program_copy=link.Operation(
         request=link.Step(

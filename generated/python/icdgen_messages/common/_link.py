@@ -206,16 +206,25 @@ LINK = link.Link(
         fill=255,
         block_packets=1024,
         block_bytes=20480,
-        steps={
-            "list.reset": link.Step(
+        packet_ids={
+            "uart": 119,
+            # Assumed: That the reads are headed by the id of the frame with the
+            #   packet's format is not said.
+            "i2c": 241,
+            # Assumed: Download over CAN is not described. The packets are requested
+            #   one by one as on I2C.
+            "can": 241,
+        },
+        list=link.ListForm(
+            reset=link.Step(
                 telecommand=118,
                 fields={},
             ),
-            "list.advance": link.Step(
+            advance=link.Step(
                 telecommand=113,
                 fields={},
             ),
-            "list.information": link.Step(
+            information=link.Step(
                 telemetry=243,
                 fields={
                     "busy": "busy_updating",
@@ -226,7 +235,14 @@ LINK = link.Link(
                     "checksum": "file_crc16_checksum",
                 },
             ),
-            "download.load": link.Step(
+            # Assumed: No time is given.
+            poll_interval=50,
+            # Assumed: No time is given. The checksum of a large file has to be
+            #   computed meanwhile.
+            timeout=10000,
+        ),
+        download=link.DownloadForm(
+            load=link.Step(
                 telecommand=112,
                 fields={
                     "type": "file_type",
@@ -235,7 +251,7 @@ LINK = link.Link(
                     "length": "block_length",
                 },
             ),
-            "download.ready": link.Step(
+            ready=link.Step(
                 telemetry=242,
                 fields={
                     "ready": "ready",
@@ -244,14 +260,33 @@ LINK = link.Link(
                     "length": "block_length",
                 },
             ),
-            "download.burst": link.Step(
+            burst=link.Step(
                 telecommand=119,
                 fields={
                     "length": "message_length",
                     "ignore_hole_map": "ignore_hole_map",
                 },
             ),
-            "erase.request": link.Step(
+            # Assumed: The field is not explained. Drivers in use send 20, the bytes
+            #   of the file in a packet.
+            message_length=20,
+            # Assumed: Not said. The checksum comes with the length of the block,
+            #   which does not count the fill.
+            checksum_covers_fill=False,
+            # Assumed: Which counter goes with the index file is not said.
+            index_counter=0,
+            # Assumed: No time is given.
+            poll_interval=50,
+            # Assumed: No time is given.
+            ready_timeout=10000,
+            # Assumed: How a burst ends is not said. Packets follow one another in
+            #   rapid succession.
+            silence=500,
+            # Assumed: Nothing is said about giving up.
+            rounds=32,
+        ),
+        erase=link.ErasureForm(
+            request=link.Step(
                 telecommand=108,
                 fields={
                     "type": "file_type",
@@ -259,65 +294,33 @@ LINK = link.Link(
                     "all": "erase_all",
                 },
             ),
-            "erase.progress": link.Step(
+            progress=link.Step(
                 telemetry=234,
                 fields={
                     "busy": "erase_all_busy",
                 },
             ),
-            "format.request": link.Step(
+            # Assumed: No time is given.
+            poll_interval=200,
+            # Assumed: No time is given.
+            timeout=60000,
+        ),
+        format=link.ErasureForm(
+            request=link.Step(
                 telecommand=33,
                 fields={},
             ),
-            "format.progress": link.Step(
+            progress=link.Step(
                 telemetry=234,
                 fields={
                     "busy": "format_busy",
                 },
             ),
-        },
-        numbers={
             # Assumed: No time is given.
-            "list.poll_interval_ms": 50,
-            # Assumed: No time is given. The checksum of a large file has to be
-            #   computed meanwhile.
-            "list.timeout_ms": 10000,
-            # Assumed: The field is not explained. Drivers in use send 20, the bytes
-            #   of the file in a packet.
-            "download.message_length": 20,
-            # Assumed: Not said. The checksum comes with the length of the block,
-            #   which does not count the fill.
-            "download.checksum_covers_fill": 0,
-            # Assumed: Which counter goes with the index file is not said.
-            "download.index_counter": 0,
+            poll_interval=200,
             # Assumed: No time is given.
-            "download.poll_interval_ms": 50,
-            # Assumed: No time is given.
-            "download.ready_timeout_ms": 10000,
-            # Assumed: How a burst ends is not said. Packets follow one another in
-            #   rapid succession.
-            "download.silence_ms": 500,
-            # Assumed: Nothing is said about giving up.
-            "download.rounds": 32,
-            # Assumed: No time is given.
-            "erase.poll_interval_ms": 200,
-            # Assumed: No time is given.
-            "erase.timeout_ms": 60000,
-            # Assumed: No time is given.
-            "format.poll_interval_ms": 200,
-            # Assumed: No time is given.
-            "format.timeout_ms": 60000,
-        },
-        packet_ids={
-            "uart": 119,
-            # Assumed: That the reads are headed by the id of the frame with the
-            #   packet's format is not said.
-            "i2c": 241,
-            # Assumed: Download over CAN is not described. The packets are requested
-            #   one by one as on I2C.
-            "can": 241,
-        },
-        destinations=(3, 4, 5, 6, 7, 8, 9),
+            timeout=60000,
+        ),
     ),
     identification=link.Step(
         telemetry=128,

@@ -262,8 +262,96 @@ class Step(NamedTuple):
     telemetry: Optional[int] = None
 
 
+class ListForm(NamedTuple):
+    """How the list of files is read one by one."""
+
+    reset: Step
+    """Returns to the first file."""
+    advance: Step
+    """Goes on to the next file."""
+    information: Step
+    """Describes a file."""
+    poll_interval: int
+    """Time between two polls of the busy flag, in milliseconds."""
+    timeout: int
+    """How long the busy flag may stay set, in milliseconds."""
+
+
+class DownloadForm(NamedTuple):
+    """How a file is downloaded."""
+
+    load: Step
+    """Loads a block."""
+    ready: Step
+    """Tells whether the block is loaded."""
+    burst: Step
+    """Starts the transfer of the block."""
+    message_length: int
+    """What the burst telecommand gives as length."""
+    checksum_covers_fill: bool
+    """Whether the checksum of a block covers the fill of its last packet."""
+    index_counter: int
+    """Counter that goes with the type of the index file."""
+    poll_interval: int
+    """Time between two polls of the ready flag, in milliseconds."""
+    ready_timeout: int
+    """How long a block may take to load, in milliseconds."""
+    silence: int
+    """A burst is over if no packet came for this long, in milliseconds."""
+    rounds: int
+    """Most bursts for one block."""
+
+
+class UploadForm(NamedTuple):
+    """How a file is uploaded."""
+
+    initiate: Step
+    """Erases the destination."""
+    initiated: Step
+    """Tells whether the destination is erased."""
+    begin: Step
+    """Begins a block."""
+    packet: Step
+    """Carries a packet."""
+    checksum: Step
+    """Tells the checksum of the block received."""
+    finalize: Step
+    """Commits a block."""
+    finalized: Step
+    """Tells whether the block is committed."""
+    block_size: int
+    """What `initiate` gives as block size."""
+    checksum_covers_fill: bool
+    """Whether the checksum of a block covers the fill of its last packet."""
+    poll_interval: int
+    """Time between two polls of a busy flag, in milliseconds."""
+    erase_timeout: int
+    """How long the destination may take to be erased, in milliseconds."""
+    finalize_timeout: int
+    """How long committing a block may take, in milliseconds."""
+    rounds: int
+    """Most rounds of packets for one block."""
+    destination_bytes: Optional[int] = None
+    """Bytes that a destination holds: no file may be larger."""
+    destinations: tuple[int, ...] = ()
+    """The destinations that are supported; none: all."""
+
+
+class ErasureForm(NamedTuple):
+    """How files are deleted, or their medium is formatted."""
+
+    request: Step
+    """Begins it."""
+    progress: Step
+    """Tells whether it is done."""
+    poll_interval: int
+    """Time between two polls of the busy flag, in milliseconds."""
+    timeout: int
+    """How long it may take, in milliseconds."""
+
+
 class Files(NamedTuple):
-    """File transfer: messages, numbers and truth values by their path in the ICD."""
+    """File transfer. A procedure that the ICD does not describe completely is None."""
 
     packet_bytes: int
     """Bytes of the file in a packet."""
@@ -277,11 +365,12 @@ class Files(NamedTuple):
     """Most packets of a block."""
     block_bytes: int
     """Most bytes of a block."""
-    steps: dict[str, Step]
-    numbers: dict[str, int]
     packet_ids: dict[str, int]
-    destinations: tuple[int, ...] = ()
-    """Those of uploads; none: all."""
+    list: Optional[ListForm] = None
+    download: Optional[DownloadForm] = None
+    upload: Optional[UploadForm] = None
+    erase: Optional[ErasureForm] = None
+    format: Optional[ErasureForm] = None
 
     def packets_of(self, size: int) -> int:
         """Packets of a block of so many bytes."""

@@ -7,7 +7,7 @@ from typing import Optional
 
 from .._errors import RangeError
 from .errors import need
-from .link import Link, Operation, Step
+from .link import Link, Operation
 from .procedures import Ended, Procedure, Steps, Values, one_of
 
 
@@ -25,19 +25,18 @@ class ProgramOperation(Procedure):
         self._form = form
         self._told: Values = {}
 
-    def _step(self, name: str) -> Step:
-        return self._form.request if name == "request" else self._form.progress
-
-    def _number(self, name: str) -> int:
-        return self._form.poll_interval
-
     def _run(self) -> Steps:
         form = self._form
-        yield from self._order("request", {"program": self.program})
+        yield from self._order(form.request, {"program": self.program})
         is_ready = "ready" in form.progress.fields
         role = "ready" if is_ready else "busy"
         self._told, _ = yield from self._poll(
-            "progress", role, is_ready, "poll_interval", form.timeout, self.program
+            form.progress,
+            role,
+            is_ready,
+            form.poll_interval,
+            form.timeout,
+            self.program,
         )
         if self._told.get("error"):
             raise Ended("error")

@@ -12,7 +12,7 @@ from .crc import crc16
 from .errors import TooLongError, need
 from .events import Done, Outcome, Refused
 from .files import HoleMap
-from .link import Bus, Link, Step
+from .link import Bus, Link
 from .procedures import Ended, Procedure, Steps, Values, Wait, Wanted, one_of
 from .times import DosTime, dos_time_unpack
 
@@ -38,27 +38,21 @@ class FileProcedure(Procedure):
         super().__init__(link)
         self._files = need(link.files, "file_transfer")
 
-    def _step(self, name: str) -> Step:
-        return need(self._files.steps.get(name), f"file_transfer.{name}")
-
-    def _number(self, name: str) -> int:
-        return need(self._files.numbers.get(name), f"file_transfer.{name}")
-
 
 class FileList(FileProcedure):
     """Finds the files of the node, which are in ``entries``."""
 
     def __init__(self, link: Link) -> None:
         super().__init__(link)
+        self._form = need(self._files.list, "file_transfer.list")
         self.entries: list[FileEntry] = []
 
     def _run(self) -> Steps:
-        last, repeated = b"", 0
-        yield from self._order("list.reset")
-        timeout, interval = self._number("list.timeout_ms"), "list.poll_interval_ms"
+        form, last, repeated = self._form, b"", 0
+        yield from self._order(form.reset)
         while True:
             values, frame = yield from self._poll(
-                "list.information", "busy", False, interval, timeout
+                form.information, "busy", False, form.poll_interval, form.timeout
             )
             if not any(frame):
                 return
@@ -72,7 +66,7 @@ class FileList(FileProcedure):
                 raise Ended("timeout")
             last, repeated = frame, repeated + 1
             # Once: if only its acknowledge is lost, the next frame tells.
-            advance = self._telecommand("list.advance", repeat=False)
+            advance = self._telecommand(form.advance, repeat=False)
             outcome = yield from self._ask(advance)
             if isinstance(outcome, Refused):
                 raise Ended("refused")
@@ -95,6 +89,7 @@ class Download(FileProcedure):
         block: Optional[int] = None,
     ) -> None:
         super().__init__(link)
+        self._form = need(self._files.download, "file_transfer.download")
         self.size = size
         self.blocks: list[tuple[int, bytes]] = []
         """Offset and data of what was delivered."""
@@ -140,7 +135,7 @@ class Download(FileProcedure):
 
     def _block(self, length: int) -> Generator[Wanted, Optional[Outcome], bytes]:
         """A block of so many bytes, or of less at the end of a file of unknown size."""
-        numbers, rounds = self._files.numbers, 0
+        form, rounds = self._form, 0
         while True:
             ready = yield from self._load(length)
             size: int = ready["length"]
@@ -148,16 +143,15 @@ class Download(FileProcedure):
                 raise Ended("length")
             self._count = self._files.packets_of(size)
             while len(self._got) < self._count:
-                if rounds == self._number("download.rounds"):
+                if rounds == form.rounds:
                     raise Ended("rounds")
                 rounds += 1
                 yield from self._round()
             packets = b"".join(self._got[position] for position in range(self._count))
-            covers_fill = numbers.get("download.checksum_covers_fill")
-            covered = packets if covers_fill else packets[:size]
+            covered = packets if form.checksum_covers_fill else packets[:size]
             if crc16(self.link, covered) == ready["checksum"]:
                 return packets[:size]
-            if rounds == self._number("download.rounds"):
+            if rounds == form.rounds:
                 raise Ended("checksum")
             if not size:  # no packet, so that no round was made
                 rounds += 1
@@ -166,11 +160,10 @@ class Download(FileProcedure):
         """Has the node load a block; what its ready frame says."""
         self._got, self._count = {}, 0
         place = {**self._file, "offset": self._offset, "length": length}
-        yield from self._order("download.load", place)
-        interval = "download.poll_interval_ms"
-        timeout = self._number("download.ready_timeout_ms")
+        form = self._form
+        yield from self._order(form.load, place)
         ready, _ = yield from self._poll(
-            "download.ready", "ready", True, interval, timeout
+            form.ready, "ready", True, form.poll_interval, form.ready_timeout
         )
         if ready["error"]:
             raise Ended("parameter")
@@ -183,18 +176,18 @@ class Download(FileProcedure):
             yield from self._send_hole_map()
         self._last = self._now
         values = {
-            "length": self._number("download.message_length"),
+            "length": self._form.message_length,
             "ignore_hole_map": not self._got,
         }
         # Once: the packets tell more than the acknowledge.
-        burst = self._telecommand("download.burst", values, repeat=False)
+        burst = self._telecommand(self._form.burst, values, repeat=False)
         outcome = yield from self._ask(burst)
         if isinstance(outcome, Refused):
             raise Ended("refused")
         if self._bus != "uart":
             yield from self._fetch(missing)
             return
-        silence = self._number("download.silence_ms")
+        silence = self._form.silence
         self._last = max(self._last, self._now)
         while len(self._got) < self._count and self._now < self._last + silence:
             yield Wait(self._last + silence)
@@ -236,11 +229,11 @@ class Upload(FileProcedure):
         self, link: Link, destination: int, data: bytes, block: Optional[int] = None
     ) -> None:
         super().__init__(link)
-        self._step("upload.initiate")
-        known = self._files.destinations
+        form = self._form = need(self._files.upload, "file_transfer.upload")
+        known = form.destinations
         if known and destination not in known:
             raise RangeError("destination", one_of(known), destination)
-        most = self._files.numbers.get("upload.destination_bytes")
+        most = form.destination_bytes
         if most is not None and len(data) > most:
             raise TooLongError(most, len(data))
         self.sent = 0
@@ -256,41 +249,42 @@ class Upload(FileProcedure):
     def _run(self) -> Steps:
         values = {
             "destination": self._destination,
-            "block_size": self._number("upload.block_size"),
+            "block_size": self._form.block_size,
         }
-        yield from self._order("upload.initiate", values)
-        timeout = 1000 * self._number("upload.erase_timeout_s")
-        interval = "upload.poll_interval_ms"
-        yield from self._poll("upload.initiated", "busy", False, interval, timeout)
+        form = self._form
+        yield from self._order(form.initiate, values)
+        yield from self._poll(
+            form.initiated, "busy", False, form.poll_interval, form.erase_timeout
+        )
         while self.sent < len(self._data):
             data = self._data[self.sent : self.sent + self._block_bytes]
             yield from self._block(data)
             self.sent += len(data)
 
     def _block(self, data: bytes) -> Steps:
-        files, rounds = self._files, 0
+        files, form, rounds = self._files, self._form, 0
         count = files.packets_of(len(data))
         filled = data.ljust(count * files.packet_bytes, bytes((files.fill,)))
-        covered = filled if files.numbers.get("upload.checksum_covers_fill") else data
+        covered = filled if form.checksum_covers_fill else data
         while True:
-            yield from self._order("upload.begin")
+            yield from self._order(form.begin)
             missing = [files.first_packet + position for position in range(count)]
             while missing:
-                if rounds == self._number("upload.rounds"):
+                if rounds == form.rounds:
                     raise Ended("rounds")
                 rounds += 1
                 for number in missing:
                     at = (number - files.first_packet) * files.packet_bytes
                     piece = filled[at : at + files.packet_bytes]
                     values = {"number": number, "bytes": piece}
-                    yield from self._order("upload.packet", values, repeat=False)
+                    yield from self._order(form.packet, values, repeat=False)
                 missing = yield from self._missing(count)
-            told, _ = yield from self._frame("upload.checksum")
+            told, _ = yield from self._frame(form.checksum)
             if told["checksum"] == crc16(self.link, covered):
                 is_committed = yield from self._commit(len(data))
                 if is_committed:
                     return
-            if rounds == self._number("upload.rounds"):
+            if rounds == form.rounds:
                 raise Ended("checksum")
 
     def _missing(self, count: int) -> Generator[Wanted, Optional[Outcome], list[int]]:
@@ -311,11 +305,10 @@ class Upload(FileProcedure):
             "offset": self.sent,
             "length": length,
         }
-        yield from self._order("upload.finalize", values)
-        interval = "upload.poll_interval_ms"
-        timeout = self._number("upload.finalize_timeout_ms")
+        form = self._form
+        yield from self._order(form.finalize, values)
         told, _ = yield from self._poll(
-            "upload.finalized", "busy", False, interval, timeout
+            form.finalized, "busy", False, form.poll_interval, form.finalize_timeout
         )
         return not told["error"]
 
@@ -327,24 +320,31 @@ class Erase(FileProcedure):
         self, link: Link, type: int = 0, counter: int = 0, all: bool = False
     ) -> None:
         super().__init__(link)
+        self._form = need(self._files.erase, "file_transfer.erase")
         self._values = {"type": type, "counter": counter, "all": all}
 
     def _run(self) -> Steps:
-        yield from self._order("erase.request", self._values)
+        form = self._form
+        yield from self._order(form.request, self._values)
         if self._values["all"]:
-            interval, timeout = "erase.poll_interval_ms", self._number(
-                "erase.timeout_ms"
+            yield from self._poll(
+                form.progress, "busy", False, form.poll_interval, form.timeout
             )
-            yield from self._poll("erase.progress", "busy", False, interval, timeout)
 
 
 class Format(FileProcedure):
     """Formats the medium of the node."""
 
+    def __init__(self, link: Link) -> None:
+        super().__init__(link)
+        self._form = need(self._files.format, "file_transfer.format")
+
     def _run(self) -> Steps:
-        yield from self._order("format.request")
-        interval, timeout = "format.poll_interval_ms", self._number("format.timeout_ms")
-        yield from self._poll("format.progress", "busy", False, interval, timeout)
+        form = self._form
+        yield from self._order(form.request)
+        yield from self._poll(
+            form.progress, "busy", False, form.poll_interval, form.timeout
+        )
 
 
 def _maps(link: Link, packets: int) -> int:

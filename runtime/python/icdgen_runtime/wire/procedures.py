@@ -107,20 +107,11 @@ class Procedure:
         except Ended as end:
             self.result = end.result
 
-    def _step(self, name: str) -> Step:
-        """The message of a step."""
-        raise NotImplementedError
-
-    def _number(self, name: str) -> int:
-        """A number of the ICD."""
-        raise NotImplementedError
-
     def _telecommand(
-        self, name: str, values: Optional[Values] = None, repeat: bool = True
+        self, step: Step, values: Optional[Values] = None, repeat: bool = True
     ) -> Request:
         """The telecommand of a step: a fresh message with values by role."""
-        step = self._step(name)
-        id = need(step.telecommand, name)
+        id = need(step.telecommand, "telecommand")
         message = self.link.TELECOMMANDS[id]()
         for role, value in (values or {}).items():
             setattr(message, step.fields[role], value)
@@ -141,17 +132,16 @@ class Procedure:
         raise Ended("refused" if isinstance(outcome, Refused) else "timeout")
 
     def _order(
-        self, name: str, values: Optional[Values] = None, repeat: bool = True
+        self, step: Step, values: Optional[Values] = None, repeat: bool = True
     ) -> Generator[Wanted, Optional[Outcome], None]:
         """Sends the telecommand of a step, which must be executed."""
-        yield from self._must(self._telecommand(name, values, repeat))
+        yield from self._must(self._telecommand(step, values, repeat))
 
     def _frame(
-        self, name: str
+        self, step: Step
     ) -> Generator[Wanted, Optional[Outcome], tuple[Values, bytes]]:
         """The frame of a step: its values by role, and its bytes."""
-        step = self._step(name)
-        id = need(step.telemetry, name)
+        id = need(step.telemetry, "telemetry")
         done = yield from self._must(Request("telemetry", id, repeat=True))
         frame: Message = self.link.TELEMETRY[id].from_bytes(done.data)
         values = {role: getattr(frame, at) for role, at in step.fields.items()}
@@ -159,10 +149,10 @@ class Procedure:
 
     def _poll(
         self,
-        name: str,
+        step: Step,
         role: str,
         wanted: bool,
-        interval: str,
+        interval: float,
         timeout: float,
         program: Optional[int] = None,
     ) -> Generator[Wanted, Optional[Outcome], tuple[Values, bytes]]:
@@ -172,10 +162,10 @@ class Procedure:
         """
         end = self._now + timeout
         while True:
-            values, frame = yield from self._frame(name)
+            values, frame = yield from self._frame(step)
             is_meant = program is None or values.get("program", program) == program
             if (bool(values[role]) == wanted and is_meant) or values.get("error"):
                 return values, frame
             if self._now >= end:
                 raise Ended("timeout")
-            yield Wait(self._now + self._number(interval))
+            yield Wait(self._now + interval)

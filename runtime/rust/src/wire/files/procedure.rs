@@ -148,10 +148,11 @@ impl Core {
 
 /// Whether a number is one of those that are allowed, of which none stands for all.
 pub(super) fn allowed(numbers: &[u8], number: u8, field: &'static str) -> Result<(), Error> {
-    if numbers.is_empty() || numbers.contains(&number) {
-        Ok(())
-    } else {
+    // Not `contains`, which indexes for bytes, and Rust 1.63 does not see that it stays in range.
+    if !numbers.is_empty() && numbers.iter().all(|one| *one != number) {
         Err(Error::Range { field })
+    } else {
+        Ok(())
     }
 }
 

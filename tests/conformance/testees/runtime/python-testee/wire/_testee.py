@@ -219,7 +219,7 @@ def _link_data(link: Link, words: Words) -> str:
         boot_ms=link.boot_time,
         log_file_type=log and log.file_type,
         index_file_type=index and index.file_type,
-        index_counter=files and files.numbers.get("download.index_counter"),
+        index_counter=files and files.download and files.download.index_counter,
     )
 
 

@@ -1,0 +1,86 @@
+"""Bytes of code that one more translation unit with a client costs, on a Cortex-M4 at -Os.
+
+    python bench/c_units.py [--cc arm-none-eabi-gcc]
+
+The unit includes the header of a node, begins a client on the UART, requests a frame, sends, receives, and decodes what came.
+It is compiled as it is (every unit has functions and tables of its own) and with ICDGEN_SHARED (they are in `icdgen_wire.c`
+and `link.c`).
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import tempfile
+from pathlib import Path
+
+from icdgen.backends.c import CBackend
+from icdgen.loading import load
+from icdgen.render import Renderer
+
+BENCH = Path(__file__).parent
+UNIT = """\
+#include "cubeacp.h"
+
+icd_status_t unit_begin(icd_client_t *client, uint8_t *buffer, size_t size, uint32_t now);
+bool unit_send(icd_client_t *client, const uint8_t **bytes, size_t *count);
+void unit_receive(icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count);
+int32_t unit_roll;
+
+icd_status_t unit_begin(icd_client_t *client, uint8_t *buffer, size_t size, uint32_t now)
+{
+    const icd_status_t status = icd_client_init(client, cubeacp_link(), ICD_BUS_UART, buffer, size);
+    return status != ICD_OK ? status : ICD_REQUEST(client, now, CUBEACP_ESTIMATED_ATTITUDE_ANGLES);
+}
+
+bool unit_send(icd_client_t *client, const uint8_t **bytes, size_t *count)
+{
+    return icd_client_output(client, bytes, count);
+}
+
+static void on_event(void *context, const icd_event_t *event)
+{
+    cubeacp_estimated_attitude_angles_t angles;
+    (void)context;
+    if (event->kind == ICD_EVENT_DONE &&
+        cubeacp_estimated_attitude_angles_decode(&angles, event->data, event->length) == ICD_OK) {
+        unit_roll = angles.estimated_roll_angle;
+    }
+}
+
+void unit_receive(icd_client_t *client, uint32_t now, const uint8_t *bytes, size_t count)
+{
+    icd_client_received(client, now, bytes, count, on_event, NULL);
+}
+"""
+WAYS = {"header only": [], "ICDGEN_SHARED": ["-DICDGEN_SHARED"]}
+
+
+def text_bytes(cc: str, folder: Path, source: str, *options: str) -> int:
+    """Bytes of code and constants of the object that a source becomes."""
+    flags = ["-std=c99", "-Os", *(["-mcpu=cortex-m4", "-mthumb"] if "arm" in cc else []), *options]
+    subprocess.run([cc, *flags, f"-I{folder}", "-c", str(folder / source), "-o", str(folder / "unit.o")], check=True)
+    size = cc.removesuffix("gcc") + "size" if cc.endswith("-gcc") else "size"
+    found = subprocess.run([size, str(folder / "unit.o")], check=True, capture_output=True, text=True).stdout
+    return int(found.splitlines()[1].split()[0])
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--cc", default="arm-none-eabi-gcc")
+    cc = parser.parse_args().cc
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for path, text in CBackend().files(load([BENCH.parent / "icd"], check=False).icd, Renderer("c")):
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            (folder / path).write_text(text, encoding="utf-8")
+        (folder / "unit.c").write_text(UNIT, encoding="utf-8")
+        for way, options in WAYS.items():
+            print(f"a unit with a client, {way}: {text_bytes(cc, folder, 'unit.c', *options)} bytes")
+        for source in ("icdgen_wire.c", "cubeacp/link.c"):
+            if (folder / source).exists():
+                print(f"{source}, once: {text_bytes(cc, folder, source)} bytes")
+
+
+if __name__ == "__main__":
+    main()

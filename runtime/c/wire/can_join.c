@@ -1,0 +1,275 @@
+#ifndef ICDGEN_WIRE_CAN_JOIN_C
+#define ICDGEN_WIRE_CAN_JOIN_C
+
+#include "can_join.h"
+#include "events.c"
+#include "can.c"
+
+ICDGEN_API size_t icd_can_slot_bytes(const icd_link_t *link)
+{
+    const icd_can_extended_t *const form = link->can->extended;
+    return 1u +
+        (form != NULL ? (link->longest_data + form->data_bytes - 1u) / form->data_bytes * form->data_bytes : 0u);
+}
+
+ICDGEN_API icd_status_t icd_can_joiner_init(
+    icd_can_joiner_t *joiner,
+    const icd_link_t *link,
+    int16_t address,
+    icd_can_slot_t *slots,
+    size_t count,
+    uint8_t *buffer,
+    size_t size)
+{
+    size_t each;
+    memset(joiner, 0, sizeof *joiner);
+    if (link->can == NULL) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    each = icd_can_slot_bytes(link);
+    if (size / each < count) {
+        return ICD_ERROR_LENGTH;
+    }
+    memset(slots, 0, count * sizeof *slots);
+    for (size_t i = 0; i < count; ++i) {
+        slots[i].data = buffer + (i * each) + 1;
+    }
+    joiner->link = link;
+    joiner->address = address;
+    joiner->slots = slots;
+    joiner->slot_count = count;
+    joiner->room = link->can->extended != NULL ? ICDGEN_U32((each - 1u) / link->can->extended->data_bytes) : 0u;
+    return ICD_OK;
+}
+
+static inline void icdgen_can_tell(
+    const icd_link_t *link,
+    uint32_t key,
+    icd_event_kind_t kind,
+    uint32_t missing,
+    icd_event_fn *on_event,
+    void *context)
+{
+    icd_event_t event = icdgen_event(kind, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
+    event.source = ICDGEN_U8(icdgen_can_part(link->can->source, key));
+    event.missing = missing;
+    on_event(context, &event);
+}
+
+/* Data begin one byte after the id. */
+static inline void icdgen_can_tell_message(
+    const icd_link_t *link,
+    uint32_t key,
+    icd_can_kind_t kind,
+    uint8_t *data,
+    size_t length,
+    icd_event_fn *on_event,
+    void *context)
+{
+    icd_event_t event = icdgen_event(ICD_EVENT_MESSAGE, ICDGEN_U8(icdgen_can_part(link->can->channel, key)));
+    event.source = ICDGEN_U8(icdgen_can_part(link->can->source, key));
+    event.destination = ICDGEN_U8(icdgen_can_part(link->can->destination, key));
+    event.can_kind = kind;
+    data[-1] = event.id;
+    event.data = data;
+    event.length = length;
+    on_event(context, &event);
+}
+
+static inline bool icdgen_can_got(const icd_can_slot_t *slot, uint32_t number)
+{
+    return number < slot->count && ((ICDGEN_U32(slot->got[number / 8u]) >> (number % 8u)) & 1u) != 0u;
+}
+
+/* Frees a slot; its memory goes to the end of the row. */
+static inline void icdgen_can_free(icd_can_joiner_t *joiner, size_t index)
+{
+    icd_can_slot_t *const slots = joiner->slots;
+    uint8_t *const data = slots[index].data;
+    joiner->used--;
+    memmove(&slots[index], &slots[index + 1u], (joiner->used - index) * sizeof *slots);
+    memset(&slots[joiner->used], 0, sizeof *slots);
+    slots[joiner->used].data = data;
+}
+
+/* Forgets a message. One that is done leaves no event: it was kept to know repeated packets. */
+static inline void icdgen_can_give_up(icd_can_joiner_t *joiner, size_t index, icd_event_fn *on_event, void *context)
+{
+    const icd_can_slot_t *const slot = &joiner->slots[index];
+    const uint32_t key = slot->key, missing = slot->count - slot->there;
+    const bool done = slot->done;
+    icdgen_can_free(joiner, index);
+    if (!done) {
+        icdgen_can_tell(joiner->link, key, ICD_EVENT_INCOMPLETE, missing, on_event, context);
+    }
+}
+
+ICDGEN_API void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event_fn *on_event, void *context)
+{
+    for (size_t i = 0; i < joiner->used;) {
+        if (icdgen_reached(now, joiner->slots[i].last + joiner->link->can->extended->packet_timeout)) {
+            icdgen_can_give_up(joiner, i, on_event, context);
+        } else {
+            ++i;
+        }
+    }
+}
+
+/* Notes that a packet came, be it a repeated one. */
+static inline void icdgen_can_came(icd_can_slot_t *slot, uint32_t number, uint32_t now)
+{
+    slot->last = now;
+    if (number == slot->run) {
+        slot->run++;
+    } else if (number + 1u != slot->run) {
+        slot->run = number == 0u ? 1u : 0u;
+    }
+}
+
+/* A slot for a new message, for which the oldest one that is done makes room; NULL if there is none. */
+static inline icd_can_slot_t *icdgen_can_slot(icd_can_joiner_t *joiner)
+{
+    for (size_t i = 0; joiner->used == joiner->slot_count && i < joiner->used; ++i) {
+        if (joiner->slots[i].done) {
+            icdgen_can_free(joiner, i);
+        }
+    }
+    return joiner->used < joiner->slot_count ? &joiner->slots[joiner->used++] : NULL;
+}
+
+/* Bytes of the message if the ICD knows it and it needs several packets, else 0. */
+static inline uint32_t icdgen_can_length(const icd_link_t *link, icd_can_kind_t kind, uint32_t id)
+{
+    const icd_message_t *const message =
+        icd_find_message(link, kind == ICD_CAN_TELECOMMAND ? ICD_TELECOMMAND : ICD_TELEMETRY, id);
+    return message != NULL && message->length > link->can->data_bytes ? message->length : 0u;
+}
+
+/* Another message than that of a slot has begun; with the same packets as the old one up to here, they are kept. */
+static inline void icdgen_can_replace(
+    icd_can_joiner_t *joiner,
+    size_t index,
+    uint32_t number,
+    icd_can_slot_t *fresh,
+    icd_event_fn *on_event,
+    void *context)
+{
+    const icd_can_slot_t *const slot = &joiner->slots[index];
+    if (!slot->done && number == slot->run) {
+        for (uint32_t n = 0; n < number; ++n) {
+            fresh->got[n / 8u] = ICDGEN_U8(fresh->got[n / 8u] | (1u << (n % 8u)));
+        }
+        fresh->there = number;
+        fresh->run = number;
+    }
+    icdgen_can_give_up(joiner, index, on_event, context);
+}
+
+/* A packet of a message of several. */
+static inline void icdgen_can_extended(
+    icd_can_joiner_t *joiner,
+    uint32_t now,
+    icd_can_kind_t kind,
+    const icd_can_packet_t *packet,
+    icd_event_fn *on_event,
+    void *context)
+{
+    const icd_link_t *const link = joiner->link;
+    const icd_can_form_t *const can = link->can;
+    const uint32_t length = icdgen_can_length(link, kind, icdgen_can_part(can->channel, packet->id));
+    const icd_can_extended_t *const form = can->extended;
+    const size_t size = form->data_bytes;
+    size_t index = 0;
+    icd_can_slot_t *slot, fresh;
+    uint32_t left, count, number;
+    while (index < joiner->used && joiner->slots[index].key != packet->id) {
+        ++index;
+    }
+    slot = index < joiner->used ? &joiner->slots[index] : NULL;
+    left = packet->data[form->left_at] - ICDGEN_U32(form->left_in_last);
+    if (length != 0u) {
+        count = ICDGEN_U32((length + size - 1u) / size);
+    } else if (slot != NULL && !slot->done && left < slot->count) {
+        count = slot->count;
+    } else { /* the first packet that comes tells how many there are */
+        count = left + 1u;
+    }
+    if (packet->length != form->left_at + 1u || left >= count || count > joiner->room) {
+        if (slot != NULL) {
+            icdgen_can_give_up(joiner, index, on_event, context);
+        }
+        icdgen_can_tell(link, packet->id, ICD_EVENT_MALFORMED, 0, on_event, context);
+        return;
+    }
+    number = count - 1u - left;
+    if (slot != NULL && (!slot->done || slot->completed_by == number) && icdgen_can_got(slot, number) &&
+        memcmp(slot->data + (number * size), packet->data, size) == 0) {
+        icdgen_can_came(slot, number, now);
+        icdgen_can_tell(link, packet->id, ICD_EVENT_DUPLICATE, 0, on_event, context);
+        return;
+    }
+    memset(&fresh, 0, sizeof fresh);
+    if (slot != NULL && (slot->done || slot->count != count || icdgen_can_got(slot, number))) {
+        icdgen_can_replace(joiner, index, number, &fresh, on_event, context); /* the next free slot has its memory */
+        slot = NULL;
+    }
+    if (slot == NULL) {
+        slot = icdgen_can_slot(joiner);
+        if (slot == NULL) {
+            icdgen_can_tell(link, packet->id, ICD_EVENT_BUSY, 0, on_event, context);
+            return;
+        }
+        fresh.data = slot->data;
+        *slot = fresh;
+        slot->key = packet->id;
+        slot->kind = kind;
+        slot->count = count;
+        slot->length = length;
+    }
+    memcpy(slot->data + (number * size), packet->data, size);
+    slot->got[number / 8u] = ICDGEN_U8(slot->got[number / 8u] | (1u << (number % 8u)));
+    slot->there++;
+    icdgen_can_came(slot, number, now);
+    if (slot->there == slot->count) {
+        slot->done = true;
+        slot->completed_by = number;
+        icdgen_can_tell_message(
+            link, slot->key, kind, slot->data, slot->length != 0u ? slot->length : slot->count * size, on_event,
+            context);
+    }
+}
+
+ICDGEN_API void icd_can_feed(
+    icd_can_joiner_t *joiner, uint32_t now, const icd_can_packet_t *packet, icd_event_fn *on_event, void *context)
+{
+    const icd_link_t *const link = joiner->link;
+    const icd_can_form_t *const can = link->can;
+    const uint32_t type = icdgen_can_part(can->type, packet->id);
+    icd_can_expire(joiner, now, on_event, context);
+    if (joiner->address != ICD_CAN_EVERYBODY &&
+        icdgen_can_part(can->destination, packet->id) != ICDGEN_U32(joiner->address)) {
+        return;
+    }
+    for (unsigned i = 0; i < ICD_CAN_KINDS; ++i) {
+        const icd_can_kind_t kind = ICDGEN_CAST(icd_can_kind_t, i);
+        if (can->types[i] >= 0 && ICDGEN_U32(can->types[i]) == type) {
+            uint8_t message[1u + sizeof packet->data];
+            if (packet->length > (icdgen_can_has_data(kind) ? can->data_bytes : 0u)) {
+                icdgen_can_tell(link, packet->id, ICD_EVENT_MALFORMED, 0, on_event, context);
+                return;
+            }
+            memcpy(message + 1, packet->data, sizeof packet->data);
+            icdgen_can_tell_message(link, packet->id, kind, message + 1, packet->length, on_event, context);
+            return;
+        }
+    }
+    for (unsigned i = 0; can->extended != NULL && i < ICD_CAN_KINDS; ++i) {
+        if (can->extended_types[i] >= 0 && ICDGEN_U32(can->extended_types[i]) == type) {
+            icdgen_can_extended(joiner, now, ICDGEN_CAST(icd_can_kind_t, i), packet, on_event, context);
+            return;
+        }
+    }
+    icdgen_can_tell(link, packet->id, ICD_EVENT_UNKNOWN_TYPE, 0, on_event, context);
+}
+
+#endif /* ICDGEN_WIRE_CAN_JOIN_C */

@@ -1,0 +1,279 @@
+#ifndef ICDGEN_WIRE_CLIENT_C
+#define ICDGEN_WIRE_CLIENT_C
+
+#include "client.h"
+#include "events.c"
+
+ICDGEN_API size_t icd_client_bytes(const icd_link_t *link)
+{
+    const size_t slot = link->can != NULL ? icd_can_slot_bytes(link) : 0u;
+    return link->longest_telecommand + (slot > link->longest ? slot : link->longest);
+}
+
+static inline icd_status_t icdgen_client_input_init(icd_client_t *client, uint8_t *buffer, size_t size)
+{
+    const icd_link_t *const link = client->link;
+    const size_t first = link->longest_telecommand;
+    if (size < icd_client_bytes(link)) {
+        return ICD_ERROR_LENGTH;
+    }
+    switch (client->bus) {
+    case ICD_BUS_UART:
+        return icd_uart_decoder_init(&client->decoder, link, buffer + first, link->longest);
+    case ICD_BUS_CAN:
+        return icd_can_joiner_init(&client->joiner, link, 0, &client->slot, 1, buffer + first, size - first);
+    case ICD_BUS_I2C:
+    default:
+        return link->i2c_address < 0 ? ICD_ERROR_UNSUPPORTED : ICD_OK;
+    }
+}
+
+ICDGEN_API icd_status_t
+icd_client_init(icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
+{
+    icd_status_t status;
+    memset(client, 0, sizeof *client);
+    client->link = link;
+    client->bus = bus;
+    client->settings = link->client;
+    client->whole = buffer;
+    client->encoder.ended = true;
+    status = icdgen_client_input_init(client, buffer, size);
+    client->ready = status == ICD_OK;
+    return status;
+}
+
+ICDGEN_API void icd_client_use_checksums(icd_client_t *client)
+{
+    const icd_checksum_form_t *const form = client->link->checksum;
+    client->checks_telecommands = form != NULL && ((ICDGEN_U32(form->telecommand_buses) >> client->bus) & 1u) != 0u;
+    client->checks_telemetry = form != NULL && ((ICDGEN_U32(form->telemetry_buses) >> client->bus) & 1u) != 0u;
+}
+
+ICDGEN_API void icd_client_set_address(icd_client_t *client, uint8_t address)
+{
+    client->address = address;
+    client->joiner.address = address;
+}
+
+ICDGEN_API bool icd_client_deadline(const icd_client_t *client, uint32_t *deadline)
+{
+    *deadline = client->until;
+    return client->state != ICD_CLIENT_IDLE;
+}
+
+static inline void icdgen_client_end(
+    icd_client_t *client, uint32_t now, icd_event_t *event, icd_event_fn *on_event, void *context)
+{
+    event->id = client->message->id;
+    event->attempts = client->attempts;
+    client->echo = client->attempts > 1u || event->kind == ICD_EVENT_TIMEOUT;
+    client->echo_id = event->id;
+    client->echo_end = now + client->settings.reply_timeout;
+    client->state = ICD_CLIENT_IDLE;
+    on_event(context, event);
+}
+
+static inline void icdgen_client_done(
+    icd_client_t *client, uint32_t now, const uint8_t *data, size_t length, icd_event_fn *on_event, void *context)
+{
+    icd_event_t event = icdgen_event(ICD_EVENT_DONE, 0);
+    event.data = data;
+    event.length = length;
+    icdgen_client_end(client, now, &event, on_event, context);
+}
+
+static inline void icdgen_client_timeout(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
+{
+    icd_event_t event = icdgen_event(ICD_EVENT_TIMEOUT, 0);
+    icdgen_client_end(client, now, &event, on_event, context);
+}
+
+/* Sends the request, for the first time or again. */
+static inline void icdgen_client_send(icd_client_t *client, uint32_t now, icd_event_fn *on_event, void *context)
+{
+    client->attempts++;
+    client->sent_whole = false;
+    client->state = ICD_CLIENT_WAIT;
+    client->until = now + client->settings.reply_timeout;
+    client->pending++;
+    if (client->bus != ICD_BUS_I2C && client->direction == ICD_TELECOMMAND &&
+        (client->message->flags & ICD_ACKNOWLEDGED) == 0u) {
+        icdgen_client_done(client, now, NULL, 0, on_event, context);
+    }
+}
+
+/* Whether anything that is to be sent has not been taken. */
+static inline bool icdgen_client_has_output(const icd_client_t *client)
+{
+    return client->pending != 0u || client->poll || !client->encoder.ended || client->encoder.pending != 0u ||
+        client->splitter.next < client->splitter.count;
+}
+
+static inline bool icdgen_client_fits_bus(const icd_client_t *client)
+{
+    icd_can_splitter_t splitter;
+    const icd_link_t *const link = client->link;
+    return client->bus != ICD_BUS_CAN ||
+        icd_can_split(
+            &splitter, link, client->direction == ICD_TELECOMMAND ? ICD_CAN_TELECOMMAND : ICD_CAN_REQUEST,
+            client->whole[0], client->address, link->can->node_address, client->whole + 1,
+            client->whole_length - 1u) == ICD_OK;
+}
+
+ICDGEN_API icd_status_t icd_client_start(
+    icd_client_t *client, uint32_t now, const icd_request_t *request, icd_event_fn *on_event, void *context)
+{
+    const icd_message_t *message;
+    const bool telecommand = request->direction == ICD_TELECOMMAND;
+    icd_status_t status;
+    if (!client->ready) {
+        return ICD_ERROR_UNSUPPORTED;
+    }
+    message = icd_find_message(client->link, request->direction, request->id);
+    if (message == NULL) {
+        return ICD_ERROR_UNKNOWN_ID;
+    }
+    if (client->state != ICD_CLIENT_IDLE || icdgen_client_has_output(client)) {
+        return ICD_ERROR_BUSY;
+    }
+    if (telecommand && request->length != message->length) {
+        return ICD_ERROR_LENGTH;
+    }
+    status = icd_i2c_write(
+        client->link, request->id, request->data, telecommand ? request->length : 0u,
+        telecommand && client->checks_telecommands, client->whole, client->link->longest_telecommand,
+        &client->whole_length);
+    client->direction = request->direction;
+    if (status != ICD_OK || !icdgen_client_fits_bus(client)) {
+        return status != ICD_OK ? status : ICD_ERROR_LENGTH;
+    }
+    client->message = message;
+    client->repeat = request->repeat || !telecommand || (message->flags & ICD_SETTING) != 0u;
+    client->attempts = 0;
+    if (client->echo && client->echo_id == request->id && !icdgen_reached(now, client->echo_end)) {
+        client->state = ICD_CLIENT_HOLD;
+        client->until = client->echo_end;
+    } else {
+        icdgen_client_send(client, now, on_event, context);
+    }
+    return ICD_OK;
+}
+
+ICDGEN_API void icd_client_cancel(icd_client_t *client)
+{
+    client->pending = 0;
+    client->poll = false;
+    client->encoder.ended = true;
+    client->encoder.pending = 0;
+    client->splitter.next = client->splitter.count;
+    if (client->state != ICD_CLIENT_IDLE && client->attempts != 0u) {
+        client->echo = true;
+        client->echo_id = client->message->id;
+        client->echo_end = client->until + client->settings.reply_timeout;
+    }
+    client->state = ICD_CLIENT_IDLE;
+}
+
+static inline void icdgen_client_ignore(void *context, const icd_event_t *event)
+{
+    (void)context;
+    (void)event;
+}
+
+ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint8_t id)
+{
+    icd_request_t request;
+    memset(&request, 0, sizeof request);
+    request.direction = ICD_TELEMETRY;
+    request.id = id;
+    return icd_client_start(client, now, &request, icdgen_client_ignore, NULL);
+}
+
+ICDGEN_API icd_status_t icd_client_send(
+    icd_client_t *client,
+    uint32_t now,
+    uint8_t id,
+    const uint8_t *data,
+    size_t length,
+    bool repeat,
+    icd_event_fn *on_event,
+    void *context)
+{
+    icd_request_t request;
+    memset(&request, 0, sizeof request);
+    request.direction = ICD_TELECOMMAND;
+    request.id = id;
+    request.data = data;
+    request.length = length;
+    request.repeat = repeat;
+    return icd_client_start(client, now, &request, on_event, context);
+}
+
+ICDGEN_API icd_status_t icdgen_client_request_of(icd_client_t *client, uint32_t now, const char *node, unsigned id)
+{
+    if (!icd_has_messages_of(client->link, node)) {
+        return ICD_ERROR_UNKNOWN_ID;
+    }
+    return icd_client_request(client, now, ICDGEN_U8(id));
+}
+
+ICDGEN_API bool icd_client_output(icd_client_t *client, const uint8_t **bytes, size_t *count)
+{
+    *bytes = client->chunk;
+    *count = 0;
+    if (client->bus != ICD_BUS_UART) {
+        return false;
+    }
+    while (*count < sizeof client->chunk) {
+        *count += icd_uart_encode_some(&client->encoder, client->chunk + *count, sizeof client->chunk - *count);
+        if (client->encoder.ended && client->encoder.pending == 0u) {
+            if (client->pending == 0u) {
+                break;
+            }
+            client->pending--;
+            (void)icd_uart_encode_begin(&client->encoder, client->link, client->whole, client->whole_length);
+        }
+    }
+    return *count != 0u;
+}
+
+ICDGEN_API bool icd_client_next_packet(icd_client_t *client, icd_can_packet_t *packet)
+{
+    if (client->bus != ICD_BUS_CAN) {
+        return false;
+    }
+    if (client->splitter.next >= client->splitter.count && client->pending != 0u) {
+        const icd_can_kind_t kind = client->direction == ICD_TELECOMMAND ? ICD_CAN_TELECOMMAND : ICD_CAN_REQUEST;
+        client->pending--;
+        (void)icd_can_split(
+            &client->splitter, client->link, kind, client->whole[0], client->address, client->link->can->node_address,
+            client->whole + 1, client->whole_length - 1u);
+    }
+    return icd_can_next(&client->splitter, packet);
+}
+
+ICDGEN_API bool icd_client_transfer(icd_client_t *client, const uint8_t **bytes, size_t *count, size_t *read)
+{
+    *read = 0;
+    if (client->bus == ICD_BUS_I2C && client->poll) {
+        client->poll = false;
+        client->owed++;
+        *bytes = &client->poll_id;
+        *count = 1;
+        return icd_i2c_read_length(client->link, client->poll_id, client->checks_telemetry, read) == ICD_OK;
+    }
+    if (client->bus != ICD_BUS_I2C || client->pending == 0u) {
+        return false;
+    }
+    client->pending--;
+    client->owed++;
+    *bytes = client->whole;
+    *count = client->whole_length;
+    if (client->direction == ICD_TELEMETRY) {
+        (void)icd_i2c_read_length(client->link, client->whole[0], client->checks_telemetry, read);
+    }
+    return true;
+}
+
+#endif /* ICDGEN_WIRE_CLIENT_C */

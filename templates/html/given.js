@@ -1,0 +1,73 @@
+"use strict";
+/* What was pasted on the page of a message -> its data: id, framing and checksum come off, as `icdgen decode NODE MESSAGE` does it. */
+const icdgenGiven = ((frames, packets, pasted, stream) => {
+  /** Data of the message in whatever was pasted, and remarks. Throws an Error where it cannot be this message. */
+  function messageIn(wire, length, text) {
+    const given = pasted.read(text);
+    if (given.packets) return carried(wire, length, given.packets);
+    const { data, remarks } = unwrap(wire, length, given.data);
+    return { data, remarks: given.form ? [...remarks, `read as ${given.form}`] : remarks };
+  }
+
+  /** The data in bytes, and remarks about what was around it; bytes that do not fit as they are. Throws an Error, too. */
+  function unwrap(wire, length, bytes) {
+    if (bytes.length === length) return { data: bytes, remarks: [] };
+    const read = wire.framing && stream.messages(wire, bytes);
+    return read ? ofStream(wire, length, read) : bare(wire, length, bytes);
+  }
+
+  function ofStream(wire, length, { messages, remarks }) {
+    const mine = messages.filter(([id]) => wire.ids.includes(id));
+    if (!mine.length) throw new Error(`framed with id ${messages[0][0]}, which is another message's`);
+    const found = mine.map((body) => [body[0], body.slice(1)]).map(([id, data]) => ({ id, data, ...fitting(wire, length, id, data) }));
+    const best = found.find((one) => one.fits) ?? found[0];
+    if (!best.fits && length && !best.data.length) throw new Error(`framed with id ${best.id} alone: a request, which carries no data`);
+    if (!best.fits) notChecked(wire, length, best.id, best.data);
+    const left = messages.length - 1;
+    const others = left ? [`${left} other frame${left === 1 ? "" : "s"} left out`] : [];
+    return { data: best.fits ?? best.data, remarks: [`framing with id ${best.id} removed`, ...(best.remarks ?? []), ...others, ...remarks] };
+  }
+
+  function bare(wire, length, bytes) {
+    const size = wire.id_bytes || 1;
+    const id = bytes.slice(0, size).reduce((sum, byte) => sum * 256 + byte, 0); // its most significant byte comes first
+    const within = bytes.length >= size && wire.ids.includes(id) ? fitting(wire, length, id, bytes.slice(size)) : null;
+    const plain = fitting(wire, length, wire.id, bytes);
+    if (plain) return { data: plain.fits, remarks: plain.remarks };
+    if (within) return { data: within.fits, remarks: [`id ${id} removed`, ...within.remarks] };
+    notChecked(wire, length, wire.id, bytes);
+    return { data: bytes, remarks: [] };
+  }
+
+  /** The data, if they are as many as the message has, or the right checksum follows them; else null. */
+  function fitting(wire, length, id, data) {
+    if (data.length === length) return { fits: data, remarks: [] };
+    const right = wire.crc.some((facts) => frames.check(facts, length, id, data)?.fits);
+    return right ? { fits: data.slice(0, length), remarks: ["CRC is right"] } : null;
+  }
+
+  /** Throws an Error where a checksum follows the data, and is wrong. */
+  function notChecked(wire, length, id, data) {
+    const right = frames.check(wire.crc[0], length, id, data)?.right;
+    if (!right) return;
+    const many = right.length === 1 ? "one byte" : `${right.length} bytes`;
+    throw new Error(`${many} too many: as CRC it would have to be ${frames.hex(right)}, not ${frames.hex(data.slice(length))}`);
+  }
+
+  /** The data of the message that CAN packets carry, and remarks. Throws an Error where they are of another one. */
+  function carried(wire, length, given) {
+    const { can } = wire;
+    if (!can) return { data: Uint8Array.from(given.flatMap((one) => [...one.data])), remarks: ["data of CAN packets"] };
+    const idOf = (one) => packets.partOf(can, "channel", one.id);
+    const mine = given.filter((one) => one.extended && wire.ids.includes(idOf(one)));
+    if (!mine.length) throw new Error(`CAN packets of id ${idOf(given[0])}, which is another message's`);
+    const { messages, open } = packets.join({ can }, mine, () => length);
+    const found = messages.find((one) => ["telecommand", "reply"].includes(one.kind));
+    if (found) return { data: found.data, remarks: [`data of CAN packets with id ${found.id}`] };
+    if (open.length) throw new Error(`${open[0].count - open[0].pieces.size} of ${open[0].count} packets are missing`);
+    throw new Error(`CAN packets with id ${idOf(mine[0])} that carry no data`);
+  }
+
+  return { unwrap, messageIn };
+})(...(typeof icdgenFrames === "undefined" ? ["frames", "packets", "pasted", "stream"].map((name) => require(`./${name}.js`)) : [icdgenFrames, icdgenPackets, icdgenPasted, icdgenStream]));
+if (typeof module !== "undefined") module.exports = icdgenGiven;

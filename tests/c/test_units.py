@@ -1,0 +1,89 @@
+"""Programs of several translation units: the wire layer and the links are there once, or in each unit for itself."""
+
+from __future__ import annotations
+
+import subprocess
+
+import pytest
+
+from tests.c import harness
+
+BOTH = """\
+#include "cubeacp.h"
+#include "bootloader.h"
+int {name}(void);
+int {name}(void)
+{{
+    static icd_client_t client;
+    static uint8_t buffer[CUBEACP_CLIENT_BYTES];
+    const uint8_t *bytes;
+    size_t count;
+    if (icd_client_init(&client, {node}_link(), ICD_BUS_UART, buffer, sizeof buffer) != ICD_OK) {{
+        return -1;
+    }}
+    if (ICD_REQUEST(&client, 0, COMMON_IDENTIFICATION) != ICD_OK || !icd_client_output(&client, &bytes, &count)) {{
+        return -2;
+    }}
+    return bytes[2];
+}}
+"""
+MAIN = """\
+int first(void);
+int second(void);
+int main(void)
+{
+    return first() == 128 && second() == 128 ? 0 : 1;
+}
+"""
+SHARED = ["icdgen_wire.c", "cubeacp/link.c", "bootloader/link.c"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    made = harness.generate(harness.shipped(), tmp_path_factory.mktemp("units"))
+    (made / "first.c").write_text(BOTH.format(name="first", node="cubeacp"))
+    (made / "second.c").write_text(BOTH.format(name="second", node="bootloader"))
+    (made / "main.c").write_text(MAIN)
+    return made
+
+
+def objects(folder, sources, compiler, standard, *options):
+    made = []
+    for source in sources:
+        target = folder / f"{source.replace('/', '_')}.o"
+        command = [*options, *harness.WARNINGS, f"-std={standard}", "-c", f"-I{folder}"]
+        if compiler.endswith("++"):
+            command += ["-xc++"]
+        made.append(harness.compile(folder / source, *command, compiler=compiler, output=target))
+    return made
+
+
+def symbols(path, kinds):
+    done = subprocess.run(["nm", path], capture_output=True, text=True, check=True)
+    rows = (line.split() for line in done.stdout.splitlines())
+    return {row[-1] for row in rows if row[-2] in kinds and row[-1].startswith("icd")}
+
+
+@pytest.mark.parametrize(("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")])
+def test_a_unit_of_a_program_that_shares_the_layer_has_nothing_of_it(folder, compiler, standard):
+    units = objects(folder, ["first.c", "second.c", "main.c"], compiler, standard, "-O1", "-DICDGEN_SHARED")
+    layer = objects(folder, SHARED, "gcc", "c99", "-O1", "-Wmissing-prototypes")  # as C, whoever uses it
+    linker = {"g++": "g++"}.get(compiler, compiler)
+    subprocess.run([linker, *units, *layer, "-o", folder / "shared"], check=True)
+    subprocess.run([folder / "shared"], check=True)
+    assert symbols(units[0], "tT") == set() and symbols(units[0], "U") >= {"icd_client_init", "icd_client_output"}
+    assert "icd_client_start" in symbols(layer[0], "T")
+
+
+@pytest.mark.parametrize(("compiler", "standard"), [("gcc", "c99"), ("clang", "c99"), ("g++", "c++17")])
+def test_units_that_have_all_for_themselves_need_no_other_source(folder, compiler, standard):
+    units = objects(folder, ["first.c", "second.c", "main.c"], compiler, standard, "-O1")
+    subprocess.run([compiler, *units, "-o", folder / "alone"], check=True)
+    subprocess.run([folder / "alone"], check=True)
+    assert symbols(units[0], "U") == set()
+
+
+def test_external_names_differ_in_the_31_characters_that_c_warrants(folder):
+    layer = objects(folder, SHARED, "gcc", "c99", "-O1")
+    names = [name for path in layer for name in symbols(path, "T")]
+    assert len(names) > 50 and len({name[:31] for name in names}) == len(names)
