@@ -28,8 +28,8 @@ MESSAGES = [
         field(0, 8, "Mode"), field(8, 16, "Speed", unit="rpm"), field(24, 16, "Current", "int", unit="mA", formula="raw*10"),
         field(40, 32, "Uptime", unit="ms")]},
     {"name": "Temperatures", "id": 0x22, "kind": "telemetry", "length": 6, "fields": [
-        field(0, 16, "Winding", "int", unit="degC", formula="raw*0.01"),
-        field(16, 16, "Bridge", "int", unit="degC", formula="raw*0.01"),
+        field(0, 16, "Winding", "int", unit="C", formula="raw*0.01"),
+        field(16, 16, "Bridge", "int", unit="C", formula="raw*0.01"),
         field(32, 16, "Supply", unit="mV")]},
     {"name": "Limits", "id": 0x7F, "kind": "telemetry", "length": 5, "fields": [
         field(0, 8, "Profile"), field(8, 32, "Energy", unit="J")]},
@@ -63,9 +63,14 @@ def _size(one: dict, name: str = "") -> str:
     return {"uint": {8: "U8", 16: "U16", 32: "U32"}, "int": {8: "S8", 16: "S16", 32: "S32"}}[one["type"]][one["bits"]]
 
 
+def unit(one: dict) -> str:
+    """The unit as it is printed."""
+    return {"C": "degC"}.get(one.get("unit", "-"), one.get("unit", "-"))
+
+
 def _scaled(one: dict) -> str:
     factor = one.get("formula", "").removeprefix("raw*")
-    return f"{factor} {one.get('unit', '')}".strip() or "-"
+    return f"{factor} {unit(one).strip('-')}".strip() or "-"
 
 
 def platypus(path: Path, page: tuple[float, float], story: list, rules: str = "grid") -> None:
@@ -101,9 +106,7 @@ def sections(path: Path) -> None:
         rows = [["Offset", "Size", "Field", "Type", "Unit", "Scale"]]
         for one in message["fields"]:
             factor = one.get("formula", "raw*1").removeprefix("raw*")
-            rows.append(
-                [str(one["at"] // 8), str(one["bits"] // 8), one["name"], _size(one), one.get("unit", "-"), factor]
-            )
+            rows.append([str(one["at"] // 8), str(one["bits"] // 8), one["name"], _size(one), unit(one), factor])
         story += [
             f"# 4.{index} {message['name']} (0x{message['id']:02X})",
             PROSE,

@@ -18,7 +18,7 @@ from icdgen.importer.words import folded, grows, number, tidy_unit
 
 MOST_BITS = 64  # of a number
 _NONE = ("", "-", "–", "n/a", "na", "none")
-_READABLE_UNIT = re.compile(r"(?:[^\W\d_]|[%°'\"′″‰(]|1\s*/|10\s*\^)[\w\s%°'\"′″‰^*/·.,()\[\]⁻⁺+-]*\Z")
+_READABLE_UNIT = re.compile(r"(?:[^\W\d_]|[%°℃'\"′″‰(]|1\s*/|10\s*\^)[\w\s%°'\"′″‰^*/·.,()\[\]⁻⁺+-]*\Z")
 _NAMED = re.compile(
     r"(?P<name>[^,;]+?)\s*[,;]\s*(?:unit:?\s*)?(?P<factor>[0-9]*\.?[0-9]+)?\s*(?P<unit>[^\W\d][^\s,;]*|[%°]\S*)\Z"
 )
