@@ -10,11 +10,11 @@ from icdgen.importer import explore, profile, run
 from icdgen.importer.pages.extract import Page, Word, extract
 from icdgen.importer.reading import pdf
 from tests.importer.compare import differences
-from tests.importer.manuals import browser
+from tests.importer.manuals import browser, office
 from tests.importer.manuals.typeset import TYPESET
 from tests.importer.manuals.wild import UNSEEN, WILD
 
-LAYOUTS = WILD | UNSEEN | TYPESET
+LAYOUTS = WILD | UNSEEN | TYPESET | office.OFFICE
 BY_BROWSER = ("prose", "ranges", "frames", "sheet")
 BY_TYPST = ("article", "two columns")
 # The importer's gap: spoilt headings over a single row, set in bold without rules beside them, pass for a heading of the text.
@@ -25,6 +25,8 @@ HEADS = {"Offset", "Size", "Bits", "Type", "Unit", "Scale", "Field", "Name", "By
 def drawn(layout: str, path):
     if layout in BY_BROWSER and browser.program() is None:
         pytest.skip("Chromium is not at hand")
+    if layout in office.OFFICE and office.program() is None:
+        pytest.skip("LibreOffice is not at hand")
     if layout in BY_TYPST:
         pytest.importorskip("typst")
     LAYOUTS[layout].draw(path)

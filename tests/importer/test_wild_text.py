@@ -157,6 +157,30 @@ def test_a_factor_is_a_factor_wherever_it_stands(tmp_path, heading, cell, formul
     assert (field.get("formula"), field.get("unit")) == (formula, unit)
 
 
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        ("0\tMode\n1-2\tSpeed\n3\tRange", [(0, 8, "Mode"), (8, 16, "Speed"), (24, 8, "Range")]),
+        ("0\tMode\n1\tSpeed\n3\tRange", [(0, 8, "Mode"), (8, 16, "Speed"), (24, 8, "Range")]),
+    ],
+)
+def test_bytes_and_what_they_mean_are_fields(tmp_path, rows, expected):
+    table = f"Byte\tMeaning\n{rows}\n"
+    result, tree = read(tmp_path, f"5 Telemetry\n\nState (0x21)\n\nLength: 4 bytes\n\n{table}")
+    assert [(f["at"], f["bits"], f["name"]) for f in tree["messages"][0]["fields"]] == expected
+    assert found(result, "IMP026")
+    assert bool(found(result, "IMP038")) == ("-" not in rows)
+
+
+def test_the_last_byte_without_a_length_and_what_stands_around_a_lost_one_are_not_guessed(tmp_path):
+    text = "5 Telemetry\n\nState (0x21)\n\nByte\tMeaning\n0\tMode\n1\tSpeed\n3\tRange\n"
+    result, tree = read(tmp_path, text)
+    assert [f["name"] for f in tree["messages"][0]["fields"]] == ["Mode", "Speed"]
+    assert len(found(result, "IMP023")) == 1
+    result, tree = read(tmp_path, text.replace("1\tSpeed", "?\tSpeed"))
+    assert any("Mode" in message and "3 bytes up to the next one" in message for message in found(result, "IMP038"))
+
+
 def test_a_unit_that_is_not_built_in_is_declared_with_its_sign_in_letters(tmp_path):
     table = "Offset (bits)\tLength (bits)\tName\tType\tUnit\n0\t16\tA\tINT\tk\u03a9\n"
     _, tree = read(tmp_path, f"5 Telemetry\n\nState (0x21)\n\n{table}")
