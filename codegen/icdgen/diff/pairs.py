@@ -223,7 +223,9 @@ def position(node: Node, one: Field) -> Position:
 
 def kind(one: Field) -> str:
     """How the bits are read: as an unsigned or signed number, as a float, as bytes."""
-    return "unsigned" if one.type in ("uint", "enum", "bool") else one.type
+    if one.type in ("uint", "int", "enum", "bool"):
+        return "int" if one.signed else "unsigned"
+    return one.type
 
 
 def differing(
