@@ -152,6 +152,15 @@ messages:
       - {at: 20, bits: 12, name: Mod, type: uint, byte_order: big}
       - {at: 32, bits: 32, name: Loop, type: float}
       - {at: 64, bits: 8, name: Impl, type: bytes}
+  - name: Texts
+    id: 0x01020306
+    kind: telecommand
+    length: 45
+    reserved: 2
+    fields:
+      - {at: 0, bits: 8, name: Str, type: text}
+      - {at: 8, bits: 320, name: 'Odd "name" \\ */', identifier: odd name, type: text}
+      - {at: 328, bits: 16, name: Text, type: text}
   - {name: Lowest byte of it, id: 0x78, kind: telemetry, length: 0}
   - {name: Lowest half of it, id: 0x5678, kind: telemetry, length: 0}
   - {name: Without its highest bit, id: 0x7FFFFFFF, kind: telecommand, length: 0}

@@ -169,13 +169,13 @@ def _fields(draw, enums: list[dict], orders: dict) -> tuple[list[dict], int]:
         at += draw(st.sampled_from((0, 0, 0, 1, 2, 3, 5, 8, 11)))
         field = draw(_field(enums))
         is_plain = field.keys() == {"bits", "type"} and field["type"] == "uint"
-        own = draw(_own_orders()) if field["type"] not in ("bytes", "bool") else {}
+        own = draw(_own_orders()) if field["type"] not in ("bytes", "text", "bool") else {}
         straight = tuple({**orders, **own}.values()) in (("little", "lsb0"), ("big", "msb0"))
-        if field["type"] == "bytes":
+        if field["type"] in ("bytes", "text"):
             at = (at + 7) // 8 * 8
         while used & _bits_of({"at": at, **field}, orders | own):
             at += draw(st.sampled_from((1, 8 - at % 8)))
-            at = (at + 7) // 8 * 8 if field["type"] == "bytes" else at
+            at = (at + 7) // 8 * 8 if field["type"] in ("bytes", "text") else at
         used |= _bits_of({"at": at, **field}, orders | own)
         fields.append({"at": at, "bits": field.pop("bits"), **names.one("field"), **field, **own})
         if is_plain and (straight or at % 8 + fields[-1]["bits"] <= 8) and draw(st.booleans()):
@@ -202,12 +202,12 @@ def _division(draw, names: Names, bits: int) -> list[dict]:
 
 @st.composite
 def _field(draw, enums: list[dict]) -> dict:
-    kind = draw(st.sampled_from(("uint", "int", "uint", "int", "bool", "enum", "float", "bytes")))
+    kind = draw(st.sampled_from(("uint", "int", "uint", "int", "bool", "enum", "float", "bytes", "text")))
     if kind == "bool":
         return {"bits": 1, "type": kind}
     if kind == "float":
         return {"bits": draw(st.sampled_from((32, 64))), "type": kind}
-    if kind == "bytes":
+    if kind in ("bytes", "text"):
         return {"bits": 8 * draw(st.integers(1, 12)), "type": kind}
     if kind == "enum":
         enum = draw(st.sampled_from(enums))

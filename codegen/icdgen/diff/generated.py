@@ -215,7 +215,7 @@ def _decisive(field: Field) -> object:
 
 def _is_sound(field: Field) -> bool:
     """Whether a backend can make anything of the field: an ICD that was not checked may hold what none can."""
-    if field.type == "bytes":
+    if field.is_bytes:
         return field.at % 8 == field.bits % 8 == 0
     wanted = {"bool": field.bits == 1, "float": field.bits in (32, 64), "enum": field.enum is not None}
     return field.bits <= 64 and wanted.get(field.type, True)
@@ -352,10 +352,10 @@ def _types(cut: Icd) -> Types:
             return f"u{field.bits}" if language == "rust" else "int"
         one = next(one for one in description.message(message).fields if one.model is field)
         if language == "python":
-            plain = {"uint": "int", "enum": "int"}.get(field.type, field.type)
+            plain = {"uint": "int", "enum": "int", "text": "bytes"}.get(field.type, field.type)
             return camel(one.enum.words) if one.enum is not None else plain
         if language == "rust":
             return raw_type(one)
-        return f"uint8_t[{field.bits // 8}]" if field.type == "bytes" else type_of(one)
+        return f"uint8_t[{field.bits // 8}]" if field.is_bytes else type_of(one)
 
     return of

@@ -218,11 +218,13 @@ def orders(node: Node) -> tuple[str, str]:
 
 def position(node: Node, one: Field) -> Position:
     """The bits that the field lies on, comparable between nodes of different byte and bit order."""
-    return (byte_range(one),) if one.type == "bytes" else pieces(one, node)
+    return (byte_range(one),) if one.is_bytes else pieces(one, node)
 
 
 def kind(one: Field) -> str:
     """How the bits are read: as an unsigned or signed number, as a float, as bytes."""
+    if one.is_bytes:
+        return "bytes"
     if one.type in ("uint", "int", "enum", "bool"):
         return "int" if one.signed else "unsigned"
     return one.type

@@ -104,7 +104,7 @@ class Field:
     name: str
     at: int
     bits: int
-    type: str  # "uint" | "int" | "bool" | "enum" | "float" | "bytes"
+    type: str  # "uint" | "int" | "bool" | "enum" | "float" | "bytes" | "text"
     identifier: str | None = None
     enum: Enum | None = None
     unit: Unit | None = None
@@ -124,6 +124,11 @@ class Field:
         return self.byte_order or node.byte_order, self.bit_order or node.bit_order
 
     @property
+    def is_bytes(self) -> bool:
+        """Whether the raw value is whole bytes in order, and no number."""
+        return self.type in ("bytes", "text")
+
+    @property
     def signed(self) -> bool:
         """Whether it is in two's complement."""
         return self.type == "int" or (self.enum is not None and self.enum.signed)
@@ -131,7 +136,7 @@ class Field:
     @property
     def fresh(self) -> int | bytes:
         """The raw value in a new message: the only valid one, or 0; of a float its bits, of bytes all of them."""
-        return bytes(self.bits // 8) if self.type == "bytes" else self.const or 0
+        return bytes(self.bits // 8) if self.is_bytes else self.const or 0
 
     @property
     def raw_min(self) -> int:

@@ -55,7 +55,7 @@ def fresh(message: Message) -> dict[str, int | bytes]:
 
 
 def _fresh(field: Field) -> int | bytes:
-    if field.type == "bytes":
+    if field.is_bytes:
         return bytes(field.bits // 8)
     for raw in _candidates(field):
         if field.raw_min <= raw <= field.raw_max and not violations(field, raw):

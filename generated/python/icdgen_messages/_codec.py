@@ -106,6 +106,26 @@ def sized(value: Buffer, size: int) -> bytes:
     return data
 
 
+def text(value: Buffer) -> str:
+    """What stands before the first NUL; U+FFFD for each byte that is not ASCII."""
+    said = bytes(value).split(b"\0", 1)[0]
+    return said.decode("ascii", "replace")
+
+
+def text_bytes(value: str, field: str, size: int) -> bytes:
+    """The bytes of a text, filled with NUL. Raises `RangeError`."""
+    if (
+        not isinstance(value, str)
+        or not value.isascii()
+        or "\0" in value
+        or len(value) > size
+    ):
+        raise RangeError(
+            field, f"up to {size} ASCII characters, none of them NUL", value
+        )
+    return value.encode("ascii").ljust(size, b"\0")
+
+
 def raw_value(
     value: float, field: str, scale: tuple[int, int, int], low: int, high: int
 ) -> int:
@@ -197,4 +217,5 @@ _FITS: dict[str, Callable[[FieldInfo, Any], tuple[str, bool]]] = {
     "bool": _fits_bool,
     "float": _fits_float,
     "bytes": _fits_bytes,
+    "text": _fits_bytes,
 }

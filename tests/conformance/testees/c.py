@@ -15,7 +15,7 @@ from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
 
 MESSAGES = frozenset({"testee.h", "testee_line.h", "testee_line.c", "testee_messages.c"})  # the others need a protocol
-TYPES = {"bool": "TESTEE_BOOL", "bytes": "TESTEE_BYTES"}
+TYPES = {"bool": "TESTEE_BOOL", "bytes": "TESTEE_BYTES", "text": "TESTEE_BYTES"}
 
 
 class Limit(NamedTuple):
@@ -34,6 +34,8 @@ class FieldRow(NamedTuple):
     name_of: str
     get: str
     set: str
+    get_text: str
+    set_text: str
     special: list[str]
     limits: list[Limit]
 
@@ -142,10 +144,12 @@ class _Rows:
         return FieldRow(
             type="TESTEE_SIGNED" if field.signed else TYPES.get(field.type, "TESTEE_UNSIGNED"),
             member=one.name,
-            size=field.bits // 8 if field.type == "bytes" else one.storage.bits // 8,
+            size=field.bits // 8 if field.is_bytes else one.storage.bits // 8,
             name_of=f"{self.node.name}_{names.stem(one.enum)}_testee_name" if one.enum is not None else "",
             get=f"{stem}_{one.physical_name}" if one.steps else "",
             set=f"{stem}_set_{one.physical_name}" if one.steps else "",
+            get_text=f"{stem}_{one.physical_name}" if one.is_text else "",
+            set_text=f"{stem}_set_{one.physical_name}" if one.is_text else "",
             special=[name for key, name in macros if key == "special"],
             limits=[Limit(key, name) for key, name in macros if key not in ("const", "special")],
         )

@@ -15,7 +15,7 @@ from icdgen.backends.c.statement import call, define, head
 from icdgen.backends.c.text import comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
-from icdgen.describe.comments import sentence, words
+from icdgen.describe.comments import sentence, text_comment, words
 from icdgen.describe.numbers import byte_count
 from icdgen.icd.model import Icd
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 _SPELLING = (
     byte_count, call, comment, define, described, head, literal, prose, names.constant, names.enumerator, names.stem,
+    text_comment, words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}
 """What templates spell names and text with."""
@@ -35,6 +36,7 @@ class CBackend:
 
     name = "c"
     reserved = RESERVED
+    significant = 63  # characters of a name that C99 warrants to tell it from others
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Every file, the support header first, then node by node."""

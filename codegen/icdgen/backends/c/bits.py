@@ -15,7 +15,7 @@ BITS = "{bits}"  # stands for the bits of the field in the expressions made here
 def is_word(field: FieldDescription) -> bool:
     """Whether the field is a byte, or a word of 2, 4 or 8 whole bytes that is loaded and stored as one."""
     one = field.model
-    return one.type != "bytes" and one.at % 8 == 0 and one.bits in (8, 16, 32, 64)
+    return not one.is_bytes and one.at % 8 == 0 and one.bits in (8, 16, 32, 64)
 
 
 def order(field: FieldDescription) -> str:

@@ -110,7 +110,7 @@ class Packer:
     def _whole(self, field: FieldDescription, byte: int, size: int) -> None:
         """A field of whole bytes: one item of the struct."""
         one, own, local = field.model, f"self.{field.name}", f"v{byte}"
-        if one.type == "bytes":
+        if one.is_bytes:
             self.items.append(_Item(byte, size, f"{size}s", own, local))
             self.prepare.append(f"{local} = _codec.sized({own}, {size})")
         elif one.type == "float":

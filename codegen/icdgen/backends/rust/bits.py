@@ -14,7 +14,7 @@ FLAGS_FROM = 4  # so many flags of one byte are taken from the table of the supp
 def reading(field: FieldDescription, tables: set[int]) -> str:
     """Expression of the raw value, from ``bytes``; ``tables`` are the bytes whose flags stand in ``flags_N``."""
     one, row = field.model, field.pieces
-    if one.type == "bytes":
+    if one.is_bytes:
         return f"array(bytes, {one.at // 8})"
     if one.type == "bool":
         byte, shift = row[0].byte, row[0].shift
@@ -109,7 +109,7 @@ def fitting(field: FieldDescription) -> str:
 def writing(field: FieldDescription) -> list[str]:
     """Statements that put the raw value into ``bytes``, without the bits that its field has no room for."""
     one, row, source = field.model, field.pieces, f"self.{field_name(field)}"
-    if one.type == "bytes":
+    if one.is_bytes:
         return [f"put_array(&mut bytes, {one.at // 8}, &{source});"]
     if one.type == "bool":
         shift = f" << {row[0].shift}" if row[0].shift else ""

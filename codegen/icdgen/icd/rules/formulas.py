@@ -83,7 +83,7 @@ def _gives(field: Field) -> str:
 @rule("ICD063")
 def unit_has_number(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.having["unit"]:
-        if field.type in ("bool", "enum", "bytes"):
+        if field.type in ("bool", "enum") or field.is_bytes:
             message = f"{quote(field.name)} is `{field.type}`, which has no unit"
             yield Fault(field.source, field.source.at("unit"), message, "remove `unit`, or correct `type`")
 

@@ -19,6 +19,8 @@ typedef struct {
     const char *(*name_of)(uint64_t value, bool is_negative); /* of an enum field, else NULL */
     double (*get)(const void *message);               /* of a scaled field, else NULL */
     icd_status_t (*set)(void *message, double value); /* of a scaled field, else NULL */
+    icd_status_t (*get_text)(const void *message, char *text, size_t capacity); /* of a text field, else NULL */
+    icd_status_t (*set_text)(void *message, const char *text);
     const int64_t *special;                           /* raw values with a meaning of their own, as bits */
     size_t special_count;
     const testee_limit_t *limits;
