@@ -37,6 +37,11 @@ class Direction(NamedTuple):
     total: int
     general: tuple[str, ...]
 
+    @property
+    def worst_first(self) -> list[Frame]:
+        """The frames, those first that are not understood at all."""
+        return sorted(self.frames, key=lambda frame: frame.verdict != NO)
+
 
 Judge = Callable[[MessagePair], tuple[str, tuple[str, ...]]]
 
@@ -121,7 +126,7 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     """How much of what is sent the reader understands."""
     if sent.length != reader.length:
         return NO, (f"{sent.length} bytes come, {reader.length} are expected",)
-    absent = [p.any for p in pair.fields if not p.both and (p.before if reader is pair.old else p.after) is not None]
+    absent = [p.any for p in pair.parts if not p.both and (p.before if reader is pair.old else p.after) is not None]
     wrong = [(p, why) for p in pair.kept if (why := _misread(p))]
     if not absent and not wrong:
         return YES, ()
@@ -165,7 +170,7 @@ def _new_obeys_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
     old, new = pair.old, pair.new
     if old.length != new.length:
         return NO, (f"{old.length} bytes are sent, {new.length} are expected",)
-    found = [(one, *_disobeyed(one)) for one in pair.fields]
+    found = [(one, *_disobeyed(one)) for one in pair.parts]
     reasons = _together((one.any.name, why) for one, why, _ in found if why)
     return (NO if any(refused for *_, refused in found) else PARTLY if reasons else YES), tuple(reasons)
 
