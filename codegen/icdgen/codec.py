@@ -1,7 +1,7 @@
 """The reference codec: slow, obvious, exact. The judge of all generated code, so it shares nothing with ``layout``.
 
-Raw values are int (uint, int, enum, bool as 0 or 1), bytes (bytes fields) and, for floats, the int of their IEEE 754 bits, so
-that every NaN survives. Physical values are exact `fractions.Fraction`s.
+Raw values are int (uint, int, enum, bool as 0 or 1), bytes (bytes and text fields) and, for floats, the int of their
+IEEE 754 bits, so that every NaN survives. Physical values are exact `fractions.Fraction`s.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def encode(node: Node, message: Message, raw: Mapping[str, int | bytes]) -> byte
 
 def check_raw(field: Field, value: int | bytes) -> None:
     """Raises `CodecError` unless the field can hold the raw value."""
-    if field.type == "bytes":
+    if field.is_bytes:
         if not isinstance(value, (bytes, bytearray)) or len(value) != field.bits // 8:
             raise CodecError(f"{field.name!r} takes {field.bits // 8} bytes")
         return
@@ -81,6 +81,19 @@ def raw_from_physical(field: Field, value: Fraction | int | float) -> int:
         low, high = sorted(float(field.scale.physical(r)) if field.scale else r for r in (field.raw_min, field.raw_max))
         raise CodecError(f"{field.name!r} takes {low:g} to {high:g}, not {float(exact):g}")
     return raw
+
+
+def text(raw: bytes) -> str:
+    """What a text field says: its characters up to the first NUL, or to its end; U+FFFD for each that is not ASCII."""
+    return raw.split(b"\0", 1)[0].decode("ascii", "replace")
+
+
+def raw_from_text(field: Field, value: str) -> bytes:
+    """The bytes of a text, filled with NUL. Raises `CodecError` if it is too long, not ASCII or has a NUL in it."""
+    size = field.bits // 8
+    if not value.isascii() or "\0" in value or len(value) > size:
+        raise CodecError(f"{field.name!r} takes up to {size} ASCII characters, none of them NUL")
+    return value.encode("ascii").ljust(size, b"\0")
 
 
 def float_value(field: Field, bits: int) -> float:
@@ -127,13 +140,13 @@ def _runs(at: int, bits: int, byte_order: str, bit_order: str) -> tuple[tuple[in
 
 
 def _read(node: Node, field: Field, frame: int) -> int | bytes:
-    if field.type == "bytes":
+    if field.is_bytes:
         part = frame >> field.at // 8 * 8 & (1 << field.bits) - 1
         return part.to_bytes(field.bits // 8, "little")
     value = 0
     for here, index, count in _runs(field.at, field.bits, *field.orders(node)):
         value |= (frame >> here & (1 << count) - 1) << index
-    if field.type == "int" and value >> (field.bits - 1):
+    if field.signed and value >> (field.bits - 1):
         value -= 1 << field.bits
     return value
 

@@ -51,7 +51,7 @@ def pieces(field: Field, node: Node) -> tuple[Piece, ...]:
 
 def mask(field: Field, node: Node) -> int:
     """The bits of the frame that the field has; bit w of byte b is bit 8 * b + w."""
-    if field.type == "bytes":
+    if field.is_bytes:
         return ((1 << field.bits) - 1) << field.at
     return sum(piece.mask << 8 * piece.byte for piece in pieces(field, node))
 

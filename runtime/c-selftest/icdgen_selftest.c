@@ -159,6 +159,63 @@ static void encoded(run_t *run, const uint8_t *frame)
     check(run, holds_bytes(&buffer[length], ICDGEN_SELFTEST_MARGIN, FILLER), "encode writes past the end", NULL);
 }
 
+/* Whether `text` stands at the beginning of the buffer, and nothing but filler behind its NUL. */
+static bool is_in_buffer(const run_t *run, const char *text)
+{
+    const uint32_t size = (uint32_t)strlen(text) + 1u;
+    return memcmp(run->node->buffer, text, size) == 0 &&
+        holds_bytes(&run->node->buffer[size], run->node->buffer_size - size, FILLER);
+}
+
+static void text_is(run_t *run, const icdgen_selftest_field_t *field, const char *expected)
+{
+    char *const text = (char *)run->node->buffer;
+    const size_t size = expected != NULL ? strlen(expected) + 1u : field->size + 1u;
+    memset(text, (int)FILLER, run->node->buffer_size);
+    if (expected == NULL) {
+        check(run, field->get_text(run->node->value, text, size) == ICD_ERROR_RANGE, "text that is none", field->name);
+    } else {
+        check(
+            run, field->get_text(run->node->value, text, size - 1u) == ICD_ERROR_LENGTH, "small capacity", field->name);
+    }
+    check(run, holds_bytes(run->node->buffer, run->node->buffer_size, FILLER), "written all the same", field->name);
+    if (expected != NULL) {
+        check(run, field->get_text(run->node->value, text, size) == ICD_OK, "text refused", field->name);
+        check(run, is_in_buffer(run, expected), "text", field->name);
+    }
+}
+
+static const char *const *texts(run_t *run, const char *const *expected)
+{
+    uint16_t i;
+    for (i = 0; i < run->message->field_count; i++) {
+        if (run->message->fields[i].get_text != NULL) {
+            text_is(run, &run->message->fields[i], *expected++);
+        }
+    }
+    return expected;
+}
+
+static void set_texts(run_t *run, const icdgen_selftest_field_t *field)
+{
+    const uint8_t *const at = (const uint8_t *)run->node->value + field->offset;
+    uint16_t i;
+    for (i = 0; i < field->text_count; i++) {
+        const icdgen_selftest_text_t *one = &field->texts[i];
+        icd_status_t status;
+        run->vector = i;
+        memset(run->node->value, (int)FILLER, run->node->value_size);
+        status = field->set_text(run->node->value, one->text);
+        check(run, status == (one->bytes == NULL ? ICD_ERROR_RANGE : ICD_OK), "setting a text", field->name);
+        if (one->bytes == NULL) {
+            check(run, holds_bytes(at, field->size, FILLER), "set in spite of a refusal", field->name);
+        } else {
+            check(run, memcmp(at, one->bytes, field->size) == 0, "bytes of a text", field->name);
+            text_is(run, field, one->text);
+        }
+    }
+}
+
 #ifndef ICDGEN_NO_DOUBLE
 static double double_of(uint64_t bits)
 {
@@ -235,6 +292,7 @@ static void field_values(run_t *run, const icdgen_selftest_field_t *field)
             field->name);
     }
     wholes(run, field);
+    set_texts(run, field);
 #ifndef ICDGEN_NO_DOUBLE
     settings(run, field);
 #endif
@@ -292,6 +350,7 @@ static void fresh(run_t *run)
 static void message(run_t *run)
 {
     const uint8_t *at = run->message->vectors;
+    const char *const *expected = run->message->texts;
     uint16_t i;
 #ifndef ICDGEN_NO_DOUBLE
     const uint64_t *doubles = run->message->doubles;
@@ -304,6 +363,7 @@ static void message(run_t *run)
         encoded(run, at);
         assemble(run, at + run->message->length);
         encoded(run, at);
+        expected = texts(run, expected);
 #ifndef ICDGEN_NO_DOUBLE
         doubles = physical_values(run, doubles);
 #endif

@@ -56,6 +56,12 @@ typedef struct {
     int64_t whole;
 } icdgen_selftest_whole_t;
 
+/** A text to be set, and the bytes that it gives; NULL where it is refused. */
+typedef struct {
+    const char *text;
+    const uint8_t *bytes;
+} icdgen_selftest_text_t;
+
 /** A field: the member of the struct, and `packed` bytes of each vector, least significant first. */
 typedef struct {
     const char *name;
@@ -70,6 +76,10 @@ typedef struct {
     icd_status_t (*set_whole)(void *message, int64_t value);
     const icdgen_selftest_whole_t *wholes;
     uint16_t whole_count;
+    icd_status_t (*get_text)(const void *message, char *text, size_t capacity); /* NULL if it is no text */
+    icd_status_t (*set_text)(void *message, const char *text);
+    const icdgen_selftest_text_t *texts;
+    uint16_t text_count;
 #ifndef ICDGEN_NO_DOUBLE
     double (*get)(const void *message); /* NULL if it is not scaled */
     icd_status_t (*set)(void *message, double value);
@@ -99,6 +109,7 @@ typedef struct {
     uint16_t refused_length_count;
     uint16_t constant_count;
     const icdgen_selftest_constant_t *constants;
+    const char *const *texts; /* of each vector, those of the text fields; NULL where the bytes are not ASCII */
 #ifndef ICDGEN_NO_DOUBLE
     const uint64_t *doubles; /* of each vector, those of the scaled fields */
 #endif
@@ -139,7 +150,7 @@ typedef struct {
     uint16_t name_count;
     void *value; /* room for any message */
     uint32_t value_size;
-    uint8_t *buffer; /* room for any frame and ICDGEN_SELFTEST_MARGIN more bytes */
+    uint8_t *buffer; /* room for any frame and ICDGEN_SELFTEST_MARGIN more bytes; for any text too */
     uint32_t buffer_size;
 } icdgen_selftest_node_t;
 

@@ -20,4 +20,6 @@
 
 #include "support/physical.h"
 
+#include "support/text.h"
+
 #endif /* ICDGEN_H */

@@ -40,7 +40,7 @@ const icdgenCodec = (() => {
     for (const [byte, shift, bits, at] of field.pieces) {
       value |= BigInt((frame[byte] >> shift) & ((1 << bits) - 1)) << BigInt(at);
     }
-    return field.type === "int" ? BigInt.asIntN(field.bits, value) : value;
+    return field.signed ? BigInt.asIntN(field.bits, value) : value;
   }
 
   function write(field, frame, raw) {
@@ -56,8 +56,8 @@ const icdgenCodec = (() => {
 
   /** Smallest and largest raw value of a field that is not a byte array. */
   function range(field) {
-    const top = 1n << BigInt(field.bits - (field.type === "int" ? 1 : 0));
-    return [field.type === "int" ? -top : 0n, top - 1n];
+    const top = 1n << BigInt(field.bits - (field.signed ? 1 : 0));
+    return [field.signed ? -top : 0n, top - 1n];
   }
 
   /** Throws a CodecError unless the field can hold the raw value. */
@@ -149,6 +149,22 @@ const icdgenCodec = (() => {
     return [bits >> 63n ? -digits : digits, (exponent || 1n) - 1075n];
   }
 
+  /** What the bytes of a text field say before the first NUL; U+FFFD for each that is not ASCII. */
+  function text(raw) {
+    const end = raw.indexOf(0);
+    return Array.from(end < 0 ? raw : raw.subarray(0, end), (byte) => (byte < 0x80 ? String.fromCharCode(byte) : "\ufffd")).join("");
+  }
+
+  /** The bytes of a text, filled with NUL. Throws a CodecError if it is too long, not ASCII or has a NUL in it. */
+  function rawFromText(field, said) {
+    const raw = new Uint8Array(field.bits / 8);
+    if (said.length > raw.length || !/^[\x01-\x7f]*$/.test(said)) {
+      throw unfit(field, `takes up to ${raw.length} ASCII characters, none of them NUL`);
+    }
+    raw.set(Array.from(said, (one) => one.charCodeAt(0)));
+    return raw;
+  }
+
   /** The bits of a double. */
   function doubleBits(value) {
     scratch.setFloat64(0, value);
@@ -179,8 +195,8 @@ const icdgenCodec = (() => {
   }
 
   return {
-    CodecError, decode, encode, check, range, fresh, exact, physical, rawFromPhysical, nearestDouble, doubleBits, doubleOf,
-    floatValue, floatBits,
+    CodecError, decode, encode, check, range, fresh, exact, physical, rawFromPhysical, nearestDouble, doubleBits, doubleOf, text,
+    rawFromText, floatValue, floatBits,
   };
 })();
 if (typeof module !== "undefined") module.exports = icdgenCodec;

@@ -6,7 +6,7 @@
  * An entry of the index is kind, title, context, further words of its name, what is said about it, exact phrases, address.
  */
 const icdgenFind = (() => {
-  const RANKS = { node: 3, message: 2.5, enumeration: 2.2, protocol: 2, unit: 1.8, field: 1.5, guide: 1.2, member: 1, erratum: 0.8, note: 0.4 };
+  const RANKS = { node: 6, message: 6, enumeration: 4, protocol: 3.5, unit: 2.5, field: 1.5, guide: 1.2, member: 1, erratum: 0.8, note: 0.4 };
   const EXACT = 1;
   const PREFIX = 0.8;
   const WITHIN = 0.4;
@@ -71,7 +71,7 @@ const icdgenFind = (() => {
       points /= asked.length;
       const named = [...entry.named].filter((id) => covered.has(id)).length;
       points += (8 * named) / Math.max(entry.named.size, 1);
-      if (entry.names.some((name) => name.startsWith(query.squashed))) points += 4;
+      if (entry.names.some((name) => name.startsWith(query.squashed))) points += 2;
       return points + exactness(entry, query) + RANKS[entry.kind] - Math.min(entry.title.length, 99) / 200;
     }
 

@@ -17,11 +17,14 @@ const icdgenPasted = ((frames) => {
   const COMMENT = /\/\*[^]*?\*\/|\/\/[^\n]*/g;
   const LIST = /[[{(]([^[\]{}()]*)[\]})][)\]}\s;]*$/;
   const NUMBER = /^(0[xX][0-9A-Fa-f]+|\d+)(?:[uU]8?)?$/;
-  const LITERAL = /^b(["'])((?:\\[^]|(?!\1)[^\\])*\\(?:\\[^]|(?!\1)[^\\]|[^])*)\1$/;
+  const LITERAL = /^(?:bytearray\()?b(["'])((?:\\[^]|(?!\1)[^\\])*\\(?:\\[^]|(?!\1)[^\\]|[^])*)\1\)?$/;
   const STRING = /(["'])([0-9A-Fa-f\s]+)\1/g;
   const ESCAPED = { n: 10, r: 13, t: 9, 0: 0, a: 7, b: 8, f: 12, v: 11, "\\": 92, "'": 39, '"': 34 };
   const BASE64 = /^(?:[A-Za-z0-9+/_-]{4})*(?:[A-Za-z0-9+/_-]{2}==|[A-Za-z0-9+/_-]{3}=)?$/;
-  const LABEL = /^[ \t]*(?:\[[^\]\n]*\][ \t]*)?(?:\d+:\d\d[\d:.]*[ \t]+)?(?:(?:[rRtT][xX]|recv|sent|send)[ \t]*[:>]?|<+|>+|<-|->)[ \t]+/gm;
+  const MARKED = /(["'])(0[xX][0-9A-Fa-f]{1,2}|[0-9A-Fa-f]{2})\1|<([0-9A-Fa-f]{2})>|\b([0-9A-Fa-f]{2})[hH]\b/g;
+  const DECIMALS = /^[0-9]{1,3}(?:[\s,;]+[0-9]{1,3})+$/;
+  const LABEL =
+    /^[ \t]*(?:\[[^\]\n]*\][ \t]*)?(?:(?:\d{4}-\d\d-\d\d[T ])?\d+:\d\d[\d:.,]*[ \t]+)?(?:(?:[rRtT][xX]|recv|sent|send|frame)[ \t]*[:>]?|<+|>+|<-|->)[ \t]+|^[ \t]*\d{4}-\d\d-\d\d[T ]\d+:\d\d[\d:.,]*[ \t]+/gm;
 
   const digits = (text) => Uint8Array.from(text.match(/[0-9A-Fa-f]{2}/g) ?? [], (pair) => parseInt(pair, 16));
   const linesOf = (text) => text.split(/\r\n|\r|\n/).map((line) => line.trim()).filter(Boolean);
@@ -38,7 +41,7 @@ const icdgenPasted = ((frames) => {
     try {
       return { data: frames.parseHex(text), form: "" };
     } catch (error) {
-      const other = ofCode(text.replace(COMMENT, " ")) ?? labelled(text) ?? base64(text);
+      const other = ofCode(text.replace(COMMENT, " ")) ?? labelled(text) ?? marked(text) ?? decimal(text) ?? base64(text);
       if (!other) throw error;
       return other;
     }
@@ -109,6 +112,17 @@ const icdgenPasted = ((frames) => {
   function labelled(text) {
     const bare = text.replace(LABEL, "");
     return bare === text ? null : hexadecimal(bare);
+  }
+
+  /** Each byte in quotes or angles, or followed by `h`. */
+  function marked(text) {
+    const bare = text.replace(MARKED, (whole, quote, quoted, angled, ended) => ` ${quoted ?? angled ?? ended} `);
+    return bare === text ? null : hexadecimal(bare);
+  }
+
+  function decimal(text) {
+    const values = DECIMALS.test(text.trim()) ? text.match(/[0-9]+/g).map(Number) : [];
+    return values.length && Math.max(...values) < 256 ? { data: Uint8Array.from(values), form: "decimal numbers" } : null;
   }
 
   function base64(text) {

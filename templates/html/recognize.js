@@ -238,7 +238,11 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
   }
 
   const noted = (one, ...remarks) => ({ ...one, remarks: [...one.remarks, ...remarks] });
-  const named = (found) => found.slice(0, 3).map((one) => one.message).join(", or ") + (found.length > 3 ? `, or one of ${found.length - 3} others` : "");
+  /** The readings by name, the first few of them; one that has two directions once. */
+  function named(found) {
+    const every = [...new Set(found.map((one) => one.message))];
+    return every.slice(0, 3).join(", or ") + (every.length > 3 ? `, or one of ${every.length - 3} others` : "");
+  }
 
   return { recognize, Ambiguous };
 })(...(typeof icdgenFrames === "undefined" ? ["frames", "pasted", "stream", "packets"].map((name) => require(`./${name}.js`)) : [icdgenFrames, icdgenPasted, icdgenStream, icdgenPackets]));

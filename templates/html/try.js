@@ -83,7 +83,7 @@
       const members = plan.enums[field.enum].map(([value, name]) => make("option", { value: String(value) }, `${value} · ${name}`));
       return make("select", attributes, ...members, make("option", { value: "" }, "no member"));
     }
-    if (field.scale || field.type === "float") return make("input", { ...attributes, type: "text", class: "n", autocomplete: "off", spellcheck: "false" });
+    if (field.scale || field.text || field.type === "float") return make("input", { ...attributes, type: "text", class: "n", autocomplete: "off", spellcheck: "false" });
     return null;
   }
 
@@ -242,6 +242,9 @@
     document.getElementById("try").scrollIntoView();
   }
 
+  for (const one of document.querySelectorAll(".frames dd")) {
+    one.replaceChildren(make("a", { href: `#try=${one.textContent.replaceAll(" ", "").toLowerCase()}` }, one.textContent));
+  }
   bytes.addEventListener("input", read);
   reset.addEventListener("click", () => {
     raw = codec.fresh(plan);

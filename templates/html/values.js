@@ -11,6 +11,7 @@ const icdgenValues = ((codec, frames) => {
   }
 
   function parsePhysical(field, text) {
+    if (field.text) return codec.rawFromText(field, text);
     const word = text.trim().replace("\u2212", "-").toLowerCase();
     const named = { nan: NaN, inf: Infinity, infinity: Infinity, "-inf": -Infinity, "-infinity": -Infinity }[word];
     const number = named ?? (/^[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[-+]?[0-9]+)?$/.test(word) ? Number(word) : undefined);
@@ -26,12 +27,14 @@ const icdgenValues = ((codec, frames) => {
 
   /** The physical value of a field that has one. */
   function physicalText(field, value) {
+    if (field.text) return codec.text(value);
     return field.type === "float" ? floatText(field, value) : decimal(...codec.exact(field, value));
   }
 
   /** What people want to see of a value: its name, its physical value with unit, or the raw one. */
   function shortText(field, value, enums) {
     if (field.type === "enum") return memberName(enums[field.enum], value) ?? `${value}?`;
+    if (field.text) return codec.text(value);
     if (field.type === "float" || field.scale) return `${physicalText(field, value)}${field.unit ? ` ${field.unit}` : ""}`;
     return `${rawText(field, value)}${field.unit ? ` ${field.unit}` : ""}`;
   }

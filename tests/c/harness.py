@@ -26,7 +26,15 @@ LANGUAGES = [(compiler, standard) for compiler in ("gcc", "clang") for standard 
 LANGUAGES += [("g++", "c++17"), ("clang++", "c++17")]
 SANITIZERS = "-fsanitize=address,undefined -fno-sanitize-recover=all".split()
 
-_TYPES = {"uint": "UNSIGNED", "enum": "UNSIGNED", "int": "SIGNED", "bool": "FLAG", "float": "BITS", "bytes": "BYTES"}
+_TYPES = {
+    "uint": "UNSIGNED",
+    "enum": "UNSIGNED",
+    "int": "SIGNED",
+    "bool": "FLAG",
+    "float": "BITS",
+    "bytes": "BYTES",
+    "text": "BYTES",
+}
 
 
 @cache
@@ -90,7 +98,7 @@ def targets(icd: Icd) -> list[Target]:
             places, at = [], 0
             for field in message.model.fields:
                 places.append(at)
-                at += field.bits // 8 if field.type == "bytes" else 8
+                at += field.bits // 8 if field.is_bytes else 8
             found.append(Target(message, tuple(places), at))
     return found
 
@@ -109,7 +117,7 @@ def _row(target: Target) -> dict[str, object]:
     for one, place in zip(message.fields, target.places, strict=True):
         field, name = one.model, one.name
         fields.append({"at": field.at, "bits": field.bits, "type": _TYPES[field.type], "place": place})
-        if field.type == "bytes":
+        if field.is_bytes:
             collect.append(f"memcpy(record + {place}, message.{name}, {field.bits // 8});")
             assign.append(f"memcpy(message.{name}, record + {place}, {field.bits // 8});")
         elif field.type == "float":

@@ -79,10 +79,15 @@ def _random_message(source: random.Random, number: int) -> dict:
     fields, at = [], 0
     for index in range(14):
         at += source.choice([0, 0, 0, 1, 3, 9])
-        kind = source.choice(["uint", "int", "uint", "int", "bool", "enum", "float", "bytes"])
-        bits = {"bool": 1, "float": source.choice([32, 64]), "bytes": 8 * source.randint(1, 5)}.get(kind)
+        kind = source.choice(["uint", "int", "uint", "int", "bool", "enum", "float", "bytes", "text"])
+        bits = {
+            "bool": 1,
+            "float": source.choice([32, 64]),
+            "bytes": 8 * source.randint(1, 5),
+            "text": 8 * source.randint(1, 9),
+        }.get(kind)
         bits = bits or source.choice([*range(1, 65), 8, 16, 24, 32, 40, 48, 56, 64])
-        if kind == "bytes" or (bits % 8 == 0 and source.random() < 0.5):
+        if kind in ("bytes", "text") or (bits % 8 == 0 and source.random() < 0.5):
             at = -(-at // 8) * 8
         field = {"at": at, "bits": bits, "name": f"Field {index}", "type": kind}
         if kind == "enum":

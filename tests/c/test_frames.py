@@ -93,7 +93,7 @@ def samples(node: Node, message: Message):
 
 
 def extremes(field: Field):
-    if field.type == "bytes":
+    if field.is_bytes:
         return [bytes(range(1, field.bits // 8 + 1)) if field.bits < 2040 else b"\x5a" * (field.bits // 8)]
     if field.type == "float":
         exponent = 0x7F800001 if field.bits == 32 else 0x7FF0000000000001  # a signalling NaN

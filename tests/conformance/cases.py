@@ -33,6 +33,7 @@ class MessageCases:
         self.node, self.message, self.enums, self.never_set = node, message, enums, never_set
         self.fields: list[dict] = message["fields"]
         self.scaled = [field for field in self.fields if "factor" in field]
+        self.texts = [field for field in self.fields if field["type"] == "text"]
         self.id = message.get("id", message.get("set_id"))
         self.fresh = {field["name"]: shown(field, field["default"]) for field in self.fields}
 
@@ -45,7 +46,7 @@ class MessageCases:
         yield self.constants()
         for field in self.fields:
             yield from self.unfit(field)
-        for field in self.scaled:
+        for field in (*self.scaled, *self.texts):
             yield from self.settings(field)
 
     def request(self, op: str, **more: object) -> dict:
@@ -55,6 +56,8 @@ class MessageCases:
         """Decoding, and encoding from raw and from physical values."""
         raw = {f["name"]: shown(f, value) for f, value in zip(self.fields, vector["raw"], strict=True)}
         physical = {f["name"]: bits for f, bits in zip(self.scaled, vector.get("doubles", ()), strict=True)}
+        for field, text in zip(self.texts, vector.get("texts", ()), strict=True):
+            physical[field["name"]] = None if text is None else text.encode().hex()
         encoded = vector.get("encoded", vector["bytes"])
         answer = {"ok": True, "raw": raw, "physical": physical, "bytes": encoded}
         why = vector["why"]
@@ -63,6 +66,7 @@ class MessageCases:
         names = self.names(raw)
         if names:
             yield Case(why, self.request("decode", bytes=vector["bytes"], names=True), {**answer, "names": names})
+        physical = {name: value for name, value in physical.items() if value is not None}
         if physical:
             rest = {name: value for name, value in raw.items() if name not in physical}
             yield Case(
@@ -75,6 +79,11 @@ class MessageCases:
 
     def from_physical(self, raw: dict, physical: dict, answer: dict) -> dict:
         """The answer, unless some raw value is too wide to come back from a double."""
+        for field in self.texts:
+            if field["name"] in physical:
+                filled = physical[field["name"]].ljust(field["bits"] // 4, "0")
+                if filled != raw[field["name"]]:
+                    answer = {**answer, "raw": {**answer["raw"], field["name"]: filled}, "bytes": ...}
         for field in self.scaled:
             back = nearest(field, physical[field["name"]])
             if back is None:
@@ -131,7 +140,11 @@ class MessageCases:
         name = field["name"]
         rest = {key: value for key, value in self.fresh.items() if key != name}
         refusal = {"ok": False, "error": "range", "field": name}
-        for bits, raw in [*field["set"], *((bits, None) for bits in self.never_set)]:
+        if field["type"] == "text":
+            given = [(text.encode().hex(), raw) for text, raw in field["set"]]
+        else:
+            given = [*field["set"], *((bits, None) for bits in self.never_set)]
+        for bits, raw in given:
             request = self.request("encode", raw=rest, physical={name: bits})
             full = {key: raw if key == name else self.fresh[key] for key in self.fresh}  # in the order of the fields
             answer = refusal if raw is None else {"ok": True, "raw": full, "physical": ..., "bytes": ...}

@@ -39,7 +39,42 @@ MIXED = """\
 icdgen: 1
 node: {name: mixed, title: Mixed order, byte_order: little, bit_order: msb0}
 include: [shared.yaml]
+enums:
+  - name: Signed Narrow
+    members:
+      - {value: -1, name: Backwards}
+      - {value: 0, name: Nowhere}
+      - {value: 3, name: Forwards}
+  - name: Signed Wide
+    members:
+      - {value: -9223372036854775808, name: Least}
+      - {value: 9223372036854775807, name: Most}
+  - name: Signed Word
+    members:
+      - {value: -40000, name: Below}
+      - {value: -7, name: Seven Below}
+  - name: Signed Ends
+    members:
+      - {value: -128, name: First}
+      - {value: 127, name: Last}
 messages:
+  - name: Signs
+    id: 9
+    kind: telemetry
+    length: 40
+    fields:
+      - {at: 0, bits: 3, name: Three, type: enum, enum: Signed Narrow}
+      - {at: 3, bits: 8, name: Crossing, type: enum, enum: Signed Narrow, byte_order: big}
+      - {at: 16, bits: 8, name: Byte, type: enum, enum: Signed Ends, const: -128}
+      - {at: 24, bits: 8, name: Narrow Byte, type: enum, enum: Signed Narrow}
+      - {at: 32, bits: 64, name: Whole, type: enum, enum: Signed Wide}
+      - {at: 96, bits: 64, name: Turned, type: enum, enum: Signed Wide, byte_order: big}
+      - {at: 163, bits: 17, name: Odd, type: enum, enum: Signed Word, special: [{value: -65536, meaning: none}]}
+      - {at: 192, bits: 32, name: Word, type: enum, enum: Signed Word}
+      - {at: 224, bits: 24, name: Three Bytes, type: enum, enum: Signed Word, byte_order: big}
+      - {at: 248, bits: 8, name: Last Byte, type: enum, enum: Signed Ends}
+      - {at: 256, bits: 16, name: Half, type: enum, enum: Signed Narrow}
+      - {at: 280, bits: 33, name: Lengthy, type: enum, enum: Signed Word}
   - name: Mixed
     id: 7
     kind: telecommand
@@ -62,6 +97,22 @@ messages:
       - {at: 2, bits: 23, name: A, type: int, formula: raw*0.0000001}
       - {at: 25, bits: 40, name: B, type: uint}
       - {at: 65, bits: 7, name: C, type: int}
+  - name: Printed factors
+    kind: configuration
+    set_id: 1
+    get_id: 254
+    length: 52
+    fields:
+      - {at: 0, bits: 64, name: Smallest, type: uint, formula: raw*2^-66}
+      - {at: 64, bits: 64, name: Both Ways, type: int, formula: raw*4.656612873077393e-10 + 273.15}
+      - {at: 128, bits: 32, name: Downward, type: int, formula: 40 - raw*1e-19}
+      - {at: 160, bits: 16, name: Large, type: uint, formula: "(raw + 2^-20)*123456789012345678901234567890"}
+      - {at: 176, bits: 8, name: Tiny, type: int, formula: raw*2^-180}
+      - {at: 184, bits: 5, name: Narrow, type: int, formula: raw*1.2345678901234567e-22 - 2^60}
+      - {at: 189, bits: 31, name: Long Fraction, type: uint, formula: -raw/3^100}
+      - {at: 224, bits: 64, name: Ends, type: int, formula: raw*2^180/(2^179 - 1) + 2^40}
+      - {at: 288, bits: 64, name: Half, type: uint, formula: (raw - 2^63)*2^-67}
+      - {at: 352, bits: 64, name: Turned, type: uint, formula: -raw*2^177 + 2^200}
 """
 
 WIDE = """\
@@ -101,6 +152,15 @@ messages:
       - {at: 20, bits: 12, name: Mod, type: uint, byte_order: big}
       - {at: 32, bits: 32, name: Loop, type: float}
       - {at: 64, bits: 8, name: Impl, type: bytes}
+  - name: Texts
+    id: 0x01020306
+    kind: telecommand
+    length: 45
+    reserved: 2
+    fields:
+      - {at: 0, bits: 8, name: Str, type: text}
+      - {at: 8, bits: 320, name: 'Odd "name" \\ */', identifier: odd name, type: text}
+      - {at: 328, bits: 16, name: Text, type: text}
   - {name: Lowest byte of it, id: 0x78, kind: telemetry, length: 0}
   - {name: Lowest half of it, id: 0x5678, kind: telemetry, length: 0}
   - {name: Without its highest bit, id: 0x7FFFFFFF, kind: telecommand, length: 0}

@@ -14,6 +14,7 @@ from pathlib import Path
 from icdgen import codec
 from icdgen.icd.model import Field, Icd, Message, Node
 from icdgen.protocol import ops
+from icdgen.vectors.make import known_text
 from icdgen.vectors.settings import bits_of
 from tests.conformance.icds import icd_of
 
@@ -98,11 +99,14 @@ class Reference:
             if name not in fields:
                 raise Refusal("unknown-field", field=name)
         for name in physical:
-            if name not in fields or not fields[name].scale:
+            if name not in fields or not (fields[name].scale or fields[name].type == "text"):
                 raise Refusal("unknown-field", field=name)
         raw = {}
         for field in message.fields:
-            if field.name in physical:
+            if field.name in physical and field.type == "text":
+                value = hex_bytes(physical[field.name]).decode("utf-8")
+                raw[field.name] = fitting(field, codec.raw_from_text, value)
+            elif field.name in physical:
                 value = struct.unpack(">d", hex_bytes(physical[field.name], 8))[0]
                 raw[field.name] = fitting(field, codec.raw_from_physical, value)
             elif field.name in given:
@@ -113,7 +117,7 @@ class Reference:
 
     def constants(self, request: dict) -> dict:
         _, message = self.message(request)
-        default = {f.name: bytes(f.bits // 8) if f.type == "bytes" else f.const or 0 for f in message.fields}
+        default = {f.name: bytes(f.bits // 8) if f.is_bytes else f.const or 0 for f in message.fields}
         return {
             "name": message.name,
             "ids": list(message.ids),
@@ -173,7 +177,7 @@ def raw_value(field: Field, given: object) -> int | bytes:
     """A raw value as it came in a request."""
     if field.type == "float":
         return int.from_bytes(hex_bytes(given, field.bits // 8), "big")
-    if field.type == "bytes":
+    if field.is_bytes:
         value: int | bytes = hex_bytes(given)
     elif type(given) is int or (field.type == "bool" and type(given) is bool):
         value = given  # type: ignore[assignment]
@@ -206,11 +210,19 @@ def shown(field: Field, value: int | bytes) -> object:
     return bool(value) if field.type == "bool" else value
 
 
+def physical_value(field: Field, raw: int | bytes) -> str | None:
+    """A physical value as it stands in an answer: a text in hex, null where the bytes are none."""
+    if not isinstance(raw, bytes):
+        return bits_of(codec.physical_double(field, raw))
+    text = known_text(raw)
+    return None if text is None else text.encode().hex()
+
+
 def described(node: Node, message: Message, raw: dict, names: bool = False) -> dict:
     """The answer to decode and encode."""
     answer: dict = {
         "raw": {field.name: shown(field, raw[field.name]) for field in message.fields},
-        "physical": {f.name: bits_of(codec.physical_double(f, raw[f.name])) for f in message.fields if f.scale},
+        "physical": {f.name: physical_value(f, raw[f.name]) for f in message.fields if f.scale or f.type == "text"},
         "bytes": codec.encode(node, message, raw).hex(),
     }
     if names:

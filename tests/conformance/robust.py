@@ -60,24 +60,28 @@ def bad_field(cases: MessageCases, encode: dict, field: dict) -> Iterator[tuple[
     name, refusal = field["name"], {"ok": False, "error": "request"}
     without = {key: value for key, value in cases.fresh.items() if key != name}
     yield {**encode, "raw": without}, {"ok": False, "error": "missing-field", "field": name}
-    if "factor" not in field:
+    if "factor" not in field and field["type"] != "text":
         request = {**encode, "raw": without, "physical": {name: "0" * 16}}
         yield request, {"ok": False, "error": "unknown-field", "field": name}
+    elif field["type"] == "text":
+        for value in (None, 0, "0", "zz", True):
+            yield {**encode, "raw": without, "physical": {name: value}}, refusal
     else:
         for value in (None, 0, "0" * 15, "0" * 18, "0" * 15 + "x", True):
             yield {**encode, "raw": without, "physical": {name: value}}, refusal
         yield from bad_sweep(cases, name)
     wrong: tuple[object, ...] = (None, [], {}, 1.5, 1e3)
-    if field["type"] in ("float", "bytes"):
+    if field["type"] in ("float", "bytes", "text"):
         wrong += (0, True, "0", "zz" * (field["bits"] // 8), " ")
     else:
         wrong += ("0", "")
-    if field["type"] not in ("float", "bytes", "bool"):
+    if field["type"] not in ("float", "bytes", "text", "bool"):
         wrong += (True,)
     for value in wrong:
         yield {**encode, "raw": {**without, name: value}}, refusal
-    unfit = {"float": (), "bytes": ("", "00" * (field["bits"] // 8 + 1)), "bool": (2, -1)}.get(field["type"], ())
-    if field["type"] not in ("float", "bytes"):
+    sizes = ("", "00" * (field["bits"] // 8 + 1))
+    unfit = {"float": (), "bytes": sizes, "text": sizes, "bool": (2, -1)}.get(field["type"], ())
+    if field["type"] not in ("float", "bytes", "text"):
         unfit = (*unfit, 2**64, -(2**63) - 1, 10**40, -(10**40))
     for value in unfit:
         yield {**encode, "raw": {**without, name: value}}, {"ok": False, "error": "range", "field": name}

@@ -105,6 +105,7 @@ def _random(icd: Icd, message, cases: MessageCases, frames: int, seed: int) -> I
             vector = {
                 "why": "random frame", "bytes": row.frame.hex(), "encoded": row.encoded.hex(),
                 "raw": [raw_json(f, row.raw[f.name]) for f in message.fields], "doubles": list(row.doubles.values()),
+                "texts": list(row.texts.values()),
             }  # fmt: skip
             found += cases.frame(vector)
         for batch in _batch(f"{node.name} {message.name!r}", iter(found)):

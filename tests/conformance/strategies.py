@@ -7,6 +7,8 @@ from itertools import pairwise
 
 from hypothesis import strategies as st
 
+from icdgen.icd import exact, formula
+
 # Words that mean something to a language, to generated code, or to a template; alone each would be a bad identifier.
 _WORDS = (
     "class", "def", "None", "True", "self", "import", "lambda", "async", "match", "type", "fn", "crate", "impl", "mod", "Self",
@@ -116,23 +118,27 @@ def _uses_all(names: dict, enums: list[dict], id: int | list[int]) -> dict:
     """A message with a field of each enumeration, so that none is unused."""
     fields, at = [], 3
     for number, enum in enumerate(enums):
-        bits = max(m["value"] for m in enum["members"]).bit_length() or 1
+        bits = _needed(enum)
         fields.append({"at": at, "bits": bits, "name": f"user {number}", "type": "enum", "enum": enum["name"]})
         at += bits
     return {**names, "kind": "telemetry", "id": id, "length": (at + 7) // 8, "fields": fields}
 
 
+def _needed(enum: dict) -> int:
+    """Bits of the narrowest field that holds every member; a negative one makes all of them signed."""
+    values = [member["value"] for member in enum["members"]]
+    signed = min(values) < 0
+    return max((~value if value < 0 else value).bit_length() + signed for value in values) or 1
+
+
 @st.composite
 def _enum(draw, names: Names, name: str) -> dict:
     bits = draw(st.sampled_from((1, 2, 3, 4, 7, 8, 9, 16, 31, 32, 33, 63, 64)))
-    values = draw(
-        st.lists(
-            st.integers(0, (1 << bits) - 1) | st.integers(0, min(5, (1 << bits) - 1)),
-            min_size=1,
-            max_size=6,
-            unique=True,
-        )
+    low, high = draw(
+        st.sampled_from(((0, (1 << bits) - 1), (0, (1 << bits) - 1), (-(1 << bits - 1), (1 << bits - 1) - 1)))
     )
+    near = st.integers(max(low, -5), min(5, high))
+    values = draw(st.lists(st.integers(low, high) | near, min_size=1, max_size=6, unique=True))
     return {"name": name, "members": [{"value": value, **names.one("member")} for value in values]}
 
 
@@ -163,13 +169,13 @@ def _fields(draw, enums: list[dict], orders: dict) -> tuple[list[dict], int]:
         at += draw(st.sampled_from((0, 0, 0, 1, 2, 3, 5, 8, 11)))
         field = draw(_field(enums))
         is_plain = field.keys() == {"bits", "type"} and field["type"] == "uint"
-        own = draw(_own_orders()) if field["type"] not in ("bytes", "bool") else {}
+        own = draw(_own_orders()) if field["type"] not in ("bytes", "text", "bool") else {}
         straight = tuple({**orders, **own}.values()) in (("little", "lsb0"), ("big", "msb0"))
-        if field["type"] == "bytes":
+        if field["type"] in ("bytes", "text"):
             at = (at + 7) // 8 * 8
         while used & _bits_of({"at": at, **field}, orders | own):
             at += draw(st.sampled_from((1, 8 - at % 8)))
-            at = (at + 7) // 8 * 8 if field["type"] == "bytes" else at
+            at = (at + 7) // 8 * 8 if field["type"] in ("bytes", "text") else at
         used |= _bits_of({"at": at, **field}, orders | own)
         fields.append({"at": at, "bits": field.pop("bits"), **names.one("field"), **field, **own})
         if is_plain and (straight or at % 8 + fields[-1]["bits"] <= 8) and draw(st.booleans()):
@@ -196,17 +202,16 @@ def _division(draw, names: Names, bits: int) -> list[dict]:
 
 @st.composite
 def _field(draw, enums: list[dict]) -> dict:
-    kind = draw(st.sampled_from(("uint", "int", "uint", "int", "bool", "enum", "float", "bytes")))
+    kind = draw(st.sampled_from(("uint", "int", "uint", "int", "bool", "enum", "float", "bytes", "text")))
     if kind == "bool":
         return {"bits": 1, "type": kind}
     if kind == "float":
         return {"bits": draw(st.sampled_from((32, 64))), "type": kind}
-    if kind == "bytes":
+    if kind in ("bytes", "text"):
         return {"bits": 8 * draw(st.integers(1, 12)), "type": kind}
     if kind == "enum":
         enum = draw(st.sampled_from(enums))
-        needed = max(m["value"] for m in enum["members"]).bit_length() or 1
-        return {"bits": draw(st.integers(needed, 64)), "type": kind, "enum": enum["name"]}
+        return {"bits": draw(st.integers(_needed(enum), 64)), "type": kind, "enum": enum["name"]}
     bits = draw(st.integers(1, 64) | st.sampled_from((1, 7, 8, 9, 15, 16, 17, 24, 31, 32, 33, 53, 54, 63, 64)))
     field: dict = {"bits": bits, "type": kind}
     if draw(st.booleans()):
@@ -226,6 +231,8 @@ def _field(draw, enums: list[dict]) -> dict:
 @st.composite
 def _formula(draw) -> str:
     """Factors and offsets, plain and extreme; the rules bound what they may come to."""
+    if draw(st.integers(0, 3)) == 0:
+        return draw(_long_formula())
     top = draw(st.sampled_from((1, 3, 7, 10, 1000, 65535, 2**31, 2**32 - 5, 2**32)) | st.integers(1, 2**32))
     bottom = draw(st.sampled_from((1, 2, 3, 7, 10, 100, 1000, 4096, 10**7, 2**32 - 5)) | st.integers(1, 2**32))
     offset = draw(st.sampled_from((0, 0, 0, 1, 40, 273, 2**20, 2**30)))
@@ -246,3 +253,18 @@ def _formula(draw) -> str:
         )
     )
     return simple or f"{sign}raw*{top}/{bottom}{shift}"
+
+
+@st.composite
+def _long_formula(draw) -> str:
+    """Factors of many digits, with and without an offset over another denominator."""
+    sign = draw(st.sampled_from(("", "-")))
+    digits = draw(st.integers(1, 10**20 - 1))
+    factor = draw(
+        st.sampled_from(("2^-19", "2^-66", "1e-9", "4.656612873077393e-10", "3^-113", "2^180", "1e-25"))
+        | st.integers(1, 180).map(lambda n: f"2^-{n}")
+        | st.integers(1, 38).map(lambda n: f"{digits}e-{n}")
+    )
+    offset = draw(st.sampled_from(("", "", " + 273.15", " - 2^60", " + 2^-40")))
+    text = f"{sign}raw*{factor}{offset}"
+    return f"raw*{factor}" if exact.is_too_large(formula.parse(text)) else text

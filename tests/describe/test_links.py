@@ -76,8 +76,8 @@ def test_places_are_those_of_known_roles_and_the_fresh_frame_holds_the_constants
         assert all(role in ROLES for step in steps for role, _ in step.places)
         for step in steps:
             raw = codec.decode(link.facts.node, step.message, step.fresh)
-            assert {field.const or 0 for field in step.message.fields if field.type != "bytes"} == {
-                raw[field.name] for field in step.message.fields if field.type != "bytes"
+            assert {field.const or 0 for field in step.message.fields if not field.is_bytes} == {
+                raw[field.name] for field in step.message.fields if not field.is_bytes
             }
         assert link.longest_step >= max((len(step.fresh) for step in steps), default=0)
 

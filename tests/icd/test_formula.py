@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from fractions import Fraction
 from math import gcd
 
@@ -86,6 +87,11 @@ def test_the_integer_form_is_the_same_number_in_lowest_terms(scale, raw):
         ("value = raw*2", 2, 0),
         ("1e-3*raw + 2.5E1", Fraction(1, 1000), 25),
         ("--raw", 1, 0),
+        ("raw*2^-19", Fraction(1, 2**19), 0),
+        ("raw*4.656612873077393e-10", Fraction(4656612873077393, 10**25), 0),
+        ("-2^2*raw + (1/2)^3", -4, Fraction(1, 8)),
+        ("raw/10^9 - 2^0", Fraction(1, 10**9), -1),
+        ("raw = value*2^24", Fraction(1, 2**24), 0),
         ("10-raw", -1, 10),
     ],
 )
@@ -93,7 +99,7 @@ def test_spellings(text, factor, offset):
     assert parse(text) == Scale(Fraction(factor), Fraction(offset))
 
 
-@given(st.text("raw vlue=+-*/().0159e ", max_size=30))
+@given(st.text("raw vlue=+-*/^().0159e ", max_size=30))
 def test_any_other_text_is_refused_in_words(text):
     try:
         scale = parse(text)
@@ -106,15 +112,35 @@ def test_any_other_text_is_refused_in_words(text):
 @pytest.mark.parametrize(
     ("factor", "offset", "large"),
     [
-        (2**32, 2**63, False),
-        (2**32 + 1, 0, True),
-        (-(2**32), -(2**63), False),
-        (-(2**32) - 1, 0, True),
-        (Fraction(1, 2**32), 0, False),
-        (Fraction(1, 2**32 + 1), 0, True),
-        (1, 2**63 + 1, True),
-        (Fraction(1, 2**20), Fraction(1, 3**20), True),
+        (2**180, 2**240, False),
+        (2**180 + 1, 0, True),
+        (-(2**180), -(2**240), False),
+        (-(2**180) - 1, 0, True),
+        (Fraction(1, 2**180), 0, False),
+        (Fraction(1, 2**180 + 1), 0, True),
+        (1, 2**240 + 1, True),
+        (Fraction(1, 2**100), Fraction(1, 3**80), True),
     ],
 )
 def test_what_is_too_large_to_compute_everywhere(factor, offset, large):
     assert exact.is_too_large(Scale(Fraction(factor), Fraction(offset))) is large
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("raw^2", "it is not linear in `raw`"),
+        ("2^raw", "what stands behind `^` is not a whole number up to 999"),
+        ("raw*2^0.5", "what stands behind `^` is not a whole number up to 999"),
+        ("raw*2^1000", "what stands behind `^` is not a whole number up to 999"),
+        ("raw*2^", "it ends too early"),
+        ("raw*2^-", "it ends too early"),
+        ("raw*2^(3)", "what stands behind `^` is not a whole number up to 999"),
+        ("raw*2^3^2", "`^` stands twice in a row; use parentheses"),
+        ("raw*0^-1", "it divides by zero"),
+        ("raw*(1e99^999)^999", "a power is too large to be meant"),
+    ],
+)
+def test_powers_that_are_refused(text, why):
+    with pytest.raises(FormulaError, match=re.escape(why)):
+        parse(text)

@@ -40,7 +40,9 @@ def value_of(row: Row) -> object:
         return row.text
     if row.field.type == "bool":
         return bool(row.raw)
-    if row.field.type == "bytes":
+    if row.field.type == "text":
+        return row.text
+    if row.field.is_bytes:
         return row.raw.hex()
     return row.raw if row.number is None else row.number
 
@@ -124,7 +126,7 @@ ODD = """\
 icdgen: 1
 node: {name: odd, title: Odd, byte_order: big, bit_order: msb0}
 protocol:
-  log_mask: {bytes: 1, bit_order: msb0, frame_bytes: 32}
+  log_mask: {bytes: 1, bit_order: msb0, frame_bytes: 36}
   telemetry_log:
     header: [{byte: 2, bytes: 1, name: Mask, role: mask, type: bytes}]
     entry:
@@ -134,22 +136,24 @@ protocol:
 loggable: [{bit: 1, id: 200}]
 enums:
   - {name: E, members: [{value: 0, name: A}, {value: 700, name: B}]}
+  - {name: Way, members: [{value: -1, name: Down}, {value: 1, name: Up}]}
 messages:
   - name: F
     id: 200
     kind: telemetry
-    length: 32
+    length: 36
     fields:
       - {at: 0, bits: 3, name: a, type: uint}
       - {at: 3, bits: 11, name: b, type: int, formula: raw*0.1+7}
-      - {at: 14, bits: 2, name: c, type: int}
+      - {at: 14, bits: 2, name: c, type: enum, enum: Way}
       - {at: 16, bits: 32, name: d, type: float}
       - {at: 48, bits: 64, name: e, type: uint, formula: raw*0.001}
       - {at: 112, bits: 64, name: f, type: float}
       - {at: 176, bits: 16, name: g, type: enum, enum: E}
       - {at: 192, bits: 24, name: h, type: bytes}
-      - {at: 216, bits: 17, name: i, type: uint}
+      - {at: 216, bits: 17, name: i, type: enum, enum: Way}
       - {at: 233, bits: 23, name: j, type: int, unit: deg, formula: raw/7.0}
+      - {at: 256, bits: 32, name: k, type: text}
 """
 
 
@@ -170,7 +174,7 @@ def test_every_type_in_both_byte_orders(tmp_path, text_of_icd):
     icd = loaded.icd
     assert icd is not None and loaded.ok, loaded.findings
     known, random = facts.of(icd, icd.nodes[0]), Random(1)
-    entries = [(n, 0, [random.randbytes(32)]) for n in range(200)]
+    entries = [(n, 0, [random.randbytes(36)]) for n in range(200)]
     data = logs.encode(known, b"\x40", entries)
     (tmp_path / "log").write_bytes(data)
     found = source.open_log(icd, known.node, tmp_path / "log")

@@ -24,6 +24,6 @@ def _facts(node: Node, message: Message) -> tuple:
 
 def _place(node: Node, field: Field) -> object:
     """Where each of its bits lies."""
-    if field.type == "bytes":
+    if field.is_bytes:
         return field.at
     return codec._runs(field.at, field.bits, *field.orders(node))

@@ -24,6 +24,7 @@ _OTHER_TYPES = {
     "bool": ("uint", "int"),
     "float": ("uint", "int", "bytes"),
     "bytes": ("uint", "int"),
+    "text": ("uint", "int", "bytes"),
 }
 _HEAD = ("title", "byte_order", "bit_order", "id_bits", "node_type", "interface_version")
 _NUMBER_KEYS = ("formula", "formula_for", "unit", "special", "min", "max", "above", "below", "const")
@@ -147,7 +148,7 @@ def _swaps(fields: list[dict]) -> Iterator[tuple[str, Change]]:
 def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
     for step in (-8, -1, 1, 8):
         yield _number("offset", field, "at", step)
-    for step in (-1, 1) if field["type"] != "bytes" else (-8, 8):
+    for step in (-1, 1) if field["type"] not in ("bytes", "text") else (-8, 8):
         yield _number("width", field, "bits", step)
     for other in _OTHER_TYPES[field["type"]]:
         yield "type", f"{field['type']} -> {other}", lambda f, o=other: _retype(f, o)

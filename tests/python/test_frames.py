@@ -7,7 +7,7 @@ import pytest
 from icdgen import codec
 from tests.python.reference import cases, frames, raw
 
-TYPES = {"bool": bool, "uint": int, "int": int, "float": float, "bytes": bytes}
+TYPES = {"bool": bool, "uint": int, "int": int, "float": float, "bytes": bytes, "text": bytes}
 
 
 def test_every_frame_decodes_to_the_reference_values_and_back(package):
@@ -85,7 +85,7 @@ def unfit(field) -> list[object]:
     """Raw values that the field cannot hold."""
     if field.type == "float":
         return [None, "1", b"1", 10**400, *([3.5e38, -1e39] if field.bits == 32 else [])]
-    if field.type == "bytes":
+    if field.is_bytes:
         return [b"", bytes(field.bits // 8 - 1), bytes(field.bits // 8 + 1), "x" * (field.bits // 8), None, 5]
     return [field.raw_min - 1, field.raw_max + 1, 1 << 64, -(1 << 63) - 1, 10**30, -1.5, 0.5, "1", None, b"\x01", []]
 
@@ -95,7 +95,7 @@ def test_fresh_messages_hold_zeros_and_constants(package):
         message = case.cls()
         for field in case.message.fields:
             value = raw(package, case.infos[field.name], getattr(message, case.infos[field.name].attribute))
-            assert value == (bytes(field.bits // 8) if field.type == "bytes" else field.const or 0)
+            assert value == (bytes(field.bits // 8) if field.is_bytes else field.const or 0)
         assert len(message.to_bytes()) == case.message.length
 
 
@@ -112,4 +112,4 @@ def test_classes_say_what_the_icd_says(package):
             assert info.unit == (field.unit.symbol if field.unit else "")
             assert info.const == field.const
             assert info.special == tuple((s.value, s.meaning) for s in field.special)
-            assert bool(info.physical) == bool(field.scale)
+            assert bool(info.physical) == (bool(field.scale) or field.type == "text")

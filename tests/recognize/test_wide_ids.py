@@ -44,6 +44,12 @@ def test_the_id_in_front_tells_the_message(receiver):
     assert one.id == one.message.id == int(sent.replace(" ", ""), 16)
 
 
+def test_the_id_comes_off_where_the_message_is_named_too(receiver):
+    icd, sent = receiver
+    (one,) = recognize(icd, f"{sent} 01 00 00 00", "receiver", "Clock")
+    assert one.data == bytes([1, 0, 0, 0]) and f"id {one.id} removed" in one.frame.remarks
+
+
 def test_data_alone_are_known_by_their_length(receiver):
     (one,) = recognize(receiver[0], "01 00 00 00")
     assert (one.message.name, one.id) == ("Clock", None)

@@ -26,6 +26,12 @@ BARE = {
     "fromhex": 'bytes.fromhex("2efb0a000000")',
     "macro of Rust": 'hex!("2efb0a000000")',
     "repr of Python": r"b'.\xfb\n\x00\x00\x00'",
+    "bytearray": r"bytearray(b'.\xfb\n\x00\x00\x00')",
+    "list of strings": "['2e', 'fb', '0a', '00', '00', '00']",
+    "list of hex()": "['0x2e', '0xfb', '0xa', '0x0', '0x0', '0x0']",
+    "angles": "<2E><FB><0A><00><00><00>",
+    "h after each": "2Eh FBh 0Ah 00h 00h 00h",
+    "decimal words": "46 251 10 0 0 0",
     "base64": "LvsKAAAA",
     "xxd": "00000000: 2efb 0a00 0000                           ......",
     "hexdump -C": "00000000  2e fb 0a 00 00 00                                 |......|\n00000006",
@@ -35,6 +41,8 @@ BARE = {
     "on lines": "2e fb\n0a 00\n00 00\n",
     "after a label": "RX: 2E FB 0A 00 00 00",
     "after a time": "[12:00:01.5] RX: 2E FB 0A 00 00 00",
+    "after a date": "2025-01-01 12:00:01.123 2E FB 0A 00 00 00",
+    "after a date and a label": "2025-01-01T12:00:01.5 recv: 2E FB 0A 00 00 00",
     "after an arrow": "<< 2E FB 0A 00 00 00",
 }
 

@@ -117,7 +117,7 @@ def value_requests(icd: Icd, largest: int, seed: int = 1) -> list[dict]:
 
 
 def _raw_values(field: Field) -> list[object]:
-    if field.type == "bytes":
+    if field.is_bytes:
         return ["ab" * (field.bits // 8), "", "00" * (field.bits // 8 + 1)]
     if field.type == "float":
         digits = field.bits // 4

@@ -65,7 +65,7 @@ def _base() -> dict:
         {"at": 32, "bits": 8, "name": "One wide", "type": "enum", "enum": "One Value", "const": 4},
         {"at": 40, "bits": 8, "name": "Gaps narrow", "type": "enum", "enum": "Gaps", "special": [{"value": 5, "meaning": "five"}]},
         {"at": 48, "bits": 1, "name": "Flag", "type": "bool", "const": 1},
-        {"at": 56, "bits": 640, "name": "Long array", "type": "bytes"},
+        {"at": 56, "bits": 640, "name": "Long array", "type": "text"},
         {"at": 696, "bits": 64, "name": "Limited", "type": "uint", "max": 18446744073709551615, "above": 0.5},
         {"at": 760, "bits": 13, "name": "Signed", "type": "int", "unit": "V", "formula": "raw*0.1", "min": -3.3, "below": 4,
          "special": [{"value": -1, "meaning": "?"}, {"value": -2, "meaning": "?"}]},

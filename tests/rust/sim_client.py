@@ -97,7 +97,7 @@ def numbered(message: Message) -> dict[str, int | bytes]:
 
 
 def _numbered(field: Field, number: int, otherwise: int | bytes) -> int | bytes:
-    if field.type == "bytes":
+    if field.is_bytes:
         return bytes((number + at) % 256 for at in range(field.bits // 8))
     if field.type == "float":
         return codec.float_bits(field, float(number))

@@ -35,7 +35,7 @@ ICD = {
     ],
     "messages": [
         {
-            "name": MARKUP, "identifier": "index", "id": 1, "kind": "telemetry", "length": 25, "group": QUOTES, "summary": TEMPLATE,
+            "name": MARKUP, "identifier": "index", "id": 1, "kind": "telemetry", "length": 33, "group": QUOTES, "summary": TEMPLATE,
             "fields": [
                 {"at": 3, "bits": 64, "name": MARKUP, "identifier": "con", "type": "enum", "enum": MARKUP, "summary": QUOTES},
                 {"at": 67, "bits": 13, "name": QUOTES, "identifier": "quotes", "type": "int", "unit": "<b>", "formula": "raw*5/9"},
@@ -46,6 +46,7 @@ ICD = {
                 {"at": 88, "bits": 64, "name": ENDLESS, "identifier": "endless", "type": "float"},
                 {"at": 152, "bits": 32, "name": "__proto__", "type": "float"},
                 {"at": 184, "bits": 16, "name": "constructor", "type": "bytes"},
+                {"at": 200, "bits": 64, "name": ENDLESS + "text", "identifier": "label", "type": "text"},
             ],
         },
         {"name": "aux", "identifier": "aux message", "id": 7, "kind": "telecommand", "length": 0, "summary": MARKUP},

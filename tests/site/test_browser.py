@@ -8,7 +8,6 @@ from contextlib import contextmanager
 import pytest
 
 from tests.conformance.icds import COMMITTED
-from tests.recognize.ways import BARE, WHOLE
 from tests.site import measure
 from tests.site.pages import KINDS
 
@@ -137,15 +136,6 @@ def test_the_decoder_takes_framing_and_checksums_and_physical_values(browser, si
         page.fill("#value-1", "400")
         page.locator("#value-1").blur()
         assert "takes -327.68 to 327.67" in page.inner_text("#verdict")
-
-
-def test_every_way_to_paste_a_frame_shows_the_same_values(browser, site):
-    with opened(browser, site.as_uri() + "/", KINDS["numbers"]) as page:
-        for name, text in {**BARE, **WHOLE}.items():
-            page.fill("#frame", text)
-            assert page.input_value("#value-1") == "-12.34", (name, page.inner_text("#verdict"))
-            page.fill("#frame", "1F 7F 93 00 1F FF")
-            assert "another message's" in page.inner_text("#verdict") and page.input_value("#value-1") == ""
 
 
 def test_drawing_and_table_are_tied_together_by_pointer_and_keyboard(browser, top):

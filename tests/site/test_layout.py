@@ -14,8 +14,13 @@ def test_all_messages_of_the_node_stand_beside_a_page(browser, site, shipped):
     node = shipped.node("cubeacp")
     with opened(browser, site.as_uri() + "/", KINDS["message"], viewport=DESK) as page:
         assert page.is_visible("#sidebar") and page.inner_text("#sidebar li [aria-current]") == "Current ADCS State"
-        listed = page.locator("#sidebar li a").all_text_contents()
-        assert {message.name for message in shipped.messages_of(node)} <= set(listed)
+        folded = page.locator("#sidebar details:not([open]) > summary")
+        while folded.count():
+            folded.first.click()
+        page.wait_for_function("!document.querySelector('#sidebar').innerText.includes('All on one page')")
+        listed = {link.inner_text(): link.get_attribute("href") for link in page.locator("#sidebar li a").all()}
+        assert {one.name for one in (*shipped.messages_of(node), *node.enums)} <= set(listed)
+        assert [url for url in listed.values() if not (site / "cubeacp" / url).is_file()] == []
         page.click("#sidebar a:text-is('Estimated Attitude Angles')")
         assert page.url.endswith("estimated_attitude_angles.html")
 
@@ -25,6 +30,11 @@ def test_on_a_phone_it_is_a_drawer_which_needs_no_script(browser, site):
         assert not page.is_visible("#sidebar")
         page.click(".drawer")
         assert page.is_visible("#sidebar") and page.is_visible("#sidebar .everywhere a:text-is('CubeWheel')")
+        assert page.is_visible("#sidebar a:text-is('Estimated Attitude Angles')")
+        page.click("#sidebar summary:has-text('General')")
+        page.click("#sidebar details:has-text('General') a:text-is('All on one page')")
+        assert page.url.endswith("cubeacp/index.html#messages") and page.is_visible("a:text-is('ADCS Run Mode')")
+        page.click(".drawer")
         page.click("#sidebar a:text-is('Errata')")
         assert page.url.endswith("errata.html")
 

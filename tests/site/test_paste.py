@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
+from tests.cli.conftest import icdgen  # noqa: F401  (a fixture)
+from tests.conftest import ROOT
 from tests.recognize.ways import BARE, WHOLE
 from tests.site.pages import KINDS
 from tests.site.test_browser import opened, results
@@ -30,6 +34,29 @@ def test_the_box_of_the_first_page_leads_there_from_every_way(browser, site):
             page.evaluate(PASTE, text)
             page.wait_for_url(top + ANGLES)
         assert page.input_value("#value-1") == "-12.34"
+
+
+def test_in_every_way_page_and_command_line_give_the_same_values(browser, site, icdgen):  # noqa: F811
+    with opened(browser, site.as_uri() + "/", ANGLES.partition("#")[0]) as page:
+        for way, text in {**BARE, **WHOLE}.items():
+            page.fill("#frame", "")
+            told = icdgen("decode", "--icd", ROOT / "icd", "cubeacp", "146", "--format", "json", text)
+            fields = json.loads(told.out)["fields"]
+            page.fill("#frame", text)
+            shown = [(page.input_value(f"#raw-{key}"), page.input_value(f"#value-{key}")) for key in (1, 2, 3)]
+            assert shown == [(str(one["raw"]), f"{one['value']:.2f}") for one in fields], way
+            assert not page.locator("#verdict.wrong").count()
+
+
+def test_in_every_way_without_an_id_both_ask_which_message_it_is(browser, site, icdgen):  # noqa: F811
+    with opened(browser, site.as_uri() + "/", KINDS["home"]) as page:
+        for way, text in BARE.items():
+            page.fill("#paste", "")
+            told = icdgen("decode", "--icd", ROOT / "icd", text)
+            page.fill("#paste", text)
+            page.wait_for_selector("#pasted li")
+            assert told.status == 2 and "6 bytes without an id can be" in told.err, way
+            assert page.inner_text("#pasted .note").startswith("6 bytes without an id can be several"), way
 
 
 def test_where_a_frame_can_be_several_messages_they_are_listed(browser, site):

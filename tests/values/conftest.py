@@ -62,6 +62,13 @@ messages:
     id: 150
     kind: telecommand
     length: 0
+  - name: Version
+    id: 151
+    kind: telemetry
+    length: 12
+    fields:
+      - {at: 0,  bits: 80, name: Software, type: text}
+      - {at: 80, bits: 16, name: Hardware, type: text}
   - name: "42"
     id: 21
     kind: telecommand

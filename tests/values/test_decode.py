@@ -139,3 +139,15 @@ def test_names_cannot_write_to_the_terminal(tmp_path):
         text = to_text(frame, width)
         assert all(c.isprintable() for c in text.replace("\n", ""))
         assert "A\\u{1b}[2J[bold]" in text
+
+
+def test_a_text_is_shown_as_it_reads_and_its_bytes_are_kept(icd):
+    data = b"1.2\x1b\xff\0rest?!"
+    assert len(data) == 12
+    shown = decode(icd, "top", "Version", data)
+    software, hardware = shown.rows
+    assert (software.text, hardware.text) == ("1.2\x1b\ufffd", "?!")
+    assert software.to_json() == {
+        "name": "Software", "type": "text", "raw": data[:10].hex(), "value": "1.2\x1b\ufffd",
+    }  # fmt: skip
+    assert "\x1b" not in to_text(shown)

@@ -224,3 +224,16 @@ def test_the_shortest_text_of_a_float_is_read_back():
 )
 def test_exact_numbers_are_shown_as_decimals_where_they_end(value, text):
     assert exact_text(value) == text
+
+
+def test_a_text_is_typed_as_it_is(icd):
+    sent = encode(icd, "top", "Version", ["software=u-blox 9", "hardware="], kind="telemetry")
+    assert sent.data == b"u-blox 9\0\0" + bytes(2)
+    bare = encode(icd, "top", "Version", ["software=" + "ff" * 10, "hardware=3100"], raw=True, kind="telemetry")
+    assert bare.data == b"\xff" * 10 + b"1\0"
+
+
+@pytest.mark.parametrize("text", ["12345678901", "\u00b5-blox"])
+def test_a_text_that_does_not_fit_is_refused(icd, text):
+    refused = refusal(encode, icd, "top", "Version", [f"software={text}", "hardware=1"], kind="telemetry")
+    assert str(refused) == f"Software: `{text}` is not of up to 10 ASCII characters"

@@ -67,7 +67,7 @@ def test_raw_values_are_the_bits_of_the_frame(icd, files):
                 frame = int.from_bytes(bytes.fromhex(vector["bytes"]), "little")
                 for field, raw in zip(message.fields, vector["raw"], strict=True):
                     value = frame >> field.at & (1 << field.bits) - 1
-                    if field.type == "bytes":
+                    if field.is_bytes:
                         assert bytes.fromhex(raw) == value.to_bytes(field.bits // 8, "little")
                     elif field.type == "float":
                         assert int(raw, 16) == value

@@ -102,8 +102,9 @@ def limits_text(limits: Iterable[Bound], field: Field) -> str:
 
 
 def _place(field: Field) -> str:
-    if field.type == "bytes":
-        return byte_range(field.at // 8, field.bits // 8)
+    if field.is_bytes:
+        where = byte_range(field.at // 8, field.bits // 8)
+        return f"{where}, text filled with NUL" if field.type == "text" else where
     return ", ".join(filter(None, (bit_range(field.at, field.bits), orders_text(field))))
 
 
@@ -136,6 +137,11 @@ def physical_name(field: Field) -> str:
     """``Roll Angle in deg``: what the accessors of a physical value are about."""
     unit = f" in {words(field.unit.symbol)}" if field.unit else ", as a physical value"
     return f"{words(field.name)}{unit}"
+
+
+def text_comment(field: Field) -> str:
+    """What the text of a field of characters is."""
+    return f"{words(field.name)} as text: what stands before the first NUL, up to {field.bits // 8} ASCII characters."
 
 
 def physical_comment(field: Field, scaled: Steps) -> str:

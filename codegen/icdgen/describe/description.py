@@ -57,8 +57,20 @@ class FieldDescription(Named[Field]):
         return steps.steps(self.model)
 
     @property
+    def is_text(self) -> bool:
+        """Whether its bytes are characters: its physical value is a text, which every language gives and takes."""
+        return self.model.type == "text"
+
+    @property
+    def has_physical(self) -> bool:
+        """Whether there are accessors of a physical value that is not the raw one."""
+        return self.is_text or self.steps is not None
+
+    @property
     def unit_name(self) -> str:
-        """What names of the physical value end in: the unit's identifier, or ``physical``."""
+        """What names of the physical value end in: the unit's identifier, ``physical`` or ``text``."""
+        if self.is_text:
+            return "text"
         return self.model.unit.identifier if self.model.unit else "physical"
 
     @property
@@ -134,6 +146,11 @@ class MessageDescription(Named[Message]):
     @property
     def has_floats(self) -> bool:
         return any(field.type == "float" for field in self.model.fields)
+
+    @cached_property
+    def has_wide_steps(self) -> bool:
+        """Whether the formula of a field has numbers of many digits."""
+        return any(field.steps is not None and field.steps.is_wide for field in self.fields)
 
     @cached_property
     def comment(self) -> Comment:

@@ -28,6 +28,11 @@ class Steps(NamedTuple):
         """p, c, q"""
         return self[:3]
 
+    @property
+    def is_wide(self) -> bool:
+        """Whether p, c or q has more digits than arithmetic of 128 bits is sure to take."""
+        return not exact.Terms(*self.terms).are_usual
+
     def physical(self, raw: int) -> Fraction:
         """The exact physical value."""
         return Fraction(raw * self.p + self.c, self.q)

@@ -7,9 +7,13 @@ from typing import NamedTuple
 
 from icdgen.icd.formula import Scale
 
-# What 128-bit arithmetic holds with room to spare, for every raw value of 64 bits.
-MAX_FACTOR = 1 << 32
-MAX_OFFSET = 1 << 63
+# What arithmetic of 256 bits holds with room to spare, for every raw value of 64 bits and twice every double's significand.
+MAX_FACTOR = 1 << 180
+MAX_OFFSET = 1 << 240
+
+# The same of 128 bits, which is quicker and holds nearly every formula.
+USUAL_FACTOR = 1 << 32
+USUAL_OFFSET = 1 << 63
 
 
 class Terms(NamedTuple):
@@ -18,6 +22,11 @@ class Terms(NamedTuple):
     p: int
     c: int
     q: int
+
+    @property
+    def are_usual(self) -> bool:
+        """Whether 128 bits are enough."""
+        return abs(self.p) <= USUAL_FACTOR and self.q <= USUAL_FACTOR and abs(self.c) <= USUAL_OFFSET
 
 
 def terms(scale: Scale) -> Terms:

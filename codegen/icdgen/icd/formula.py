@@ -9,9 +9,11 @@ from typing import NamedTuple
 
 MAX_LENGTH = 200
 MAX_DIGITS = 40
+MAX_EXPONENT = 999
+MAX_POWER_BITS = 4000
 
 _TOKEN = re.compile(
-    r"\s*(?:(?P<number>[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,2})?)|(?P<name>[A-Za-z]+)|(?P<op>[-+*/()=]))"
+    r"\s*(?:(?P<number>[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,2})?)|(?P<name>[A-Za-z]+)|(?P<op>[-+*/^()=]))"
 )
 
 
@@ -47,7 +49,7 @@ class _Linear(NamedTuple):
 
 
 def parse(text: str) -> Scale:
-    """``raw*0.01``, ``raw/10000.0``, ``(raw - 32)*5/9`` or, solved for raw, ``raw = value*1000.0``. Raises `FormulaError`."""
+    """``raw*0.01``, ``raw*2^-19``, ``(raw - 32)*5/9`` or, solved for raw, ``raw = value*1000.0``. Raises `FormulaError`."""
     if len(text) > MAX_LENGTH:
         raise FormulaError(f"it is longer than {MAX_LENGTH} characters")
     tokens = _tokens(text)
@@ -92,7 +94,7 @@ def _tokens(text: str) -> list[str]:
 
 
 class _Parser:
-    """Recursive descent over + - * / and parentheses; every value is a linear function of the variable."""
+    """Recursive descent over + - * / ^ and parentheses; every value is a linear function of the variable."""
 
     def __init__(self, tokens: list[str], variable: str) -> None:
         self.rest, self.variable = tokens, variable
@@ -135,6 +137,29 @@ class _Parser:
         if token == "-":
             line = self.unary()
             return _Linear(-line.slope, -line.constant)
+        return self.power(self.primary(token))
+
+    def power(self, base: _Linear) -> _Linear:
+        """What ``base`` is raised to follows, if anything: a whole number."""
+        if not self.rest or self.rest[0] != "^":
+            return base
+        self.take()
+        sign = self.take() if self.rest[:1] == ["-"] else ""
+        token = self.take()
+        if base.slope:
+            raise FormulaError(f"it is not linear in `{self.variable}`")
+        if not token.isdigit() or int(token) > MAX_EXPONENT:
+            raise FormulaError(f"what stands behind `^` is not a whole number up to {MAX_EXPONENT}")
+        if sign and not base.constant:
+            raise FormulaError("it divides by zero")
+        if self.rest[:1] == ["^"]:
+            raise FormulaError("`^` stands twice in a row; use parentheses")
+        size = max(abs(base.constant.numerator), base.constant.denominator).bit_length()
+        if size * int(token) > MAX_POWER_BITS:
+            raise FormulaError("a power is too large to be meant")
+        return _Linear(Fraction(0), base.constant ** int(sign + token))
+
+    def primary(self, token: str) -> _Linear:
         if token == "(":
             line = self.sum()
             if self.take() != ")":

@@ -73,6 +73,11 @@ class Enum:
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
+    @property
+    def signed(self) -> bool:
+        """Whether every field of it is in two's complement: one of its values is negative."""
+        return any(member.value < 0 for member in self.members)
+
 
 @dataclass(frozen=True, slots=True)
 class Special:
@@ -99,7 +104,7 @@ class Field:
     name: str
     at: int
     bits: int
-    type: str  # "uint" | "int" | "bool" | "enum" | "float" | "bytes"
+    type: str  # "uint" | "int" | "bool" | "enum" | "float" | "bytes" | "text"
     identifier: str | None = None
     enum: Enum | None = None
     unit: Unit | None = None
@@ -119,23 +124,29 @@ class Field:
         return self.byte_order or node.byte_order, self.bit_order or node.bit_order
 
     @property
+    def is_bytes(self) -> bool:
+        """Whether the raw value is whole bytes in order, and no number."""
+        return self.type in ("bytes", "text")
+
+    @property
     def signed(self) -> bool:
-        return self.type == "int"
+        """Whether it is in two's complement."""
+        return self.type == "int" or (self.enum is not None and self.enum.signed)
 
     @property
     def fresh(self) -> int | bytes:
         """The raw value in a new message: the only valid one, or 0; of a float its bits, of bytes all of them."""
-        return bytes(self.bits // 8) if self.type == "bytes" else self.const or 0
+        return bytes(self.bits // 8) if self.is_bytes else self.const or 0
 
     @property
     def raw_min(self) -> int:
         """Smallest raw value of an integer, enum or bool field."""
-        return -(1 << (self.bits - 1)) if self.type == "int" else 0
+        return -(1 << (self.bits - 1)) if self.signed else 0
 
     @property
     def raw_max(self) -> int:
         """Largest raw value of an integer, enum or bool field."""
-        return (1 << (self.bits - (self.type == "int"))) - 1
+        return (1 << (self.bits - self.signed)) - 1
 
 
 @dataclass(frozen=True, slots=True)

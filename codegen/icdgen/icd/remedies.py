@@ -24,7 +24,7 @@ _SIZED = re.compile(r"(u?)(?:int)?(\d{1,2})(?:_t)?|(s|i)(\d{1,2})|f(?:loat)?(32|
 _TYPES = {
     "double": "`type: float` with `bits: 64`", "unsigned": "`type: uint`", "signed": "`type: int`", "integer": "`type: int`",
     "boolean": "`type: bool` with `bits: 1`", "flag": "`type: bool` with `bits: 1`", "enumeration": "`type: enum`",
-    "string": "`type: bytes`", "str": "`type: bytes`", "char": "`type: uint` with `bits: 8`", "byte": "`type: uint` with `bits: 8`",
+    "string": "`type: text`", "str": "`type: text`", "char": "`type: uint` with `bits: 8`", "byte": "`type: uint` with `bits: 8`",
 }  # fmt: skip
 _KEYS = {
     "byte": "`at:`, in bits: byte 2 is `at: 16`", "bytes": "`bits:`: 2 bytes are `bits: 16`", "offset": "`at:`, in bits",

@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from icdgen import codec
 from icdgen.errors import UserError
 from icdgen.logfile.columns import TIME, Column, Plan
 from icdgen.logfile.source import Source
@@ -103,13 +104,15 @@ class _Reader:
         column = self.column
         if column.kind == "bytes" or column.field is None:
             return pa.binary(column.size)
+        if column.kind == "text":
+            return pa.string()
         if column.kind == "bool":
             return pa.bool_()
         if column.kind == "float":
             return pa.float32() if column.field.bits == 32 else pa.float64()
         if column.kind == "enum":
             self.members = {m.value: m.name for m in column.field.enum.members}  # type: ignore[union-attr]
-            if column.field.bits > 8:
+            if column.field.bits > 8 or column.field.signed:
                 return pa.dictionary(pa.int32(), pa.string())
             self.names = pa.array(self._named(range(1 << column.field.bits)))
             return pa.dictionary(pa.uint8(), pa.string())
@@ -127,6 +130,9 @@ class _Reader:
             table = np.frombuffer(data, np.uint8).reshape(count, self.stride)
             part = np.ascontiguousarray(table[:, column.at : column.at + column.size])
             return pa.FixedSizeBinaryArray.from_buffers(type_, count, [None, pa.py_buffer(part)])
+        if column.kind == "text":
+            places = range(column.at, count * self.stride, self.stride)
+            return pa.array([codec.text(data[at : at + column.size]) for at in places], type_)
         raw = self._raw(data)
         if self.names is not None:
             return pa.DictionaryArray.from_arrays(pa.array(raw.astype(np.uint8)), self.names)

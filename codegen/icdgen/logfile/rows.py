@@ -7,6 +7,7 @@ import struct
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime, timedelta
 
+from icdgen import codec
 from icdgen.logfile.columns import Column
 from icdgen.logfile.source import Source
 
@@ -91,4 +92,9 @@ def _bytes(column: Column) -> Callable[[bytes], Value]:
     return lambda entry: entry[first:last].hex()
 
 
-_READERS = {"bool": _bool, "enum": _enum, "float": _float, "bytes": _bytes}
+def _text(column: Column) -> Callable[[bytes], Value]:
+    first, last = column.at, column.at + column.size
+    return lambda entry: codec.text(entry[first:last])
+
+
+_READERS = {"text": _text, "bool": _bool, "enum": _enum, "float": _float, "bytes": _bytes}

@@ -17,7 +17,8 @@ def of_message(icd: Icd, speaker: Speaker, message: Message, data: bytes) -> Rea
     assert plain is not None
     if len(data) == message.length:
         return _reading(speaker, message, None, data)
-    for id, rest in [(None, data), *([(data[0], data[1:])] if data and data[0] in message.ids else [])]:
+    apart = speaker.taken_apart(data)
+    for id, rest in [(None, data), *([apart] if apart and apart[0] in message.ids else [])]:
         taken = () if id is None else (f"id {id} removed",)
         for other in _talking(icd, speaker, message):
             right = match.checksum(other, plain if id is None else id, message, rest)

@@ -135,7 +135,7 @@ def _each_once(found: Iterator[Reading] | list[Reading]) -> list[Reading]:
 
 
 def named(found: Sequence[Reading]) -> str:
-    """The readings by name, the first few of them."""
-    titles = [one.title for one in found[:MOST_LISTED]]
-    rest = len(found) - len(titles)
-    return ", or ".join(titles) + (f", or one of {rest} others" if rest else "")
+    """The readings by name, the first few of them; one that has two directions once."""
+    every = list(dict.fromkeys(one.title for one in found))
+    titles, rest = every[:MOST_LISTED], len(every) - MOST_LISTED
+    return ", or ".join(titles) + (f", or one of {rest} others" if rest > 0 else "")

@@ -17,14 +17,19 @@ _LIST = re.compile(r"[\[{(]([^\[\]{}()]*)[\]})][)\]}\s;]*\Z")
 _NUMBERS = re.compile(
     r"\s*(?:0[xX][0-9A-Fa-f]+|\d+)(?:[uU](?:8)?)?(?:\s*,\s*(?:0[xX][0-9A-Fa-f]+|\d+)(?:[uU](?:8)?)?)*\s*,?\s*"
 )
-_LITERAL = re.compile(r"""b(["'])((?:\\.|(?!\1)[^\\])*\\(?:\\.|(?!\1)[^\\]|.)*)\1""", re.DOTALL)
+_LITERAL = re.compile(r"""(?:bytearray\()?b(["'])((?:\\.|(?!\1)[^\\])*\\(?:\\.|(?!\1)[^\\]|.)*)\1\)?""", re.DOTALL)
 _STRING = re.compile(r"""(["'])([0-9A-Fa-f\s]+)\1""")
 _ESCAPE = re.compile(r"\\(x[0-9A-Fa-f]{2}|.)|([^\\])", re.DOTALL)
 _ESCAPED = {"n": 10, "r": 13, "t": 9, "0": 0, "a": 7, "b": 8, "f": 12, "v": 11, "\\": 92, "'": 39, '"': 34}
 _BASE64 = re.compile(r"(?:[A-Za-z0-9+/_-]{4})*(?:[A-Za-z0-9+/_-]{2}==|[A-Za-z0-9+/_-]{3}=)?")
+_MARKED = re.compile(
+    r"""(["'])(0[xX][0-9A-Fa-f]{1,2}|[0-9A-Fa-f]{2})\1|<([0-9A-Fa-f]{2})>|\b([0-9A-Fa-f]{2})[hH]\b""", re.ASCII
+)
+_DECIMALS = re.compile(r"[0-9]{1,3}(?:[\s,;]+[0-9]{1,3})+")
 _LABEL = re.compile(
-    r"^[ \t]*(?:\[[^\]\n]*\][ \t]*)?(?:\d+:\d\d[\d:.]*[ \t]+)?(?:(?:[rRtT][xX]|recv|sent|send)[ \t]*[:>]?|<+|>+|<-|->)[ \t]+",
-    re.MULTILINE,
+    r"^[ \t]*(?:\[[^\]\n]*\][ \t]*)?(?:(?:\d{4}-\d\d-\d\d[T ])?\d+:\d\d[\d:.,]*[ \t]+)?"
+    r"(?:(?:[rRtT][xX]|recv|sent|send|frame)[ \t]*[:>]?|<+|>+|<-|->)[ \t]+|^[ \t]*\d{4}-\d\d-\d\d[T ]\d+:\d\d[\d:.,]*[ \t]+",
+    re.MULTILINE | re.ASCII,
 )
 
 
@@ -51,7 +56,7 @@ def read(text: str) -> Pasted:
     try:
         return Pasted(parse_hex(text))
     except BadHex:
-        other = _of_code(_COMMENT.sub(" ", text)) or _labelled(text) or _base64(text)
+        other = _of_code(_COMMENT.sub(" ", text)) or _labelled(text) or _marked(text) or _decimal(text) or _base64(text)
         if other is None:
             raise
         return other
@@ -90,6 +95,19 @@ def _of_code(text: str) -> Pasted | None:
 def _labelled(text: str) -> Pasted | None:
     bare = _LABEL.sub("", text)
     return _hex(bare, "") if bare != text else None
+
+
+def _marked(text: str) -> Pasted | None:
+    """Each byte in quotes or angles, or followed by ``h``."""
+    bare = _MARKED.sub(lambda found: f" {found[2] or found[3] or found[4]} ", text)
+    return _hex(bare, "") if bare != text else None
+
+
+def _decimal(text: str) -> Pasted | None:
+    words = re.findall("[0-9]+", text) if _DECIMALS.fullmatch(text.strip()) else []
+    if not words or max(map(int, words)) > 255:
+        return None
+    return Pasted(bytes(map(int, words)), form="decimal numbers")
 
 
 def _base64(text: str) -> Pasted | None:

@@ -200,7 +200,7 @@ def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
 
 def _check_wave(where: str, one: Field, wave: Wave) -> None:
     numbers = [wave.get(key, 1) for key in ("min", "max", "period")]
-    if set(wave) - {"wave", "min", "max", "period"} or wave.get("wave", "sine") not in WAVES or one.type == "bytes":
+    if set(wave) - {"wave", "min", "max", "period"} or wave.get("wave", "sine") not in WAVES or one.is_bytes:
         raise UserError(f"{where}: there is no such wave", f"{{wave: {'|'.join(WAVES)}, min: -1, max: 1, period: 60}}")
     if not all(type(n) in (int, float) and math.isfinite(n) for n in numbers) or numbers[2] <= 0:
         raise UserError(f"{where}: `min`, `max` and `period` are numbers, the last above 0")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from icdgen import naming
+from icdgen import codec, naming
 from icdgen.icd.model import Enum, Field, Member
 from icdgen.values import numbers
 from icdgen.values.errors import BadHex, BadValue
@@ -21,7 +21,7 @@ def members(field: Field) -> str:
 
 def raw_value(field: Field, text: str) -> int | bytes:
     """The raw value itself; the bits of a float as ``0x...``. Raises `BadValue`; does not look at the range."""
-    if field.type == "bytes":
+    if field.is_bytes:
         return _bytes(field, text)
     if field.type == "float":
         return _float(field, text, raw=True)
@@ -36,7 +36,7 @@ def raw_value(field: Field, text: str) -> int | bytes:
 
 
 def from_physical(field: Field, text: str) -> int | bytes:
-    """The raw value nearest to a physical one. Raises `BadValue`; does not look at the range."""
+    """The raw value of a text, else the one nearest to a physical value. Raises `BadValue`; does not look at the range."""
     reader: _Reader = _READERS.get(field.type, _integer)
     return reader(field, text)
 
@@ -55,6 +55,13 @@ def _bytes(field: Field, text: str) -> bytes:
     if len(value) != field.bits // 8:
         raise BadValue(f"{field.bits // 8} bytes are needed, {len(value)} given")
     return value
+
+
+def _text(field: Field, text: str) -> bytes:
+    try:
+        return codec.raw_from_text(field, text)
+    except codec.CodecError:
+        raise BadValue(f"`{text}` is not of up to {field.bits // 8} ASCII characters") from None
 
 
 def _float(field: Field, text: str, raw: bool = False) -> int:
@@ -124,4 +131,4 @@ def _has_words(member: Member, text: str) -> bool:
 
 
 _Reader = Callable[[Field, str], int | bytes]
-_READERS: dict[str, _Reader] = {"bool": _bool, "bytes": _bytes, "float": _float, "enum": _enum}
+_READERS: dict[str, _Reader] = {"bool": _bool, "bytes": _bytes, "text": _text, "float": _float, "enum": _enum}

@@ -54,7 +54,7 @@ class Row:
         """What the field says, for people: physical value, name of the member, true or false."""
         kind = self.field.type
         if isinstance(self.raw, bytes):
-            return self.raw_text
+            return codec.text(self.raw) if kind == "text" else self.raw_text
         if kind == "enum":
             return self.member if self.member is not None else f"unknown {self.raw}"
         if kind == "bool":
@@ -70,7 +70,8 @@ class Row:
         raw: object = self.raw
         value: object
         if isinstance(self.raw, bytes):
-            raw = value = self.raw.hex()
+            raw = self.raw.hex()
+            value = codec.text(self.raw) if kind == "text" else raw
         elif kind == "float":
             raw = f"{self.raw:0{self.field.bits // 4}x}"
             value = _json_number(codec.float_value(self.field, self.raw))

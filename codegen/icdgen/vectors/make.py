@@ -9,7 +9,7 @@ from typing import Any
 from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, TELECOMMAND, TELEMETRY, Enum, Icd, Message, Node
 from icdgen.vectors import patterns
-from icdgen.vectors.settings import bits_of, settings
+from icdgen.vectors.settings import Settings, bits_of, settings
 
 FORMAT = 1
 
@@ -25,6 +25,7 @@ class Row:
     raw: Raw
     encoded: bytes
     physical: dict[str, Fraction]  # of the scaled fields
+    texts: dict[str, str | None]  # of the text fields; None where the bytes are not ASCII
     doubles: dict[str, str]  # their correctly rounded doubles, as 16 hex digits
 
 
@@ -37,7 +38,7 @@ class MessageVectors:
     rows: tuple[Row, ...]
     lengths: tuple[int, ...]  # frames of these lengths are refused
     unfit: dict[str, list[int]]  # raw values that encoding refuses, by field
-    settings: dict[str, list[tuple[str, int | None]]]  # doubles set as physical values, by field
+    settings: dict[str, Settings]  # doubles and texts set as physical values, by field
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,14 +71,14 @@ def message_vectors(node: Node, message: Message) -> MessageVectors:
         if frame not in frames:
             frames[frame] = None
             rows.append(frame_row(node, message, f"chosen values {number}", frame))
-    scaled = [field for field in message.fields if field.scale]
+    settable = [field for field in message.fields if field.scale or field.type == "text"]
     return MessageVectors(
         message=message,
         default=message.fresh,
         rows=tuple(rows),
         lengths=tuple(sorted({0, max(message.length - 1, 0), message.length + 1} - {message.length})),
         unfit={field.name: unfit for field in message.fields if (unfit := patterns.unfit(field))},
-        settings={field.name: settings(field) for field in scaled},
+        settings={field.name: settings(field) for field in settable},
     )
 
 
@@ -90,7 +91,14 @@ def frame_row(node: Node, message: Message, why: str, frame: bytes) -> Row:
         if exact is not None:
             physical[field.name] = exact
     doubles = {name: bits_of(codec.to_double(exact)) for name, exact in physical.items()}
-    return Row(why, frame, raw, codec.encode(node, message, raw), physical, doubles)
+    texts = {field.name: known_text(raw[field.name]) for field in message.fields if field.type == "text"}
+    return Row(why, frame, raw, codec.encode(node, message, raw), physical, texts, doubles)
+
+
+def known_text(raw: bytes) -> str | None:
+    """What a text field says, if that is ASCII."""
+    said = codec.text(raw)
+    return None if "\ufffd" in said else said
 
 
 def _ids(icd: Icd, node: Node) -> dict[str, dict[int, str]]:

@@ -54,9 +54,14 @@ def random_frame(message: Message, seed: str) -> bytes:
 
 def values(field: Field) -> list[int | bytes]:
     """The raw values of a field that are worth a frame each, without repetition."""
-    if field.type == "bytes":
+    if field.is_bytes:
         size = field.bits // 8
         ascending = bytes(number & 0xFF for number in range(1, size + 1))
+        if field.type == "text":
+            ended = ascending[: size // 2].ljust(size, b"\0")
+            return list(
+                dict.fromkeys((ascending, ended, bytes(size - 1) + b"x", bytes(size), b"\x7f" * size, b"\x80" * size))
+            )
         return [ascending, bytes(size), bytes(byte ^ 0xFF for byte in ascending)]
     if field.type == "float":
         return list(_FLOATS[field.bits])
@@ -68,7 +73,7 @@ def values(field: Field) -> list[int | bytes]:
 def _numbers(field: Field) -> Iterator[int]:
     low, high = field.raw_min, field.raw_max
     yield from (0, low, high)
-    if field.type == "int":
+    if field.signed:
         yield from (-1, 1, low + 1)
     for pattern in _DISTINCT:
         value = pattern >> (64 - field.bits)

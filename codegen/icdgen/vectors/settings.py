@@ -24,8 +24,13 @@ def bits_of(value: float) -> str:
     return struct.pack(">d", value).hex()
 
 
-def settings(field: Field) -> list[tuple[str, int | None]]:
-    """Doubles (as their bits) and the raw value that setting each must give; None where it must be refused."""
+Settings = list[tuple[str, "int | bytes | None"]]
+
+
+def settings(field: Field) -> Settings:
+    """Doubles (as their bits) or texts, and the raw value that setting each must give; None where it must be refused."""
+    if field.type == "text":
+        return [(text, _bytes(field, text)) for text in _texts(field.bits // 8)]
     return list(_settings(field.type, field.bits, field.scale).items())
 
 
@@ -38,6 +43,21 @@ def _settings(type: str, bits: int, scale: Scale) -> dict[str, int | None]:
         if math.isfinite(value):
             found[bits_of(value)] = _raw(field, value)
     return found
+
+
+def _texts(size: int) -> Iterator[str]:
+    """Texts of every length that matters, the extreme characters, and what no text field takes."""
+    every = "".join(map(chr, range(1, 0x80)))
+    long = (every * (size // len(every) + 2))[32 : 32 + size + 1]
+    yield from ("", long[:1], long[: size - 1], long[:size], long, "\x01", "\x7f")
+    yield from ("\x80", "\u00e9", "\u4f4d", "\U0001f6f0")
+
+
+def _bytes(field: Field, text: str) -> bytes | None:
+    try:
+        return codec.raw_from_text(field, text)
+    except codec.CodecError:
+        return None
 
 
 def _raw(field: Field, value: float) -> int | None:

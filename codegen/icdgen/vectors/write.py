@@ -55,11 +55,11 @@ def _digits(denominator: int) -> int | None:
     return None
 
 
-def raw_json(field: Field, value: int | bytes) -> int | str:
+def raw_json(field: Field, value: int | bytes | None) -> int | str | None:
     """A raw value as it stands in the vectors and in the testee protocol (there, of a bool, true or false)."""
     if isinstance(value, bytes):
         return value.hex()
-    if field.type == "float":
+    if value is not None and field.type == "float":
         return f"{value:0{field.bits // 4}x}"
     return value
 
@@ -103,7 +103,7 @@ def _field(vectors: MessageVectors, field: Field) -> str:
     if field.name in vectors.unfit:
         row["unfit"] = vectors.unfit[field.name]
     if field.name in vectors.settings:
-        row["set"] = [list(pair) for pair in vectors.settings[field.name]]
+        row["set"] = [[given, raw_json(field, raw)] for given, raw in vectors.settings[field.name]]
     return _json(row)
 
 
@@ -115,6 +115,8 @@ def _row(fields: tuple[Field, ...], row: Row) -> str:
     if row.physical:
         line["physical"] = [decimal(value) for value in row.physical.values()]
         line["doubles"] = list(row.doubles.values())
+    if row.texts:
+        line["texts"] = list(row.texts.values())
     return _json(line)
 
 

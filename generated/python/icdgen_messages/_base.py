@@ -14,7 +14,7 @@ from typing import (
     Union,
 )
 
-from ._enumeration import OpenEnum
+from ._enumeration import OpenEnum, is_signed
 
 Buffer = Union[bytes, bytearray, memoryview]
 EnumClass = type[OpenEnum]
@@ -40,11 +40,14 @@ class FieldInfo(NamedTuple):
     bits: int
     """Width in bits."""
     type: str
-    """``uint``, ``int``, ``bool``, ``enum``, ``float`` or ``bytes``."""
+    """``uint``, ``int``, ``bool``, ``enum``, ``float``, ``bytes`` or ``text``."""
     unit: str = ""
     """Unit of the physical value, or of the raw one if there is no scale."""
     physical: str = ""
-    """The property that holds the physical value; empty if the field has no scale."""
+    """The property that holds the physical value, of ``text`` a `str`.
+
+    Empty if the field has neither a scale nor a text.
+    """
     scale: tuple[int, int, int] = (1, 0, 1)
     """``(p, c, q)``: the physical value is exactly ``(raw * p + c) / q``."""
     enum: _MaybeEnum = None
@@ -61,6 +64,13 @@ class FieldInfo(NamedTuple):
     """``little`` or ``big``; empty where it is the message's."""
     bit_order: str = ""
     """``lsb0`` or ``msb0``; empty where it is the message's."""
+
+    @property
+    def signed(self) -> bool:
+        """Whether the raw value is in two's complement."""
+        if self.enum is not None:
+            return is_signed(self.enum)
+        return self.type == "int"
 
 
 class Message:
@@ -101,7 +111,7 @@ class Message:
         raise NotImplementedError
 
     def as_dict(self, physical: bool = False) -> dict[str, Any]:
-        """All values by attribute: raw, or physical where a field has a scale."""
+        """All values by attribute: raw, or physical where a field has such a value."""
         if physical:
             names = [info.physical or info.attribute for info in self.FIELDS]
         else:

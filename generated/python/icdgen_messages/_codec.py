@@ -9,7 +9,7 @@ from functools import cache
 from typing import Any, TypeVar
 
 from ._base import Buffer, FieldInfo, Message
-from ._enumeration import OpenEnum
+from ._enumeration import OpenEnum, is_signed
 from ._errors import LengthError, RangeError
 
 _E = TypeVar("_E", bound=OpenEnum)
@@ -42,6 +42,8 @@ def bit_table(*parts: tuple[int, int, Any]) -> tuple[Any, ...]:
     for shift, bits, kind in parts:
         if kind is signed:
             values = [signed(value, bits) for value in range(1 << bits)]
+        elif issubclass(kind, OpenEnum) and is_signed(kind):
+            values = [kind(signed(value, bits)) for value in range(1 << bits)]
         else:
             values = [kind(value) for value in range(1 << bits)]
         mask = (1 << bits) - 1
@@ -106,6 +108,26 @@ def sized(value: Buffer, size: int) -> bytes:
     return data
 
 
+def text(value: Buffer) -> str:
+    """What stands before the first NUL; U+FFFD for each byte that is not ASCII."""
+    said = bytes(value).split(b"\0", 1)[0]
+    return said.decode("ascii", "replace")
+
+
+def text_bytes(value: str, field: str, size: int) -> bytes:
+    """The bytes of a text, filled with NUL. Raises `RangeError`."""
+    if (
+        not isinstance(value, str)
+        or not value.isascii()
+        or "\0" in value
+        or len(value) > size
+    ):
+        raise RangeError(
+            field, f"up to {size} ASCII characters, none of them NUL", value
+        )
+    return value.encode("ascii").ljust(size, b"\0")
+
+
 def raw_value(
     value: float, field: str, scale: tuple[int, int, int], low: int, high: int
 ) -> int:
@@ -153,7 +175,7 @@ def range_error(message: Message) -> RangeError:
 
 def raw_range(info: FieldInfo) -> tuple[int, int]:
     """Smallest and largest raw value of a field that holds integers."""
-    if info.type == "int":
+    if info.signed:
         return -(1 << (info.bits - 1)), (1 << (info.bits - 1)) - 1
     return 0, (1 << info.bits) - 1
 
@@ -197,4 +219,5 @@ _FITS: dict[str, Callable[[FieldInfo, Any], tuple[str, bool]]] = {
     "bool": _fits_bool,
     "float": _fits_float,
     "bytes": _fits_bytes,
+    "text": _fits_bytes,
 }

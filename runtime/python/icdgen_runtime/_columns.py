@@ -8,9 +8,10 @@ from importlib import import_module
 from typing import Any, NamedTuple
 
 from ._base import Buffer, FieldInfo, Message
-from ._codec import raw_range
+from ._codec import raw_range, text
 from ._errors import LengthError
 
+OCTETS = ("bytes", "text")  # types whose raw values are bytes
 _EXACT = 1 << 53  # integers below this are exact as 64-bit floats
 
 
@@ -23,7 +24,10 @@ def decode_many(
     columns = {}
     for info in message.FIELDS:
         column = decoder.column(info)
-        if physical and info.physical:
+        if physical and info.type == "text":
+            texts = [text(row) for row in column]
+            columns[info.physical] = numpy.array(texts, dtype=str)
+        elif physical and info.physical:
             columns[info.physical] = _physical(numpy, info, column)
         else:
             columns[info.attribute] = column
@@ -38,7 +42,7 @@ def decode_table(message: type[Message], frames: Buffer, physical: bool) -> Any:
     fields, arrays = [], []
     for info, (name, column) in zip(message.FIELDS, columns.items()):
         column = numpy.ascontiguousarray(column)
-        if info.type == "bytes":
+        if info.type in OCTETS and column.ndim == 2:
             kind = pyarrow.binary(info.bits // 8)
             buffers = [None, pyarrow.py_buffer(column)]
             array = pyarrow.Array.from_buffers(kind, len(column), buffers)
@@ -158,9 +162,9 @@ class _Decoder:
 
     def _whole(self, info: FieldInfo) -> Any:
         start, size = info.at // 8, info.bits // 8
-        if info.type == "bytes":
+        if info.type in OCTETS:
             return self.rows[:, start : start + size]
-        code = {"int": "i", "float": "f"}.get(info.type, "u")
+        code = "i" if info.signed else "f" if info.type == "float" else "u"
         is_big = (info.byte_order or self.message.BYTE_ORDER) == "big"
         order = ">" if is_big else "<"
         kind = self.numpy.dtype(f"{order}{code}{size}")
@@ -180,7 +184,7 @@ class _Decoder:
 
     def _within(self, info: FieldInfo, byte: int, shift: int, bits: int, _: int) -> Any:
         column = self._byte(byte)
-        if info.type == "int":
+        if info.signed:
             column = (column << (8 - shift - bits)).view(self.numpy.int8)
             return column >> (8 - bits)
         if shift + bits < 8:
@@ -196,7 +200,7 @@ class _Decoder:
         size = next(size for size in (8, 16, 32, 64) if size >= info.bits)
         if info.type == "float":
             return total.astype(f"u{size // 8}").view(f"f{size // 8}")
-        if info.type != "int":
+        if not info.signed:
             return total.astype(f"u{size // 8}")
         spare = numpy.uint64(64 - info.bits)
         return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(
@@ -242,7 +246,7 @@ def _plan(message: type[Message]) -> _Plan:
 
 def _is_whole(info: FieldInfo) -> bool:
     """Whether it is an array element as it stands."""
-    is_wide = info.type == "bytes" or info.bits in (8, 16, 32, 64)
+    is_wide = info.type in OCTETS or info.bits in (8, 16, 32, 64)
     return is_wide and info.at % 8 == 0
 
 

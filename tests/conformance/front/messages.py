@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 MOST_VALUES = 65536
 KINDS = ("telecommand", "telemetry", "configuration")
+OCTETS = ("bytes", "text")
 LIMITS = ("min", "max", "above", "below")
 
 
@@ -42,7 +43,7 @@ def encode(front: Front, request: Request) -> dict[str, Any]:
     for field in fields:
         name = field["name"]
         if name in physical:
-            values.append(f"p{int.from_bytes(_sized(physical[name], 8), 'big')}")
+            values.append(f"p{_physical(field, physical[name])}")
         elif name in raw:
             values.append(f"r{_raw(field, raw[name])}")
         else:
@@ -90,7 +91,8 @@ def sweep(front: Front, request: Request) -> dict[str, Any]:
     if len(values) > MOST_VALUES or any(type(value) is not int for value in values):
         raise Refusal("request", detail="these are too many values, or not integers")
     route, fields = _known(front, request)
-    place = next((place for place, field in enumerate(fields) if field["name"] == name and field["scaled"]), None)
+    scaled = ((place, field) for place, field in enumerate(fields) if field["name"] == name and field["type"] != "text")
+    place = next((place for place, field in scaled if field["scaled"]), None)
     if place is None:
         raise Refusal("unknown-field", field=name)
     found = items(_asked(front, fields, "sweep", *route, place, *values).facts.get("values", ""))
@@ -139,18 +141,28 @@ def _raw(field: Field, given: object) -> int | str:
     """A raw value of a request as the program is given it; whether it fits, the program says."""
     if field["type"] == "float":
         return int.from_bytes(_sized(given, field["bits"] // 8), "big")
-    if field["type"] == "bytes":
+    if field["type"] in OCTETS:
         return hex_bytes(given).hex()
     return int(given) if field["type"] == "bool" and type(given) is bool else _integer(given)
 
 
 def _shown(field: Field, value: str) -> object:
     """A raw value as it stands in an answer."""
-    if field["type"] == "bytes":
+    if field["type"] in OCTETS:
         return value
     if field["type"] == "float":
         return f"{int(value):0{field['bits'] // 4}x}"
     return {"0": False, "1": True}.get(value, value) if field["type"] == "bool" else int(value)
+
+
+def _physical(field: Field, given: object) -> int | str:
+    """A physical value of a request: the bits of a double, or the hex of a text."""
+    return hex_bytes(given).hex() if field["type"] == "text" else int.from_bytes(_sized(given, 8), "big")
+
+
+def _physical_shown(field: Field, row: Facts) -> str | None:
+    """A physical value as it stands in an answer: null where the bytes are no text."""
+    return row.get("physical") if field["type"] == "text" else _double(row["physical"])
 
 
 def _double(bits: str) -> str:
@@ -178,7 +190,7 @@ def _described(fields: list[Field], reply: Reply, names: bool = False) -> dict[s
     rows = _named(fields, reply)
     answer = {
         "raw": {name: _shown(field, row["raw"]) for name, field, row in rows},
-        "physical": {name: _double(row["physical"]) for name, _, row in rows if "physical" in row},
+        "physical": {name: _physical_shown(field, row) for name, field, row in rows if field["scaled"]},
         "bytes": reply.facts["bytes"],
     }
     if names:

@@ -35,7 +35,12 @@ def _message(message: Message) -> dict[str, Any]:
         "telemetry": message.telemetry_id,
         "configuration": [message.set_id, message.get_id],
         "fields": [
-            {"name": field.name, "type": field.type, "bits": field.bits, "scaled": field.scale is not None}
+            {
+                "name": field.name,
+                "type": field.type,
+                "bits": field.bits,
+                "scaled": field.scale is not None or field.type == "text",
+            }
             for field in message.fields
         ],
     }

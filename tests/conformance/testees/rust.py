@@ -43,6 +43,7 @@ class FieldEntry(NamedTuple):
 
     name: str
     scale: str
+    text: str
     special: str
     limits: str
 
@@ -75,7 +76,10 @@ class NodeEntry:
         }
         self.routes = [[self._route(*route) for route in routes] for routes in ways.values()]
         self.enums = [
-            EnumEntry(f"{crate}::{node.name}::enums::{names.type_name(enum)}", f"u{enum.storage.bits}")
+            EnumEntry(
+                f"{crate}::{node.name}::enums::{names.type_name(enum)}",
+                f"{'i' if enum.storage.signed else 'u'}{enum.storage.bits}",
+            )
             for enum in node.enums
         ]
         self.sums = [Dispatcher(way, way.capitalize(), f"u{id_bits}") for way, routes in ways.items() if routes]
@@ -101,7 +105,9 @@ class NodeEntry:
 
 
 def _field(field: FieldDescription) -> FieldEntry:
-    scale, special, limits = "None", "Vec::new", "Vec::new"
+    scale, text, special, limits = "None", "None", "Vec::new", "Vec::new"
+    if field.is_text:
+        text = f"Some(Text {{ get: Self::{field.physical_name}, set: Self::set_{field.physical_name} }})"
     if field.steps is not None:
         scale = f"Some(Scale {{ get: Self::{field.physical_name}, set: Self::set_{field.physical_name} }})"
     names = [(one.key, f"Self::{one.name.upper()}") for one in field.constants if one.key != "const"]
@@ -110,7 +116,7 @@ def _field(field: FieldDescription) -> FieldEntry:
     if field.bounds:
         values = ", ".join(f'("{key}", {name} as f64)' for key, name in names if key != "special")
         limits = f"|| vec![{values}]"
-    return FieldEntry(field_name(field), scale, special, limits)
+    return FieldEntry(field_name(field), scale, text, special, limits)
 
 
 class RustTesteeBackend:

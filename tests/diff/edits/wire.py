@@ -27,7 +27,7 @@ from tests.diff.edits.edit import (
 @edit()
 def move_field(icd, rng):
     found = [
-        (n, m, f, g) for n, m, f in fields_of(icd, lambda f: f.type != "bytes") for g in gaps(m, n) if g.bits >= f.bits
+        (n, m, f, g) for n, m, f in fields_of(icd, lambda f: not f.is_bytes) for g in gaps(m, n) if g.bits >= f.bits
     ]  # fmt: skip
     one = pick(rng, found)
     if one is None:
@@ -42,7 +42,7 @@ def swap_fields(icd, rng):
         (n, m, a, b)
         for n, m, a in fields_of(icd)
         for b in m.fields
-        if a.at < b.at and a.bits == b.bits and (a.type == "bytes") == (b.type == "bytes")
+        if a.at < b.at and a.bits == b.bits and (a.is_bytes) == (b.is_bytes)
     ]
     one = pick(rng, found)
     if one is None:
@@ -185,7 +185,7 @@ def change_kind(icd, rng, node, message):
 
 @edit()
 def turn_byte_order(icd, rng):
-    found = [n for n in icd.nodes if any(f.type != "bytes" and f.bits > 8 for m in n.messages for f in m.fields)]
+    found = [n for n in icd.nodes if any(not f.is_bytes and f.bits > 8 for m in n.messages for f in m.fields)]
     node = pick(rng, found)
     if node is None:
         return None

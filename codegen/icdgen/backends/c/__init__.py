@@ -15,7 +15,7 @@ from icdgen.backends.c.statement import call, define, head
 from icdgen.backends.c.text import comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
-from icdgen.describe.comments import sentence, words
+from icdgen.describe.comments import sentence, text_comment, words
 from icdgen.describe.numbers import byte_count
 from icdgen.icd.model import Icd
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 _SPELLING = (
     byte_count, call, comment, define, described, head, literal, prose, names.constant, names.enumerator, names.stem,
+    text_comment, words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}
 """What templates spell names and text with."""
@@ -35,12 +36,15 @@ class CBackend:
 
     name = "c"
     reserved = RESERVED
+    significant = 63  # characters of a name that C99 warrants to tell it from others
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Every file, the support header first, then node by node."""
         first = f"/* {origin()} */\n"
         yield PurePosixPath("icdgen.h"), first + whole("icdgen.h", {}, render)
         description = describe(icd)
+        if _is_wide(description):
+            yield PurePosixPath("icdgen_wide.h"), first + whole("icdgen_wide.h", {}, render)
         links = _links(description)
         if links:
             step_bytes = max(1, *(link.longest_step for link in links.values()))
@@ -73,7 +77,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
     about = message.comment
     return {
         "about": comment(["@file", about.head, *about.rest, *noted(about)]),
-        "includes": ["../icdgen.h", *enums],
+        "includes": ["../icdgen_wide.h" if message.has_wide_steps else "../icdgen.h", *enums],
         "constants": constants.of_fields(message),
         "initial": constants.initial(message),
         "declaration": types.declaration,
@@ -85,6 +89,11 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "whole_accessors": accessors.whole_accessors(message),
         "accessors": accessors.accessors(message),
     }
+
+
+def _is_wide(description: Description) -> bool:
+    """Whether a formula needs more than the support header computes with."""
+    return any(message.has_wide_steps for node in description.nodes for message in node.messages)
 
 
 def _links(description: Description) -> dict[str, LinkDescription]:

@@ -21,6 +21,7 @@ class Accessor(NamedTuple):
     expression: str
     assignment: str
     test: str = ""
+    declared: tuple[str, ...] = ()  # lines before both
 
 
 def accessors(message: MessageDescription) -> list[Accessor]:
@@ -39,6 +40,7 @@ def _double(field: FieldDescription) -> Accessor:
         what=physical_name(field.model),
         expression=scaled.getter.format(raw=f"message->{field.name}"),
         assignment=call(f"return {function}", (f"&message->{field.name}", *arguments)),
+        declared=tuple(physical.wide_scale(field.steps)) if field.steps.is_wide else (),
     )
 
 

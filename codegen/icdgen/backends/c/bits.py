@@ -15,7 +15,7 @@ BITS = "{bits}"  # stands for the bits of the field in the expressions made here
 def is_word(field: FieldDescription) -> bool:
     """Whether the field is a byte, or a word of 2, 4 or 8 whole bytes that is loaded and stored as one."""
     one = field.model
-    return one.type != "bytes" and one.at % 8 == 0 and one.bits in (8, 16, 32, 64)
+    return not one.is_bytes and one.at % 8 == 0 and one.bits in (8, 16, 32, 64)
 
 
 def order(field: FieldDescription) -> str:
@@ -57,7 +57,7 @@ def _from_bits(field: FieldDescription, wide: int, joined: bool) -> str:
         return cast(BITS, storage.bits) if joined and storage.bits != wide else BITS
     if not field.is_narrow:
         return f"icdgen_i{storage.bits}({cast(BITS, storage.bits) if storage.bits != wide else BITS})"
-    sign = mask(1 << (field.model.bits - 1), 64 if wide == 64 else storage.bits)
+    sign = mask(1 << (field.model.bits - 1), min(wide, storage.bits))
     extended = f"icdgen_extend{wide}({BITS}, {sign})"
     return extended if storage.bits == wide else cast(extended, storage.bits, True)
 

@@ -22,6 +22,7 @@ def declared_names(description: Description) -> Iterator[Identifier]:
     for name in _SUPPORT:
         yield Identifier(FILE, name, "the support header", None)
     yield Identifier(FILES, "icdgen.h", "the support header", None)
+    yield Identifier(FILES, "icdgen_wide.h", "formulas of many digits", None)
     for end in ("h", "c"):
         yield Identifier(FILES, f"icdgen_wire.{end}", "the wire layer", None)
     for node in description.nodes:
@@ -74,12 +75,12 @@ def _message(message: MessageDescription, linked: bool) -> Iterator[Identifier]:
         yield field.identifier(f"members of {stem}_t", field.name)
         for one in field.constants:
             yield field.identifier(FILE, names.constant(message, one.name))
-        for end in _physical_names(field) if field.steps is not None else ():
+        for end in _physical_names(field) if field.has_physical else ():
             yield field.identifier(FILE, f"{stem}_{end}")
             yield field.identifier(FILE, f"{stem}_set_{end}")
 
 
 def _physical_names(field: FieldDescription) -> tuple[str, ...]:
-    """What its accessors are called by: the physical value as a double, and in whole parts of its unit."""
-    whole = physical.scaled(field).whole
+    """What its accessors are called by: the physical value as a text or a double, and in whole parts of its unit."""
+    whole = None if field.is_text else physical.scaled(field).whole
     return (field.physical_name,) if whole is None else (field.physical_name, whole_name(field, whole))

@@ -35,7 +35,7 @@ def _group(group: Flags | Row, message: MessageDescription) -> str:
 
 def _one(field: FieldDescription) -> str:
     one = field.model
-    if one.type == "bytes":
+    if one.is_bytes:
         return f"memcpy(message->{field.name}, &buffer[{one.at // 8}], {one.bits // 8}u);"
     read = bits.read(field)
     line = _assigned(field, read.whole)

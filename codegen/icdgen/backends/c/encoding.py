@@ -38,7 +38,7 @@ class _Frame:
     def _one(self, field: FieldDescription) -> None:
         one = field.model
         first, size = one.at // 8, one.bits // 8
-        if one.type == "bytes":
+        if one.is_bytes:
             self.whole[first] = size, f"memcpy(&buffer[{first}], message->{field.name}, {size}u);"
         elif bits.is_word(field):
             self.whole[first] = size, bits.store(field)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -69,6 +70,8 @@ def _plus(value: str, offset: int, bits: int) -> str:
 
 def _double_getter(steps: Steps, storage: Storage) -> str:
     factor, offset, divisor = steps.terms
+    if steps.is_wide:
+        return f"icdgen_wide_physical_{'i' if storage.signed else 'u'}64({RAW}, &scale)"
     if steps.exact_in_doubles and _computable(storage, factor, offset, INT64):
         return f"icdgen_quotient({_whole_getter(factor, offset, 64, storage)}, {int64(divisor)})"
     kind = f"{'i' if storage.signed else 'u'}64"
@@ -79,12 +82,28 @@ def _double_getter(steps: Steps, storage: Storage) -> str:
 
 def _double_setter(steps: Steps, storage: Storage) -> tuple[str, ...]:
     factor, offset, divisor = steps.terms
+    ends = (steps.raw_min, steps.raw_max) if storage.signed else (steps.raw_max,)
+    limits = [_limit(end, storage) for end in ends]
+    kind = f"{'i' if storage.signed else 'u'}{storage.bits}"
+    if steps.is_wide:
+        return f"icdgen_wide_set_{kind}", "value", "&scale", *limits
     value = "value"
     if offset > INT64:
         value, factor, offset = "-value", -factor, -offset
-    ends = (steps.raw_min, steps.raw_max) if storage.signed else (steps.raw_max,)
-    function = f"icdgen_set_{'i' if storage.signed else 'u'}{storage.bits}"
-    return function, value, int64(factor), int64(offset), int64(divisor), *(_limit(end, storage) for end in ends)
+    return f"icdgen_set_{kind}", value, int64(factor), int64(offset), int64(divisor), *limits
+
+
+def wide_scale(steps: Steps) -> list[str]:
+    """The lines that declare the numbers of a wide scale."""
+    lines = [f"{{{{{', '.join(_parts(term))}}}}}" for term in steps.terms]
+    return ["static const icdgen_scale_t scale = {", *(f"    {line}," for line in lines), "};"]
+
+
+def _parts(value: int) -> Iterator[str]:
+    """256 bits of two's complement, the least significant part first."""
+    for shift in range(0, 256, 32):
+        part = value >> shift & 0xFFFFFFFF
+        yield f"0x{part:X}u" if part > 9 else f"{part}u"
 
 
 def _limit(value: int, storage: Storage) -> str:

@@ -22,7 +22,7 @@ def type_of(field: FieldDescription) -> str:
 
 def declaration(field: FieldDescription) -> str:
     """The member of a message's struct."""
-    if field.model.type == "bytes":
+    if field.model.is_bytes:
         return f"uint8_t {field.name}[{field.model.bits // 8}]"
     return f"{type_of(field)} {field.name}"
 

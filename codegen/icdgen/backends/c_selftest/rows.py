@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
@@ -18,10 +18,10 @@ from icdgen.render import Renderer
 from icdgen.vectors.ids import worth_asking
 from icdgen.vectors.make import MessageVectors, Row, make
 from icdgen.vectors.patterns import values
-from icdgen.vectors.settings import NEVER
+from icdgen.vectors.settings import NEVER, Settings
 
 BYTES_IN_ROW, NUMBERS_IN_ROW = 16, 4
-TYPES = {"bool": "BOOL", "bytes": "BYTES", "int": "SIGNED"}
+TYPES = {"bool": "BOOL", "bytes": "BYTES", "text": "BYTES"}
 
 
 class Accessors(NamedTuple):
@@ -45,6 +45,7 @@ class FieldRow(NamedTuple):
     unfit: list[str]
     whole: Accessors | None
     scaled: Accessors | None
+    text: Accessors | None
 
 
 class MessageRow(NamedTuple):
@@ -56,6 +57,7 @@ class MessageRow(NamedTuple):
     vector_size: int
     kept: list[str]
     doubles: list[str]
+    texts: list[str]
     fields: list[FieldRow]
     refused_lengths: list[int]
 
@@ -121,6 +123,7 @@ class _Rows:
             vector_size=size,
             kept=_bytes(kept),
             doubles=in_rows(doubles, NUMBERS_IN_ROW),
+            texts=[f"{_text(text)}," for row in vectors.rows for text in row.texts.values()],
             fields=fields,
             refused_lengths=list(vectors.lengths),
         )
@@ -137,18 +140,19 @@ class _Rows:
 
     def field(self, one: FieldDescription, vectors: MessageVectors) -> FieldRow:
         field, storage = one.model, one.storage
-        is_bytes = field.type == "bytes"
+        is_bytes = field.is_bytes
         unfit = [v for v in vectors.unfit.get(field.name, ()) if not is_bytes and storage.min <= v <= storage.max]
         return FieldRow(
             field=one,
             stem=f"{names.stem(one.message)}_selftest_{one.name}",
             size=field.bits // 8 if is_bytes else storage.bits // 8,
             packed=(field.bits + 7) // 8,
-            type=f"ICDGEN_SELFTEST_{TYPES.get(field.type, 'UNSIGNED')}",
+            type=f"ICDGEN_SELFTEST_{'SIGNED' if field.signed else TYPES.get(field.type, 'UNSIGNED')}",
             fresh=_unsigned(one.fresh),
             unfit=list(map(_unsigned, unfit)),
             whole=_whole(one),
             scaled=_scaled(one, vectors.settings[field.name]) if field.scale else None,
+            text=_texts(one, vectors.settings[field.name]) if one.is_text else None,
         )
 
 
@@ -157,11 +161,25 @@ def _accessors(field: FieldDescription, end: str, type: str, rows: list[str]) ->
     return Accessors(f"{stem}_{end}", f"{stem}_set_{end}", type, rows)
 
 
-def _scaled(field: FieldDescription, settings: Iterable[tuple[str, int | None]]) -> Accessors:
-    lines = [
-        f"{{UINT64_C(0x{bits}), {_unsigned(raw or 0)}, {'true' if raw is None else 'false'}}},"
-        for bits, raw in [*settings, *((bits, None) for bits in NEVER)]
-    ]
+def _texts(field: FieldDescription, settings: Settings) -> Accessors:
+    """Setting texts: the bytes that each gives, or that it is refused. C has no text with characters of other bytes."""
+    lines = []
+    for text, raw in settings:
+        assert not isinstance(raw, int)
+        octets = "NULL" if raw is None else f"(const uint8_t[]){{{', '.join(map(hex, raw))}}}"
+        lines.append(f"{{{_text(text)}, {octets}}},")
+    return _accessors(field, field.physical_name, "char", lines)
+
+
+def _text(text: str | None) -> str:
+    return "NULL" if text is None else literal(text)
+
+
+def _scaled(field: FieldDescription, settings: Settings) -> Accessors:
+    lines = []
+    for bits, raw in [*settings, *((bits, None) for bits in NEVER)]:
+        assert not isinstance(raw, bytes)
+        lines.append(f"{{UINT64_C(0x{bits}), {_unsigned(raw or 0)}, {'true' if raw is None else 'false'}}},")
     return _accessors(field, field.physical_name, "double", lines)
 
 

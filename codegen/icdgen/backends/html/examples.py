@@ -7,6 +7,7 @@ from typing import NamedTuple
 from icdgen import codec, layout
 from icdgen.backends.html.texts import MINUS, number
 from icdgen.icd.model import Field, Message, Node
+from icdgen.tables import clean
 from icdgen.values.numbers import float_text
 from icdgen.vectors import patterns
 
@@ -27,16 +28,8 @@ class Example(NamedTuple):
     cells: list[Cell]
 
 
-class Frame(NamedTuple):
-    """A vector's bytes, spaced for people and packed for a link."""
-
-    why: str
-    hex: str
-    packed: str
-
-
-def frames(message: Message, node: Node) -> list[Frame]:
-    """Every frame of the message's golden vectors, in their order."""
+def frames(message: Message, node: Node) -> list[tuple[str, str]]:
+    """Name and bytes of every frame of the message's golden vectors, in their order."""
     if not message.length:
         return []
     found = {frame: why for why, frame in reversed(list(patterns.frames(message)))}
@@ -46,7 +39,7 @@ def frames(message: Message, node: Node) -> list[Frame]:
         if frame not in ordered:
             ordered[frame] = None
             found[frame] = f"chosen values {index}"
-    return [Frame(found[frame], frame.hex(" ").upper(), frame.hex()) for frame in ordered]
+    return [(found[frame], frame.hex(" ").upper()) for frame in ordered]
 
 
 def _encoded(message: Message, node: Node, raw: dict[str, int | bytes]) -> bytes:
@@ -77,8 +70,9 @@ def examples(message: Message, node: Node) -> list[Example]:
 
 def _cell(field: Field, raw: int | bytes) -> Cell:
     if isinstance(raw, bytes):
-        text = raw.hex(" ").upper()
-        return Cell(text if len(raw) <= 16 else f"{text[:47]} …", "")
+        shown = raw.hex(" ").upper()
+        said = codec.text(raw) if field.type == "text" else ""
+        return Cell(shown if len(raw) <= 16 else f"{shown[:47]} …", clean(said))
     if field.type == "float":
         value = float_text(codec.float_value(field, raw), field.bits)
         return Cell(f"0x{raw:0{field.bits // 4}X}", value.replace("-", MINUS))

@@ -32,7 +32,12 @@ def integer(value: int) -> int | str:
 
 def _field(field: Field, node: Node) -> dict[str, object]:
     plan: dict[str, object] = {"name": field.name, "type": field.type, "bits": field.bits}
-    if field.type == "bytes":
+    if field.signed:
+        plan["signed"] = True
+    if field.is_bytes:
+        plan["type"] = "bytes"
+        if field.type == "text":
+            plan["text"] = True
         plan["first"] = field.at // 8
     else:
         plan["pieces"] = [[p.byte, p.shift, p.bits, p.at] for p in layout.pieces(field, node)]

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 # Written by hand; the pages load them.
 _LOADED = (
     *("style.css", "layout.css", "print.css", "icon.svg"),
-    *("theme.js", "site.js", "load.js", "search.js", "find.js", "filter.js", "errata.js", "copy.js"),
+    *("theme.js", "site.js", "load.js", "sidebar.js", "search.js", "find.js", "filter.js", "errata.js", "copy.js"),
     *("codec.js", "frames.js", "packets.js", "pasted.js", "stream.js", "given.js", "recognize.js"),
     *("frame-links.js", "paste.js", "values.js", "lit.js", "try.js", "protocol.js"),
 )
@@ -75,6 +75,7 @@ def files(icd: Icd, render: Renderer, previous: Side | None = None) -> Iterator[
     for node in icd.nodes:
         beside = sidebar.of_node(relations, node, render)
         url = relations.links.node(node.name)
+        yield PurePosixPath(sidebar.contents(node)), sidebar.script(relations, node)
         yield page(url, "node.html.j2", sidebar=beside(url), **nodes.values(relations, node))
         if protocol.has_page(relations, node):
             url = relations.links.protocol(node.name)

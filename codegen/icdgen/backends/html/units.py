@@ -12,9 +12,10 @@ _TYPES = {
     "uint": "Unsigned integer of 1 to 64 bits.",
     "int": "Signed integer in two's complement.",
     "bool": "One bit: 1 is true.",
-    "enum": "Unsigned integer whose values have names. Values without a name are kept.",
+    "enum": "Integer whose values have names, unsigned unless one of them is negative. Values without a name are kept.",
     "float": "IEEE 754 number of 32 or 64 bits. Every NaN is kept as it is.",
     "bytes": "Whole bytes, in order.",
+    "text": "ASCII characters in whole bytes, filled with NUL.",
 }
 
 
@@ -47,6 +48,6 @@ def _numberings(relations: Relations) -> list[tuple[str, str, str]]:
 
 
 def _widths(kind: str, found: set[int]) -> str:
-    if kind == "bytes":
+    if kind in ("bytes", "text"):
         return texts.span(str(min(found)), str(max(found))) if len(found) > 6 else ", ".join(map(str, sorted(found)))
     return ", ".join(map(str, sorted(found)))

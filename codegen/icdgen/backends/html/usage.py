@@ -57,5 +57,5 @@ def names(message: MessageDescription) -> list[tuple[str, str]]:
 
 def _worth_showing(message: MessageDescription) -> FieldDescription | None:
     """The first field with a scale, else the first that is neither constant nor a byte array."""
-    usual = [one for one in message.fields if one.model.const is None and one.model.type != "bytes"]
+    usual = [one for one in message.fields if one.model.const is None and not one.model.is_bytes]
     return next((one for one in usual if one.steps is not None), usual[0] if usual else None)

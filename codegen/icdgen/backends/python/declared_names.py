@@ -34,7 +34,7 @@ def declared_names(description: Description, package: str) -> Iterator[Identifie
 
 def _message(message: MessageDescription, scope: str) -> Iterator[Identifier]:
     for field in message.fields:
-        for name in (field.name, field.physical_name) if field.steps is not None else (field.name,):
+        for name in (field.name, field.physical_name) if field.has_physical else (field.name,):
             yield field.identifier(scope, name)
             if name in names.IN_MESSAGE:
                 yield Identifier(scope, name, names.IN_MESSAGE[name].format(name), None)

@@ -14,13 +14,15 @@ _KEYWORDS = {"min": "minimum", "max": "maximum"}
 
 def annotation(field: FieldDescription) -> str:
     """The type of the attribute."""
+    if field.is_text:
+        return "bytes"
     return class_name(field.enum) if field.enum else "int" if field.model.type == "uint" else field.model.type
 
 
 def default(field: FieldDescription, constants: dict[str, str]) -> str:
     """What a field is at first; constants of the module are kept in ``constants``: the call that makes it, and its name."""
     kind, value = field.model.type, field.fresh
-    if kind == "bytes":
+    if field.model.is_bytes:
         return _constant(constants, f"bytes({field.model.bits // 8})")
     if field.enum is None:
         return str(bool(value)) if kind == "bool" else "0.0" if kind == "float" else str(value)
@@ -38,6 +40,8 @@ def info(field: FieldDescription) -> str:
     items = [f'"{field.name}"', literal(one.name), str(one.at), str(one.bits), f'"{one.type}"']
     if one.unit:
         items.append(f"unit={literal(one.unit.symbol)}")
+    if field.is_text:
+        items.append(f'physical="{field.physical_name}"')
     if field.steps is not None:
         items += [f'physical="{field.physical_name}"', f"scale={field.steps.terms}"]
     if field.enum is not None:
@@ -64,6 +68,17 @@ def physical(field: FieldDescription) -> str:
     if c:
         value = f"{value} {'+' if c > 0 else '-'} {abs(c)}"
     return f"float({value})" if q == 1 else f"({value}) / {q}" if c else f"{value} / {q}"
+
+
+def text(field: FieldDescription) -> str:
+    """The text of a field of characters."""
+    return f"_codec.text(self.{field.name})"
+
+
+def set_text(field: FieldDescription) -> str:
+    """The statement that sets it."""
+    arguments = ["value", f'"{field.name}"', str(field.model.bits // 8)]
+    return bracketed(f"self.{field.name} = _codec.text_bytes(", arguments, ")", WIDTH, " " * 8)
 
 
 def set_physical(field: FieldDescription) -> str:

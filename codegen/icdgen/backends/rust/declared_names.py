@@ -64,7 +64,7 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     yield from _ours(associated, _CONSTANTS)
     for field in message.fields:
         yield field.identifier(fields, names.field_name(field))
-        if field.steps is not None:
+        if field.has_physical:
             yield field.identifier(methods, field.physical_name)
             yield field.identifier(methods, f"set_{field.physical_name}")
         for constant in field.constants:

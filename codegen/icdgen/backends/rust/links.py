@@ -250,7 +250,7 @@ def _step(step: StepDescription | None, direction: str) -> Brackets | None:
         return None
     places, payload = [], None
     for role, field in step.places:
-        if field.model.type == "bytes":
+        if field.model.is_bytes:
             payload = _span(field)
         elif role not in _ONLY_POLLED and field.model.bits <= _NUMBER_BITS:
             name = Item(f"link::Role::{camel(tuple(role.split('_')))}")

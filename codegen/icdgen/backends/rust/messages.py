@@ -19,15 +19,21 @@ def values(message: MessageDescription) -> dict[str, object]:
     derived = ["Clone", "Copy", "Debug", *(["Default"] if has_default else []), "PartialEq"]
     narrow = [field for field in fields if field.is_narrow]
     scales = [field for field in fields if field.steps is not None or field.is_narrow]
+    has_text = any(field.is_text for field in fields)
+    is_usual = any(field.steps is None or not field.steps.is_wide for field in scales)
     imported = {
         "array": any("array(" in reading for reading in readings),
         "flags": bool(tables),
         "put": any("put!(" in line for line in writings),
         "put_array": any("put_array(" in line for line in writings),
         "take": any("take!(" in reading for reading in readings),
+        "text": has_text,
+        "text_array": has_text,
+        "Big": message.has_wide_steps,
         "Coded": any(field.enum for field in fields),
         "Error": True,
-        "Scale": bool(scales),
+        "Scale": is_usual,
+        "Wide": message.has_wide_steps,
     }
     names = [name for name, is_used in imported.items() if is_used]
     return {
@@ -48,7 +54,7 @@ def values(message: MessageDescription) -> dict[str, object]:
 
 def _is_long(field: FieldDescription) -> bool:
     """Whether it is an array that has no `Default`."""
-    return field.model.type == "bytes" and field.model.bits > DERIVES_DEFAULT * 8
+    return field.model.is_bytes and field.model.bits > DERIVES_DEFAULT * 8
 
 
 def _byte(id: int | None) -> int | None:
@@ -58,7 +64,7 @@ def _byte(id: int | None) -> int | None:
 
 def _fresh(field: FieldDescription) -> str:
     kind = field.model.type
-    if kind == "bytes":
+    if field.model.is_bytes:
         return f"[0; {field.model.bits // 8}]"
     if kind == "enum":
         return f"Coded::from_raw({integer(field.fresh)})"

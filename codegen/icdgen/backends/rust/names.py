@@ -67,7 +67,7 @@ def raw_type(field: FieldDescription) -> str:
     one = field.model
     if field.enum is not None:
         return f"Coded<{enum_path(field.enum, field.message.node)}>"
-    if one.type == "bytes":
+    if one.is_bytes:
         return f"[u8; {one.bits // 8}]"
     if one.type == "float":
         return f"f{one.bits}"

@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 from icdgen.backends.rust.names import field_name
-from icdgen.backends.rust.text import whole_double
+from icdgen.backends.rust.text import mask, whole_double
 from icdgen.describe import FieldDescription
+
+
+def big_parts(value: int) -> list[str]:
+    """256 bits of two's complement, the least significant part first, as literals."""
+    parts = (value >> shift & (1 << 64) - 1 for shift in range(0, 256, 64))
+    return [mask(part, 64) if part > 9 else str(part) for part in parts]
 
 
 def physical(field: FieldDescription) -> str:
@@ -13,7 +19,7 @@ def physical(field: FieldDescription) -> str:
     In doubles where every step is exact in them, else through 128-bit integers of the support module.
     """
     assert field.steps is not None
-    if field.storage.bits > 32 or not field.steps.exact_in_doubles:
+    if field.storage.bits > 32 or field.steps.is_wide or not field.steps.exact_in_doubles:
         return f"{field.name.upper()}.physical(self.{field_name(field)})"
     p, c, q = field.steps.terms
     raw = f"f64::from(self.{field_name(field)})"

@@ -24,7 +24,7 @@ def formula_reads(ctx: Context) -> Iterator[Fault]:
                 formula.parse(text)
             except formula.FormulaError as error:
                 message = f"the formula {quote(text)} cannot be used: {error}"
-                help = "a formula is linear and exact: `raw*0.01`, `raw/10 - 40`, `raw = value*1000`"
+                help = "a formula is linear and exact: `raw*0.01`, `raw*2^-19`, `raw/10 - 40`, `raw = value*1000`"
                 yield Fault(field.source, field.source.at("formula"), message, help)
 
 
@@ -83,7 +83,7 @@ def _gives(field: Field) -> str:
 @rule("ICD063")
 def unit_has_number(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.having["unit"]:
-        if field.type in ("bool", "enum", "bytes"):
+        if field.type in ("bool", "enum") or field.is_bytes:
             message = f"{quote(field.name)} is `{field.type}`, which has no unit"
             yield Fault(field.source, field.source.at("unit"), message, "remove `unit`, or correct `type`")
 
@@ -100,7 +100,7 @@ def formula_computable(ctx: Context) -> Iterator[Fault]:
         if checked[field.formula]:
             p, c, q = (_shown(n) for n in exact.terms(scale))
             message = f"the formula of {quote(field.name)} needs numbers that are too large: (raw*{p} + {c}) / {q}"
-            help = "factor and divisor go up to 2^32, the offset up to 2^63, over their common denominator"
+            help = "factor and divisor go up to 2^180, the offset up to 2^240, over their common denominator"
             yield Fault(field.source, field.source.at("formula"), message, help)
 
 

@@ -19,6 +19,7 @@ WIDTHS = {
     "bool": (frozenset({1}), "1 bit"),
     "float": (frozenset({32, 64}), "32 or 64 bits"),
 }
+_ORDERLY = {"bytes": "bytes", "text": "characters"}
 
 
 @rule("ICD020")
@@ -89,7 +90,7 @@ def _overlap(first: Field, second: Field, bits: str = "") -> Fault:
 @rule("ICD022")
 def width(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.fields:
-        if field.type == "bytes":
+        if field.is_bytes:
             fits, words = field.bits % 8 == 0, "whole bytes: a multiple of 8 bits"
         else:
             allowed, words = WIDTHS[field.type]
@@ -103,11 +104,11 @@ def width(ctx: Context) -> Iterator[Fault]:
 @rule("ICD023")
 def bytes_boundary(ctx: Context) -> Iterator[Fault]:
     for field, _, _ in ctx.fields:
-        if field.type == "bytes" and field.at % 8:
+        if field.is_bytes and field.at % 8:
             yield Fault(
                 field.source,
                 field.source.at("at"),
-                f"{quote(field.name)} is `bytes`, but bit {field.at:,} is not the beginning of a byte",
+                f"{quote(field.name)} is `{field.type}`, but bit {field.at:,} is not the beginning of a byte",
                 f"bytes begin at bits {field.at // 8 * 8:,} and {field.at // 8 * 8 + 8:,}",
             )
 
@@ -116,8 +117,8 @@ def bytes_boundary(ctx: Context) -> Iterator[Fault]:
 def order_of_nothing(ctx: Context) -> Iterator[Fault]:
     for key in ("byte_order", "bit_order"):
         for field, _, _ in ctx.having[key]:
-            if field.type == "bytes" or (field.type == "bool" and key == "byte_order"):
-                what = "bytes stand as they come" if field.type == "bytes" else "it is one bit"
+            if field.is_bytes or (field.type == "bool" and key == "byte_order"):
+                what = f"{_ORDERLY[field.type]} stand as they come" if field.is_bytes else "it is one bit"
                 message = f"{quote(field.name)} is `{field.type}`: {what}, so there is no `{key}`"
                 yield Fault(field.source, field.source.at(key), message, f"remove `{key}`")
 

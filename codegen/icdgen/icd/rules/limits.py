@@ -69,7 +69,7 @@ def _first(field: Field, *keys: str) -> str:
 def limits_in_order(ctx: Context) -> Iterator[Fault]:
     for field in _limited(ctx):
         source = field.source
-        if field.type in ("bool", "bytes"):
+        if field.type == "bool" or field.is_bytes:
             key = _first(field, *LIMITS)
             yield Fault(source, source.at(key), f"`{key}` has no meaning for type `{field.type}`", f"remove `{key}`")
         elif bounds(field).is_empty:

@@ -97,7 +97,7 @@ def named_fields_in_the_order_of_the_node(ctx: Context) -> Iterator[Fault]:
             orders = node.byte_order, node.bit_order
             home = next(one for one in ctx.scope(node) if message in one.messages)
             for field in message.fields:
-                if field.name == owner[key] and field.type != "bytes" and field.orders(home) != orders:
+                if field.name == owner[key] and not field.is_bytes and field.orders(home) != orders:
                     text = f"{quote(field.name)} is {' '.join(field.orders(home))}, the links of `{node.name}` read fields as"
                     help = f"give it the orders of the node, or leave `{key}` out"
                     yield Fault(owner, owner.at(key), f"{text} {' '.join(orders)}", help)

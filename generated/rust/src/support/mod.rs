@@ -11,9 +11,13 @@ use core::hash::Hash;
 pub(crate) mod array;
 mod bytes;
 mod scale;
+mod text;
+mod wide;
 
 pub(crate) use self::bytes::{array, flags, put, put_array, take, write_to};
 pub(crate) use self::scale::Scale;
+pub(crate) use self::text::{text, text_array};
+pub(crate) use self::wide::{Big, Wide};
 
 /// Why bytes are not a message, or a message or value cannot be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -69,7 +69,7 @@ impl Scale {
 }
 
 /// Mantissa and exponent: the value is `mantissa * 2^exponent`. None if it is not finite.
-fn parts(value: f64) -> Option<(i128, i32)> {
+pub(super) fn parts(value: f64) -> Option<(i128, i32)> {
     let bits = value.to_bits();
     let [first, second, ..] = bits.to_be_bytes();
     let exponent = i32::from(u16::from_be_bytes([first & 0x7f, second]) >> 4);

@@ -163,6 +163,32 @@ static void refuse_at(size_t place)
     put_number("at", place);
 }
 
+/* Nothing, where the bytes are no text. */
+static void put_text_of(const testee_field_t *field, const void *value)
+{
+    char *text = (char *)memory(field->size + 1u);
+    if (field->get_text(value, text, field->size + 1u) == ICD_OK) {
+        put_octets("physical", text, strlen(text));
+    }
+}
+
+static bool take_text(const testee_field_t *field, void *value, const char *word)
+{
+    const octets_t octets = octets_of(word);
+    char *text = (char *)memory(octets.length + 1u);
+    memcpy(text, octets.data, octets.length);
+    text[octets.length] = '\0';
+    return field->set_text(value, text) == ICD_OK;
+}
+
+static bool take_physical(const testee_field_t *field, void *value, const char *word)
+{
+    if (field->set_text != NULL) {
+        return take_text(field, value, word);
+    }
+    return field->set(value, double_of(strtoull(word, NULL, 10))) == ICD_OK;
+}
+
 static const char *misfit_of(const subject_t *subject)
 {
     return subject->message->misfit != NULL ? subject->message->misfit(subject->value) : NULL;
@@ -189,8 +215,13 @@ static void put_message(const subject_t *subject)
         if (field->get != NULL) {
             put_number("physical", double_bits(field->get(subject->value)));
         }
+        if (field->get_text != NULL) {
+            put_text_of(field, subject->value);
+        }
         if (field->name_of != NULL) {
-            put_text("name", field->name_of(member_bits(field, subject->value)));
+            const uint64_t bits = member_bits(field, subject->value);
+            const int64_t number = field->type == TESTEE_SIGNED ? signed_of(bits, field->size) : 0;
+            put_text("name", field->name_of(number < 0 ? (uint64_t)number : bits, number < 0));
         }
     }
 }
@@ -230,7 +261,7 @@ static void encode(void)
         const testee_field_t *field = &subject.message->fields[i];
         const char *word = next_word();
         const bool fits = *word == 'p'
-            ? field->set(subject.value, double_of(strtoull(word + 1, NULL, 10))) == ICD_OK
+            ? take_physical(field, subject.value, word + 1)
             : take_raw(field, subject.value, word + 1);
         if (!fits) {
             refuse_at(i);
@@ -318,9 +349,9 @@ static void enumeration(void)
     const char *word = next_word();
     uint64_t value;
     errno = 0;
-    value = strtoull(word, NULL, 10);
+    value = *word == '-' ? (uint64_t)strtoll(word, NULL, 10) : strtoull(word, NULL, 10);
     put_row("ok");
-    put_text("name", errno != 0 || *word == '-' ? NULL : name_of(value));
+    put_text("name", errno != 0 ? NULL : name_of(value, *word == '-'));
 }
 
 static void about_node(void)

@@ -66,7 +66,9 @@ def _encode(node: Any, words: Words) -> str:
     message = _message(node, words)()
     try:
         for info, word in zip(message.FIELDS, words):
-            if word[0] == "p":
+            if word[0] == "p" and info.type == "text":
+                setattr(message, info.physical, bytes.fromhex(word[1:]).decode())
+            elif word[0] == "p":
                 setattr(message, info.physical, _floats.float64(int(word[1:])))
             else:
                 setattr(message, info.attribute, _raw(info, word[1:]))
@@ -80,7 +82,7 @@ def _raw(info: FieldInfo, word: str) -> Any:
     if info.type == "float":
         bits = int(word)
         return _floats.float32(bits) if info.bits == 32 else _floats.float64(bits)
-    if info.type == "bytes":
+    if info.type in ("bytes", "text"):
         return bytes.fromhex(word)
     return word == "1" if info.type == "bool" and word in "01" else int(word)
 
@@ -89,7 +91,7 @@ def _shown(info: FieldInfo, value: Any) -> Any:
     if info.type == "float":
         is_single = info.bits == 32
         return (_floats.float32_bits if is_single else _floats.float64_bits)(value)
-    return value.hex() if info.type == "bytes" else int(value)
+    return value.hex() if isinstance(value, bytes) else int(value)
 
 
 def _hex(text: str) -> str:
@@ -105,7 +107,10 @@ def _described(message: Message, names: bool = False) -> str:
     said = [f" bytes={message.to_bytes().hex()}"]
     for info in message.FIELDS:
         said.append(_field(message, info))
-        if info.physical:
+        if info.type == "text":
+            text = getattr(message, info.physical)
+            said.append("" if "\ufffd" in text else f" physical={_hex(text)}")
+        elif info.physical:
             bits = _floats.float64_bits(getattr(message, info.physical))
             said.append(f" physical={bits}")
         if names and info.enum:
@@ -136,11 +141,7 @@ def _enum(node: Any, words: Words) -> str:
 
 def _about_node(node: Any, words: Words) -> str:
     found = {"node_type": "NODE_TYPE", "interface_version": "INTERFACE_VERSION"}
-    return "".join(
-        f" {key}={getattr(node, name)}"
-        for key, name in found.items()
-        if hasattr(node, name)
-    )
+    return "".join(f" {key}={getattr(node, name)}" for key, name in found.items() if hasattr(node, name))
 
 
 def _sweep(node: Any, words: Words) -> str:

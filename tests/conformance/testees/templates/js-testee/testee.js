@@ -24,17 +24,23 @@ function fieldsOf(plan, raw) {
   });
 }
 
+function physicalOf(field, raw) {
+  if (field.scale) return ` physical=${codec.doubleBits(codec.physical(field, raw))}`;
+  const text = field.text ? codec.text(raw) : "\ufffd";
+  return text.includes("\ufffd") ? "" : ` physical=${hexOfText(text)}`;
+}
+
 function described(plan, raw) {
   const rows = fieldsOf(plan, raw).map(({ field, raw: value, row }) => {
     const name = field.enum?.find(([number]) => BigInt(number) === value)?.[1];
-    const physical = field.scale ? ` physical=${codec.doubleBits(codec.physical(field, value))}` : "";
-    return row + physical + (name === undefined ? "" : ` name=${hexOfText(name)}`);
+    return row + physicalOf(field, value) + (name === undefined ? "" : ` name=${hexOfText(name)}`);
   });
   return [`bytes=${hexOf(codec.encode(plan, raw))}`, ...rows].join(" ");
 }
 
 function rawOf(field, word) {
   const [way, value] = [word[0], word.slice(1)];
+  if (way === "p" && field.text) return codec.rawFromText(field, Buffer.from(value, "hex").toString("utf8"));
   if (way === "p") return codec.rawFromPhysical(field, codec.doubleOf(BigInt(value)));
   const raw = field.type === "bytes" ? bytesOf(value) : BigInt(value);
   codec.check(field, raw);

@@ -94,6 +94,7 @@ where
 pub struct Field<M: 'static> {
     pub value: fn(&mut M) -> &mut dyn Value,
     pub scale: Option<Scale<M>>,
+    pub text: Option<Text<M>>,
     pub special: fn() -> Vec<i128>,
     pub limits: fn() -> Vec<(&'static str, f64)>,
 }
@@ -102,6 +103,12 @@ pub struct Field<M: 'static> {
 pub struct Scale<M> {
     pub get: fn(&M) -> f64,
     pub set: fn(&mut M, f64) -> Result<(), Error>,
+}
+
+/// Getter and setter of a text.
+pub struct Text<M> {
+    pub get: fn(&M) -> Option<&str>,
+    pub set: fn(&mut M, &str) -> Result<(), Error>,
 }
 
 /// A message.
@@ -182,8 +189,11 @@ fn encode<M: Subject>(words: &mut Words) -> Answer {
     let mut message = M::default();
     for (place, field) in M::FIELDS.iter().enumerate() {
         let (kind, given) = words.word().split_at(1);
-        match &field.scale {
-            Some(scale) if kind == "p" => (scale.set)(&mut message, double(given))?,
+        match (&field.scale, &field.text) {
+            (Some(scale), _) if kind == "p" => (scale.set)(&mut message, double(given))?,
+            (_, Some(text)) if kind == "p" => {
+                (text.set)(&mut message, &String::from_utf8_lossy(&unhex(given)))?;
+            }
             _ => take(field, place, &mut message, given)?,
         }
     }
@@ -213,6 +223,9 @@ fn described<M: Subject>(message: &mut M) -> Answer {
         let _ = write!(answer, " field raw={}{}", value.show(), named(value.name()));
         if let Some(scale) = &field.scale {
             let _ = write!(answer, " physical={}", (scale.get)(message).to_bits());
+        }
+        if let Some(said) = field.text.as_ref().and_then(|text| (text.get)(message)) {
+            let _ = write!(answer, " physical={}", hex(said.as_bytes()));
         }
     }
     Ok(answer)

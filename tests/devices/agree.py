@@ -1,0 +1,117 @@
+"""What generated code reads of random frames, beside what the library reads."""
+
+from __future__ import annotations
+
+import json
+import random
+import struct
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from icdgen.icd.formula import parse
+from tests.conformance.driver import Answering
+from tests.devices.definition import Definition, NotHeld
+
+ROUNDS_OFF = 1e-9  # as far as a library's double may be from the exact value, relative to it or as so many units
+
+
+@dataclass
+class Agreement:
+    """What came of the comparison in one language."""
+
+    messages: int = 0
+    frames: int = 0
+    values: int = 0
+    rounded: int = 0  # ours is the double nearest to the exact value, the library's is not
+    impossible: int = 0  # the library's value has more bits than the field
+    refused: int = 0  # frames that the library takes for another message
+    differences: list[str] = field(default_factory=list)
+
+    def __str__(self) -> str:
+        return (
+            f"{self.messages} messages, {self.frames} frames, {self.values} values, {len(self.differences)} differences, "
+            f"{self.rounded} rounded wrongly by the library, {self.impossible} of it wider than the field, "
+            f"{self.refused} frames of other layouts"
+        )
+
+
+def compare(node: str, messages: list[Definition], testee: Answering, frames: int, seed: int, into: Agreement) -> None:
+    """Puts ``frames`` random frames of each message to the testee and to the library."""
+    chance = random.Random(f"{seed} {node}")
+    asked = [(one, data) for one in messages for data in _frames(one.length, chance, frames)]
+    requests = [
+        {"op": "decode", "node": node, "kind": one.kind, "id": one.id, "bytes": data.hex()} for one, data in asked
+    ]
+    answers = testee.ask([json.dumps(request).encode() for request in requests])
+    for (one, data), answer in zip(asked, answers, strict=True):
+        try:
+            raw, physical = one.raw(data), one.physical(data)
+        except NotHeld:
+            into.refused += 1
+            continue
+        into.frames += 1
+        said = json.loads(answer or b"{}")
+        about = f"{node} {one.name} {data.hex()}"
+        if not said.get("ok"):
+            into.differences.append(f"{about}: {said}")
+            continue
+        for part in one.fields:
+            name = part["name"]
+            if name in raw:
+                into.values += 1
+                value = raw[name]
+                if isinstance(value, int) and value.bit_length() > part["bits"]:
+                    into.impossible += 1
+                elif not _same(said["raw"][name], _plain(value, part), part["bits"]):
+                    into.differences.append(f"{about}: {name} is {said['raw'][name]!r}, the library says {value!r}")
+        for name, bits in said["physical"].items():
+            if name in physical:
+                into.values += 1
+                formula = next(part["formula"] for part in one.fields if part["name"] == name)
+                _physical(about, name, _double(bits), physical[name], _exact(formula, said["raw"][name]), into)
+    into.messages += len(messages)
+
+
+def _physical(about: str, name: str, ours: float, theirs: object, exact: float, into: Agreement) -> None:
+    assert isinstance(theirs, (int, float))
+    if ours != exact:
+        into.differences.append(f"{about}: {name} is {ours!r}, exactly {exact!r}")
+    elif ours != theirs:
+        if abs(ours - theirs) <= ROUNDS_OFF * max(1.0, abs(ours)):
+            into.rounded += 1
+        else:
+            into.differences.append(f"{about}: {name} is {ours!r}, the library says {theirs!r}")
+
+
+def _frames(length: int, chance: random.Random, count: int) -> list[bytes]:
+    fixed = [bytes(length), b"\xff" * length] if length else [b""]
+    return [*fixed, *(chance.randbytes(length) for _ in range(count - 2))] if length else fixed
+
+
+def _exact(formula: str, raw: int) -> float:
+    value = parse(formula).physical(Fraction(raw))
+    return value.numerator / value.denominator  # true division of integers is correctly rounded
+
+
+def _double(bits: str) -> float:
+    return struct.unpack(">d", bytes.fromhex(bits))[0]
+
+
+def _same(ours: object, theirs: object, bits: int) -> bool:
+    """Equal, or both not a number: Python does not keep the bits of a signalling one."""
+    if isinstance(theirs, list):
+        return isinstance(ours, list) and all(_same(*pair, bits) for pair in zip(ours, theirs, strict=True))
+    if isinstance(theirs, float) and isinstance(ours, str):
+        code = {16: "e", 32: "f", 64: "d"}[bits]
+        value = struct.unpack(f">{code}", bytes.fromhex(ours))[0]
+        return struct.pack(">d", value) == struct.pack(">d", theirs) or (value != value and theirs != theirs)
+    return ours == theirs
+
+
+def _plain(value: object, part: dict) -> object:
+    """A library's value as a testee says it: some read bytes as a list, or as one wide number."""
+    if part["type"] == "bytes":
+        if isinstance(value, int):
+            return value.to_bytes(part["bits"] // 8, "little").hex()
+        return bytes(value).hex()  # type: ignore[call-overload]
+    return list(value) if isinstance(value, tuple) else value

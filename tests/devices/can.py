@@ -1,0 +1,76 @@
+"""CAN databases of the opendbc package; cantools reads them and judges."""
+
+from __future__ import annotations
+
+import importlib.resources
+from collections.abc import Iterator
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+from tests.devices.definition import Definition, Definitions, formula, node, unit
+
+
+def databases() -> Iterator[Definitions]:
+    """Every DBC file that cantools reads; what it refuses has no judge."""
+    import cantools
+
+    for number, path in enumerate(files()):
+        try:
+            database: Any = cantools.database.load_file(path, strict=False)
+        except cantools.database.UnsupportedDatabaseFormatError:
+            continue
+        messages = [_definition(message) for message in database.messages]
+        yield Definitions(node(f"{path.stem[:35]} {number}", path.stem, id_bits=29), messages)
+
+
+def files() -> list[Path]:
+    """The DBC files of the package, by name."""
+    import opendbc
+
+    folder = importlib.resources.files(opendbc)
+    assert isinstance(folder, Path)
+    return sorted(folder.rglob("*.dbc"), key=lambda path: path.name)
+
+
+def _definition(message: Any) -> Definition:
+    fields, enums, cause = [], [], ""
+    for signal in message.signals:
+        one = {"at": _first(signal), "bits": signal.length, "name": signal.name, **_kind(signal), **unit(signal.unit)}
+        if signal.byte_order == "big_endian":
+            one |= {"byte_order": "big", "bit_order": "msb0"}
+        scale = formula(_printed(signal.scale), _printed(signal.offset))
+        choices = {int(value): str(name) for value, name in (signal.choices or {}).items()}
+        if choices and not scale and not signal.is_float and signal.length > 1:
+            name = f"{message.name} {signal.name}"
+            one = {**one, "type": "enum", "enum": name}
+            one.pop("unit", None)
+            fit = [{"value": v, "name": n} for v, n in sorted(choices.items()) if v in _range(signal)]
+            enums.append({"name": name, "members": fit})
+        fields.append(one | scale)
+    if message.is_multiplexed():
+        cause = "fields that are there under a condition"
+    fields.sort(key=lambda one: int(one["at"]))
+    return Definition(
+        message.name, message.frame_id, "telemetry", message.length, fields, enums,
+        cause, lambda data: message.decode(data, False, False), lambda data: message.decode(data, False),
+    )  # fmt: skip
+
+
+def _range(signal: Any) -> range:
+    """The raw values that there are: some members are of none of them."""
+    half = 1 << signal.length - 1
+    return range(-half, half) if signal.is_signed else range(2 * half)
+
+
+def _first(signal: Any) -> int:
+    """The field's first bit; in a DBC the bits of a byte are numbered from the least significant in either order."""
+    return signal.start if signal.byte_order == "little_endian" else signal.start // 8 * 8 + 7 - signal.start % 8
+
+
+def _kind(signal: Any) -> dict:
+    return {"type": "float" if signal.is_float else "int" if signal.is_signed else "uint"}
+
+
+def _printed(number: float) -> str:
+    return format(Decimal(str(number)), "f" if abs(number) >= 1e-6 or not number else "e").replace("E", "e")

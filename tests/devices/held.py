@@ -1,0 +1,87 @@
+"""Which definitions the format holds: an ICD is written, and what `icdgen check` refuses goes, with the code that did it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from icdgen.diagnostics import Finding
+from icdgen.icd.model import Icd
+from icdgen.loading import load
+from tests.devices.definition import Definition, Definitions
+
+ROUNDS = 20  # a rule may speak only after another is satisfied
+NAMES = {"ICD054", "ICD070", "ICD071", "ICD072"}  # a name that cannot be an identifier, or not beside another
+
+
+@dataclass
+class Held:
+    """One node: its ICD, what stands in it and why the rest does not."""
+
+    definitions: Definitions
+    icd: Icd | None
+    messages: list[Definition]
+    causes: dict[str, str] = field(default_factory=dict)
+
+
+def held(definitions: Definitions, folder: Path) -> Held:
+    """Writes the node into ``folder`` and takes out what is refused, until nothing is."""
+    causes = {one.name: one.cause for one in definitions.messages if one.cause}
+    left = [one for one in definitions.messages if not one.cause]
+    file = folder / f"{definitions.name}.yaml"
+    for _ in range(ROUNDS):
+        if not left:
+            break
+        owners = _write(file, definitions.node, left)
+        loaded = load([file])
+        errors = [finding for finding in loaded.findings if finding.severity == "error"]
+        if not errors:
+            return Held(definitions, loaded.icd, left, causes)
+        for finding in errors:
+            owner = owners.get(finding.place.line)
+            if owner is None:
+                raise ValueError(str(finding))
+            if finding.code not in NAMES or not _renamed(owner, _quoted(file, finding)):
+                causes.setdefault(owner.name, finding.code)
+        left = [one for one in left if one.name not in causes]
+    file.unlink(missing_ok=True)
+    return Held(definitions, None, [], causes)
+
+
+def _quoted(file: Path, finding: Finding) -> str:
+    """The name that a finding points at."""
+    assert finding.place is not None and finding.place.line is not None and finding.place.column is not None
+    line = file.read_text(encoding="utf-8").split("\n")[finding.place.line - 1]
+    try:
+        return str(json.JSONDecoder().raw_decode(line[finding.place.column - 1 :])[0])
+    except ValueError:
+        return ""
+
+
+def _renamed(owner: Definition, name: str) -> bool:
+    """Gives a field, member or message an identifier of its own; whether that is new."""
+    members = [member for enum in owner.enums for member in enum["members"]]
+    for one, number in (
+        *((f, f["at"]) for f in owner.fields),
+        *((m, m["value"]) for m in members),
+        (owner.more, owner.id),
+    ):
+        if one.get("name", owner.name) == name and "identifier" not in one:
+            one["identifier"] = f"{name if name.isascii() else 'item'} {number}".replace("-", "minus ")
+            return True
+    return False
+
+
+def _write(file: Path, node: dict, messages: list[Definition]) -> dict[int, Definition]:
+    """One line for each enumeration and each message; whose line is whose."""
+    lines, owners = ['{"icdgen": 1, "node": ' + json.dumps(node) + ', "enums": ['], {}
+    enums = [(json.dumps(enum), one) for one in messages for enum in one.enums]
+    trees = [(json.dumps(one.tree()), one) for one in messages]
+    for group, after in ((enums, '], "messages": ['), (trees, "]}")):
+        for number, (text, one) in enumerate(group):
+            lines.append(text + ("," if number + 1 < len(group) else ""))
+            owners[len(lines)] = one
+        lines.append(after)
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return owners

@@ -1,0 +1,49 @@
+"""Dialects of MAVLink 2 as pymavlink has them."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from importlib import import_module
+from typing import Any
+
+from tests.devices.definition import Definition, Definitions, node, unit
+
+SIZES = {"int8_t": 8, "uint8_t": 8, "char": 8, "int16_t": 16, "uint16_t": 16, "int32_t": 32, "uint32_t": 32,
+         "int64_t": 64, "uint64_t": 64, "float": 32, "double": 64}  # fmt: skip
+
+
+def dialects(*names: str) -> Iterator[Definitions]:
+    """The dialects of these names: `common`."""
+    for name in names or ("common",):
+        dialect = import_module(f"pymavlink.dialects.v20.{name}")
+        messages = [_definition(dialect, message) for message in dialect.mavlink_map.values()]
+        yield Definitions(node(f"mavlink_{name}", f"MAVLink {name}", id_bits=24), messages)
+
+
+def _definition(dialect: Any, message: Any) -> Definition:
+    fields, at = [], 0
+    types = dict(zip(message.fieldnames, message.fieldtypes, strict=True))
+    for name, count in zip(message.ordered_fieldnames, message.array_lengths, strict=True):
+        kind = types[name]
+        one = {"at": at, "name": name, "bits": SIZES[kind], **unit(message.fieldunits_by_name.get(name, ""))}
+        if kind == "char":
+            one |= {"type": "text", "bits": 8 * max(count, 1)}
+            at += 8 * max(count, 1)
+        else:
+            one |= {"type": "float" if kind in ("float", "double") else "uint" if kind[0] == "u" else "int"}
+            one |= {"count": count} if count else {}
+            at += SIZES[kind] * max(count, 1)
+        fields.append(one)
+    return Definition(
+        message.msgname, message.id, "telemetry", at // 8, fields, raw=lambda data: _read(dialect, message, data)
+    )
+
+
+def _read(dialect: Any, message: Any, data: bytes) -> dict[str, object]:
+    """What pymavlink makes of the frame, in the envelope that it wants."""
+    head = bytes([len(data), 0, 0, 0, 1, 1]) + message.id.to_bytes(3, "little")
+    crc = dialect.x25crc(head + data)
+    crc.accumulate(bytes([message.crc_extra]))
+    found = dialect.MAVLink(None).decode(bytearray(b"\xfd" + head + data + struct.pack("<H", crc.crc)))
+    return {name: getattr(found, name) for name in message.ordered_fieldnames}

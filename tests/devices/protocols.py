@@ -1,0 +1,18 @@
+"""The protocols whose definitions are read, and the libraries that judge."""
+
+from __future__ import annotations
+
+from tests.devices import can, cygnss, mavlink, sbp, sunspec, ubx
+from tests.devices.definition import Protocol
+
+PROTOCOLS = {
+    one.name: one
+    for one in (
+        Protocol("can", "opendbc through cantools", can.databases),
+        Protocol("ubx", "pyubx2", ubx.tables),
+        Protocol("sbp", "sbp", sbp.tables),
+        Protocol("mavlink", "pymavlink", mavlink.dialects),
+        Protocol("cygnss", "ccsdspy", cygnss.packets),
+        Protocol("sunspec", "pysunspec2", sunspec.models),
+    )
+}

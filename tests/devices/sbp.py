@@ -1,0 +1,77 @@
+"""Messages of the Swift Binary Protocol as the sbp package has them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from tests.devices.definition import Definition, Definitions, NotHeld, node
+
+LETTERS = {"B": ("uint", 8), "H": ("uint", 16), "L": ("uint", 32), "Q": ("uint", 64), "b": ("int", 8), "h": ("int", 16),
+           "l": ("int", 32), "q": ("int", 64), "f": ("float", 32), "d": ("float", 64)}  # fmt: skip
+
+
+def tables() -> Iterator[Definitions]:
+    """The table of all message classes."""
+    from sbp.table import _SBP_TABLE
+
+    messages = [_definition(id, one) for id, one in sorted(_SBP_TABLE.items())]
+    yield Definitions(node("sbp", "Swift Binary Protocol", id_bits=16), messages)
+
+
+def _definition(id: int, message: Any) -> Definition:
+    parser = getattr(message, "_parser", None)
+    fields: list[dict] = []
+    try:
+        end = _fields(parser.subcons, fields, 0, "") if parser is not None else 0
+    except NotHeld as error:
+        return Definition(message.__name__, id, "telemetry", 0, [], cause=str(error))
+    return Definition(
+        message.__name__, id, "telemetry", end // 8, fields, raw=lambda data: _read(parser, data) if fields else {}
+    )
+
+
+def _fields(parts: list[Any], fields: list[dict], at: int, before: str) -> int:
+    """Appends the parts' fields; where they end. Raises `NotHeld`."""
+    for part in parts:
+        name, inner = before + part.name, part.subcon
+        kind = type(inner).__name__
+        if kind == "Struct":
+            at = _fields(inner.subcons, fields, at, f"{name} ")
+        elif kind == "FormatField":
+            type_, bits = LETTERS[inner.fmtstr[-1]]
+            fields.append({"at": at, "bits": bits, "name": name, "type": type_})
+            at += bits
+        elif kind == "Bytes":
+            fields.append({"at": at, "bits": 8 * inner.length, "name": name, "type": "bytes"})
+            at += 8 * inner.length
+        elif kind == "Array" and type(inner.subcon).__name__ == "FormatField":
+            type_, bits = LETTERS[inner.subcon.fmtstr[-1]]
+            fields.append({"at": at, "bits": bits, "name": name, "type": type_, "count": inner.count})
+            at += bits * inner.count
+        elif kind == "Array":
+            for number in range(inner.count):
+                at = _fields(inner.subcon.subcons, fields, at, f"{name} {number + 1} ")
+        else:
+            raise NotHeld("a part that goes up to the end" if kind.startswith("Greedy") else kind)
+    return at
+
+
+def _read(parser: Any, data: bytes) -> dict[str, object]:
+    found: dict[str, object] = {}
+    _flat(parser.parse(data), "", found)
+    return found
+
+
+def _flat(values: Any, before: str, found: dict[str, object]) -> None:
+    """Names of parts within parts, as `_fields` gives them."""
+    for name, value in values.items():
+        if name == "_io":
+            continue
+        if hasattr(value, "items"):
+            _flat(value, f"{before}{name} ", found)
+        elif isinstance(value, list) and value and hasattr(value[0], "items"):
+            for number, one in enumerate(value):
+                _flat(one, f"{before}{name} {number + 1} ", found)
+        else:
+            found[before + name] = list(value) if isinstance(value, list) else value
