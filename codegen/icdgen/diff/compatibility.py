@@ -9,7 +9,7 @@ from icdgen.diff.changes.numbers import is_wider
 from icdgen.diff.compare import Comparison
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind
 from icdgen.diff.similar import same_sense
-from icdgen.diff.wording import some
+from icdgen.diff.wording import read_as, some
 from icdgen.icd.formula import RAW
 from icdgen.icd.model import Field, Message
 from icdgen.icd.rules.wording import quote
@@ -151,7 +151,7 @@ def _misread(pair: FieldPair) -> str:
     if not pair.same_bits:
         return "other bits"
     if kind(old) != kind(new):
-        return f"read as {new.type}, or as {old.type}"
+        return f"read as {read_as(new)}, or as {read_as(old)}"
     if (old.scale or RAW) != (new.scale or RAW):
         return "another formula"
     if (old.unit.symbol if old.unit else "") != (new.unit.symbol if new.unit else ""):

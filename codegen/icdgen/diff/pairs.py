@@ -214,7 +214,9 @@ def kind(one: Field) -> str:
     """How the bits are read: as an unsigned or signed number, as a float, as bytes."""
     if one.is_bytes:
         return "bytes"
-    return "unsigned" if one.type in ("uint", "enum", "bool") else one.type
+    if one.type in ("uint", "int", "enum", "bool"):
+        return "int" if one.signed else "unsigned"
+    return one.type
 
 
 def differing(
