@@ -1,0 +1,48 @@
+"""Texts on the pages read and are typed as the reference codec has them."""
+
+from __future__ import annotations
+
+import json
+import random
+import subprocess
+
+from icdgen import codec
+from icdgen.icd.model import Field
+from tests.conftest import ROOT
+from tests.site.conftest import program
+
+HTML = ROOT / "templates" / "html"
+LABEL = Field("Label", 0, 64, "text")
+SCRIPT = f"""
+const fs = require("node:fs");
+const folder = {json.dumps(str(HTML))};
+const source = ["codec.js", "frames.js", "values.js"].map((name) => fs.readFileSync(`${{folder}}/${{name}}`, "utf8"));
+const values = new Function(source.join("\\n").replaceAll('"use strict";', "") + "; return icdgenValues;")();
+const field = {{ name: "Label", type: "bytes", text: true, bits: 64, first: 0 }};
+const typed = (text) => {{ try {{ return [...values.parsePhysical(field, text)]; }} catch (error) {{ return null; }} }};
+const {{ raw, texts }} = JSON.parse(fs.readFileSync(0, "utf8"));
+const shown = raw.map((bytes) => values.physicalText(field, Uint8Array.from(bytes)));
+process.stdout.write(JSON.stringify({{ shown, typed: texts.map(typed) }}));
+"""
+
+
+def _typed(text: str) -> list[int] | None:
+    try:
+        return list(codec.raw_from_text(LABEL, text))
+    except codec.CodecError:
+        return None
+
+
+def test_texts_read_and_are_typed_as_the_reference_has_them():
+    source = random.Random(1)
+    raw = [bytes(source.choice((0, 65, 97, 127, 128, 255)) for _ in range(8)) for _ in range(300)]
+    letters = "aZ9 ~\x01\x7f\0\x80é位"
+    texts = [
+        "".join(source.choices(letters, (9, 9, 9, 9, 9, 1, 1, 1, 1, 1, 1), k=source.randint(0, 9))) for _ in range(300)
+    ]
+    request = json.dumps({"raw": [list(one) for one in raw], "texts": texts})
+    done = subprocess.run([program("node"), "-e", SCRIPT], input=request, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found == {"shown": [codec.text(one) for one in raw], "typed": [_typed(text) for text in texts]}
+    assert None in found["typed"] and any(found["typed"])
