@@ -16,14 +16,14 @@
 #include "bootloader/set_boot_index.h"
 #include "bootloader/run_selected_program.h"
 #include "bootloader/read_program_information.h"
-#include "bootloader/copy_program_to_internal_flash.h"
-#include "bootloader/bootloader_state.h"
+#include "bootloader/copy_to_internal_flash.h"
+#include "bootloader/state.h"
 #include "bootloader/program_information.h"
 #include "bootloader/copy_to_internal_flash_progress.h"
 #include "bootloader/link.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-#define BOOTLOADER_ICD_DIGEST "6d31c7aa438ae8fc"
+#define BOOTLOADER_ICD_DIGEST "d2e4997b46248f80"
 /** What the node answers when asked for its type. */
 #define BOOTLOADER_NODE_TYPE 110u
 /** Version of the interface that it reports. */
@@ -60,7 +60,7 @@ typedef struct {
         common_hole_map_6_t hole_map_6;
         common_hole_map_7_t hole_map_7;
         common_hole_map_8_t hole_map_8;
-        bootloader_bootloader_state_t bootloader_state;
+        bootloader_state_t state;
         bootloader_program_information_t program_information;
         bootloader_copy_to_internal_flash_progress_t copy_to_internal_flash_progress;
     } as;
@@ -124,7 +124,7 @@ static inline const char *bootloader_telemetry_name(uint8_t id)
         return "Hole Map 7";
     case COMMON_HOLE_MAP_8_GET_ID:
         return "Hole Map 8";
-    case BOOTLOADER_BOOTLOADER_STATE_ID:
+    case BOOTLOADER_STATE_ID:
         return "Bootloader State";
     case BOOTLOADER_PROGRAM_INFORMATION_ID:
         return "Program Information";
@@ -220,8 +220,8 @@ static inline icd_status_t bootloader_telemetry_length(uint8_t id, size_t *lengt
     case COMMON_HOLE_MAP_8_GET_ID:
         *length = COMMON_HOLE_MAP_8_LENGTH;
         return ICD_OK;
-    case BOOTLOADER_BOOTLOADER_STATE_ID:
-        *length = BOOTLOADER_BOOTLOADER_STATE_LENGTH;
+    case BOOTLOADER_STATE_ID:
+        *length = BOOTLOADER_STATE_LENGTH;
         return ICD_OK;
     case BOOTLOADER_PROGRAM_INFORMATION_ID:
         *length = BOOTLOADER_PROGRAM_INFORMATION_LENGTH;
@@ -303,8 +303,8 @@ static inline icd_status_t bootloader_telemetry_decode(
         return common_hole_map_7_decode(&message->as.hole_map_7, buffer, length);
     case COMMON_HOLE_MAP_8_GET_ID:
         return common_hole_map_8_decode(&message->as.hole_map_8, buffer, length);
-    case BOOTLOADER_BOOTLOADER_STATE_ID:
-        return bootloader_bootloader_state_decode(&message->as.bootloader_state, buffer, length);
+    case BOOTLOADER_STATE_ID:
+        return bootloader_state_decode(&message->as.state, buffer, length);
     case BOOTLOADER_PROGRAM_INFORMATION_ID:
         return bootloader_program_information_decode(&message->as.program_information, buffer, length);
     case BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_ID:
@@ -387,8 +387,8 @@ static inline icd_status_t bootloader_telemetry_encode(
         return common_hole_map_7_encode(&message->as.hole_map_7, buffer, capacity);
     case COMMON_HOLE_MAP_8_GET_ID:
         return common_hole_map_8_encode(&message->as.hole_map_8, buffer, capacity);
-    case BOOTLOADER_BOOTLOADER_STATE_ID:
-        return bootloader_bootloader_state_encode(&message->as.bootloader_state, buffer, capacity);
+    case BOOTLOADER_STATE_ID:
+        return bootloader_state_encode(&message->as.state, buffer, capacity);
     case BOOTLOADER_PROGRAM_INFORMATION_ID:
         return bootloader_program_information_encode(&message->as.program_information, buffer, capacity);
     case BOOTLOADER_COPY_TO_INTERNAL_FLASH_PROGRESS_ID:
@@ -435,7 +435,7 @@ typedef struct {
         bootloader_set_boot_index_t set_boot_index;
         bootloader_run_selected_program_t run_selected_program;
         bootloader_read_program_information_t read_program_information;
-        bootloader_copy_program_to_internal_flash_t copy_program_to_internal_flash;
+        bootloader_copy_to_internal_flash_t copy_to_internal_flash;
     } as;
 } bootloader_telecommand_t;
 
@@ -503,7 +503,7 @@ static inline const char *bootloader_telecommand_name(uint8_t id)
         return "Run Selected Program";
     case BOOTLOADER_READ_PROGRAM_INFORMATION_ID:
         return "Read Program Information";
-    case BOOTLOADER_COPY_PROGRAM_TO_INTERNAL_FLASH_ID:
+    case BOOTLOADER_COPY_TO_INTERNAL_FLASH_ID:
         return "Copy Program to Internal Flash";
     default:
         return NULL;
@@ -604,8 +604,8 @@ static inline icd_status_t bootloader_telecommand_length(uint8_t id, size_t *len
     case BOOTLOADER_READ_PROGRAM_INFORMATION_ID:
         *length = BOOTLOADER_READ_PROGRAM_INFORMATION_LENGTH;
         return ICD_OK;
-    case BOOTLOADER_COPY_PROGRAM_TO_INTERNAL_FLASH_ID:
-        *length = BOOTLOADER_COPY_PROGRAM_TO_INTERNAL_FLASH_LENGTH;
+    case BOOTLOADER_COPY_TO_INTERNAL_FLASH_ID:
+        *length = BOOTLOADER_COPY_TO_INTERNAL_FLASH_LENGTH;
         return ICD_OK;
     default:
         return ICD_ERROR_UNKNOWN_ID;
@@ -684,11 +684,8 @@ static inline icd_status_t bootloader_telecommand_decode(
         return bootloader_run_selected_program_decode(&message->as.run_selected_program, buffer, length);
     case BOOTLOADER_READ_PROGRAM_INFORMATION_ID:
         return bootloader_read_program_information_decode(&message->as.read_program_information, buffer, length);
-    case BOOTLOADER_COPY_PROGRAM_TO_INTERNAL_FLASH_ID:
-        return bootloader_copy_program_to_internal_flash_decode(
-            &message->as.copy_program_to_internal_flash,
-            buffer,
-            length);
+    case BOOTLOADER_COPY_TO_INTERNAL_FLASH_ID:
+        return bootloader_copy_to_internal_flash_decode(&message->as.copy_to_internal_flash, buffer, length);
     default:
         return ICD_ERROR_UNKNOWN_ID;
     }
@@ -764,11 +761,8 @@ static inline icd_status_t bootloader_telecommand_encode(
         return bootloader_run_selected_program_encode(&message->as.run_selected_program, buffer, capacity);
     case BOOTLOADER_READ_PROGRAM_INFORMATION_ID:
         return bootloader_read_program_information_encode(&message->as.read_program_information, buffer, capacity);
-    case BOOTLOADER_COPY_PROGRAM_TO_INTERNAL_FLASH_ID:
-        return bootloader_copy_program_to_internal_flash_encode(
-            &message->as.copy_program_to_internal_flash,
-            buffer,
-            capacity);
+    case BOOTLOADER_COPY_TO_INTERNAL_FLASH_ID:
+        return bootloader_copy_to_internal_flash_encode(&message->as.copy_to_internal_flash, buffer, capacity);
     default:
         return ICD_ERROR_UNKNOWN_ID;
     }

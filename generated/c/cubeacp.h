@@ -20,7 +20,7 @@
 #include "cubeacp/set_magnetorquer_output.h"
 #include "cubeacp/set_wheel_speed.h"
 #include "cubeacp/trigger_adcs_loop.h"
-#include "cubeacp/trigger_adcs_loop_with_simulated_sensor_data.h"
+#include "cubeacp/trigger_simulated_loop.h"
 #include "cubeacp/asgp4_run_mode.h"
 #include "cubeacp/asgp4_trigger.h"
 #include "cubeacp/set_mode_of_magnetometer_operation.h"
@@ -30,7 +30,7 @@
 #include "cubeacp/save_image.h"
 #include "cubeacp/current_adcs_state.h"
 #include "cubeacp/jpg_conversion_progress.h"
-#include "cubeacp/cubeacp_state.h"
+#include "cubeacp/state.h"
 #include "cubeacp/estimated_attitude_angles.h"
 #include "cubeacp/estimated_angular_rates.h"
 #include "cubeacp/satellite_position_eci.h"
@@ -56,8 +56,8 @@
 #include "cubeacp/raw_css_1_to_6.h"
 #include "cubeacp/raw_css_7_to_10.h"
 #include "cubeacp/raw_magnetometer.h"
-#include "cubeacp/cubesense1_current_measurements.h"
-#include "cubeacp/cubecontrol_current_measurements.h"
+#include "cubeacp/cubesense1_currents.h"
+#include "cubeacp/cubecontrol_currents.h"
 #include "cubeacp/wheel_currents.h"
 #include "cubeacp/adcs_temperatures.h"
 #include "cubeacp/rate_sensor_temperatures.h"
@@ -80,10 +80,10 @@
 #include "cubeacp/actuator_commands.h"
 #include "cubeacp/estimation_data.h"
 #include "cubeacp/raw_sensor_measurements.h"
-#include "cubeacp/power_and_temperature_measurements.h"
+#include "cubeacp/power_and_temperature.h"
 #include "cubeacp/adcs_execution_times.h"
-#include "cubeacp/adcs_misc_current_measurements.h"
-#include "cubeacp/fine_estimated_angular_rates.h"
+#include "cubeacp/adcs_misc_currents.h"
+#include "cubeacp/fine_angular_rates.h"
 #include "cubeacp/raw_gps_measurements.h"
 #include "cubeacp/raw_star_tracker.h"
 #include "cubeacp/star_1_raw_data.h"
@@ -99,7 +99,7 @@
 #include "cubeacp/cubestar_estimated_rates.h"
 #include "cubeacp/cubestar_estimated_quaternion.h"
 #include "cubeacp/star_performance2.h"
-#include "cubeacp/cubesense2_current_measurements.h"
+#include "cubeacp/cubesense2_currents.h"
 #include "cubeacp/status_of_image_capture_and_save_operation.h"
 #include "cubeacp/set_magnetorquer_configuration.h"
 #include "cubeacp/set_wheel_configuration.h"
@@ -111,7 +111,7 @@
 #include "cubeacp/set_star_tracker_configuration.h"
 #include "cubeacp/cubesense_configuration.h"
 #include "cubeacp/magnetometer_configuration.h"
-#include "cubeacp/redundant_magnetometer_configuration.h"
+#include "cubeacp/redundant_mag_configuration.h"
 #include "cubeacp/adcs_configuration.h"
 #include "cubeacp/sgp4_orbit_parameters.h"
 #include "cubeacp/set_detumbling_control_parameters.h"
@@ -130,7 +130,7 @@
 #include "cubeacp/link.h"
 
 /** First 16 hex digits of the SHA-256 of the ICD, its errata and what it includes. */
-#define CUBEACP_ICD_DIGEST "a9d84cd5a4771470"
+#define CUBEACP_ICD_DIGEST "968abd943efa63cb"
 /** What the node answers when asked for its type. */
 #define CUBEACP_NODE_TYPE 10u
 /** Version of the interface that it reports. */
@@ -169,7 +169,7 @@ typedef struct {
         common_hole_map_8_t hole_map_8;
         cubeacp_current_adcs_state_t current_adcs_state;
         cubeacp_jpg_conversion_progress_t jpg_conversion_progress;
-        cubeacp_cubeacp_state_t cubeacp_state;
+        cubeacp_state_t state;
         cubeacp_estimated_attitude_angles_t estimated_attitude_angles;
         cubeacp_estimated_angular_rates_t estimated_angular_rates;
         cubeacp_satellite_position_eci_t satellite_position_eci;
@@ -195,8 +195,8 @@ typedef struct {
         cubeacp_raw_css_1_to_6_t raw_css_1_to_6;
         cubeacp_raw_css_7_to_10_t raw_css_7_to_10;
         cubeacp_raw_magnetometer_t raw_magnetometer;
-        cubeacp_cubesense1_current_measurements_t cubesense1_current_measurements;
-        cubeacp_cubecontrol_current_measurements_t cubecontrol_current_measurements;
+        cubeacp_cubesense1_currents_t cubesense1_currents;
+        cubeacp_cubecontrol_currents_t cubecontrol_currents;
         cubeacp_wheel_currents_t wheel_currents;
         cubeacp_adcs_temperatures_t adcs_temperatures;
         cubeacp_rate_sensor_temperatures_t rate_sensor_temperatures;
@@ -219,10 +219,10 @@ typedef struct {
         cubeacp_actuator_commands_t actuator_commands;
         cubeacp_estimation_data_t estimation_data;
         cubeacp_raw_sensor_measurements_t raw_sensor_measurements;
-        cubeacp_power_and_temperature_measurements_t power_and_temperature_measurements;
+        cubeacp_power_and_temperature_t power_and_temperature;
         cubeacp_adcs_execution_times_t adcs_execution_times;
-        cubeacp_adcs_misc_current_measurements_t adcs_misc_current_measurements;
-        cubeacp_fine_estimated_angular_rates_t fine_estimated_angular_rates;
+        cubeacp_adcs_misc_currents_t adcs_misc_currents;
+        cubeacp_fine_angular_rates_t fine_angular_rates;
         cubeacp_raw_gps_measurements_t raw_gps_measurements;
         cubeacp_raw_star_tracker_t raw_star_tracker;
         cubeacp_star_1_raw_data_t star_1_raw_data;
@@ -238,7 +238,7 @@ typedef struct {
         cubeacp_cubestar_estimated_rates_t cubestar_estimated_rates;
         cubeacp_cubestar_estimated_quaternion_t cubestar_estimated_quaternion;
         cubeacp_star_performance2_t star_performance2;
-        cubeacp_cubesense2_current_measurements_t cubesense2_current_measurements;
+        cubeacp_cubesense2_currents_t cubesense2_currents;
         cubeacp_status_of_image_capture_and_save_operation_t status_of_image_capture_and_save_operation;
         cubeacp_set_magnetorquer_configuration_t set_magnetorquer_configuration;
         cubeacp_set_wheel_configuration_t set_wheel_configuration;
@@ -250,7 +250,7 @@ typedef struct {
         cubeacp_set_star_tracker_configuration_t set_star_tracker_configuration;
         cubeacp_cubesense_configuration_t cubesense_configuration;
         cubeacp_magnetometer_configuration_t magnetometer_configuration;
-        cubeacp_redundant_magnetometer_configuration_t redundant_magnetometer_configuration;
+        cubeacp_redundant_mag_configuration_t redundant_mag_configuration;
         cubeacp_adcs_configuration_t adcs_configuration;
         cubeacp_sgp4_orbit_parameters_t sgp4_orbit_parameters;
         cubeacp_set_detumbling_control_parameters_t set_detumbling_control_parameters;
@@ -331,7 +331,7 @@ static inline const char *cubeacp_telemetry_name(uint8_t id)
         return "Current ADCS State";
     case CUBEACP_JPG_CONVERSION_PROGRESS_ID:
         return "JPG Conversion Progress";
-    case CUBEACP_CUBEACP_STATE_ID:
+    case CUBEACP_STATE_ID:
         return "CubeACP State";
     case CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID:
         return "Estimated Attitude Angles";
@@ -383,9 +383,9 @@ static inline const char *cubeacp_telemetry_name(uint8_t id)
         return "Raw CSS 7 to 10";
     case CUBEACP_RAW_MAGNETOMETER_ID:
         return "Raw Magnetometer";
-    case CUBEACP_CUBESENSE1_CURRENT_MEASUREMENTS_ID:
+    case CUBEACP_CUBESENSE1_CURRENTS_ID:
         return "CubeSense1 Current Measurements";
-    case CUBEACP_CUBECONTROL_CURRENT_MEASUREMENTS_ID:
+    case CUBEACP_CUBECONTROL_CURRENTS_ID:
         return "CubeControl Current Measurements";
     case CUBEACP_WHEEL_CURRENTS_ID:
         return "Wheel Currents";
@@ -431,13 +431,13 @@ static inline const char *cubeacp_telemetry_name(uint8_t id)
         return "Estimation Data";
     case CUBEACP_RAW_SENSOR_MEASUREMENTS_ID:
         return "Raw Sensor Measurements";
-    case CUBEACP_POWER_AND_TEMPERATURE_MEASUREMENTS_ID:
+    case CUBEACP_POWER_AND_TEMPERATURE_ID:
         return "Power and Temperature Measurements";
     case CUBEACP_ADCS_EXECUTION_TIMES_ID:
         return "Adcs Execution Times";
-    case CUBEACP_ADCS_MISC_CURRENT_MEASUREMENTS_ID:
+    case CUBEACP_ADCS_MISC_CURRENTS_ID:
         return "ADCS Misc Current Measurements";
-    case CUBEACP_FINE_ESTIMATED_ANGULAR_RATES_ID:
+    case CUBEACP_FINE_ANGULAR_RATES_ID:
         return "Fine Estimated Angular Rates";
     case CUBEACP_RAW_GPS_MEASUREMENTS_ID:
         return "Raw GPS Measurements";
@@ -469,7 +469,7 @@ static inline const char *cubeacp_telemetry_name(uint8_t id)
         return "CubeStar Estimated Quaternion";
     case CUBEACP_STAR_PERFORMANCE2_ID:
         return "Star Performance2";
-    case CUBEACP_CUBESENSE2_CURRENT_MEASUREMENTS_ID:
+    case CUBEACP_CUBESENSE2_CURRENTS_ID:
         return "CubeSense2 Current Measurements";
     case CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_ID:
         return "Status of Image Capture and Save Operation";
@@ -493,7 +493,7 @@ static inline const char *cubeacp_telemetry_name(uint8_t id)
         return "CubeSense Configuration";
     case CUBEACP_MAGNETOMETER_CONFIGURATION_GET_ID:
         return "Magnetometer Configuration";
-    case CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_GET_ID:
+    case CUBEACP_REDUNDANT_MAG_CONFIGURATION_GET_ID:
         return "Redundant Magnetometer Configuration";
     case CUBEACP_ADCS_CONFIGURATION_GET_ID:
         return "ADCS Configuration";
@@ -621,8 +621,8 @@ static inline icd_status_t cubeacp_telemetry_length(uint8_t id, size_t *length)
     case CUBEACP_JPG_CONVERSION_PROGRESS_ID:
         *length = CUBEACP_JPG_CONVERSION_PROGRESS_LENGTH;
         return ICD_OK;
-    case CUBEACP_CUBEACP_STATE_ID:
-        *length = CUBEACP_CUBEACP_STATE_LENGTH;
+    case CUBEACP_STATE_ID:
+        *length = CUBEACP_STATE_LENGTH;
         return ICD_OK;
     case CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID:
         *length = CUBEACP_ESTIMATED_ATTITUDE_ANGLES_LENGTH;
@@ -699,11 +699,11 @@ static inline icd_status_t cubeacp_telemetry_length(uint8_t id, size_t *length)
     case CUBEACP_RAW_MAGNETOMETER_ID:
         *length = CUBEACP_RAW_MAGNETOMETER_LENGTH;
         return ICD_OK;
-    case CUBEACP_CUBESENSE1_CURRENT_MEASUREMENTS_ID:
-        *length = CUBEACP_CUBESENSE1_CURRENT_MEASUREMENTS_LENGTH;
+    case CUBEACP_CUBESENSE1_CURRENTS_ID:
+        *length = CUBEACP_CUBESENSE1_CURRENTS_LENGTH;
         return ICD_OK;
-    case CUBEACP_CUBECONTROL_CURRENT_MEASUREMENTS_ID:
-        *length = CUBEACP_CUBECONTROL_CURRENT_MEASUREMENTS_LENGTH;
+    case CUBEACP_CUBECONTROL_CURRENTS_ID:
+        *length = CUBEACP_CUBECONTROL_CURRENTS_LENGTH;
         return ICD_OK;
     case CUBEACP_WHEEL_CURRENTS_ID:
         *length = CUBEACP_WHEEL_CURRENTS_LENGTH;
@@ -771,17 +771,17 @@ static inline icd_status_t cubeacp_telemetry_length(uint8_t id, size_t *length)
     case CUBEACP_RAW_SENSOR_MEASUREMENTS_ID:
         *length = CUBEACP_RAW_SENSOR_MEASUREMENTS_LENGTH;
         return ICD_OK;
-    case CUBEACP_POWER_AND_TEMPERATURE_MEASUREMENTS_ID:
-        *length = CUBEACP_POWER_AND_TEMPERATURE_MEASUREMENTS_LENGTH;
+    case CUBEACP_POWER_AND_TEMPERATURE_ID:
+        *length = CUBEACP_POWER_AND_TEMPERATURE_LENGTH;
         return ICD_OK;
     case CUBEACP_ADCS_EXECUTION_TIMES_ID:
         *length = CUBEACP_ADCS_EXECUTION_TIMES_LENGTH;
         return ICD_OK;
-    case CUBEACP_ADCS_MISC_CURRENT_MEASUREMENTS_ID:
-        *length = CUBEACP_ADCS_MISC_CURRENT_MEASUREMENTS_LENGTH;
+    case CUBEACP_ADCS_MISC_CURRENTS_ID:
+        *length = CUBEACP_ADCS_MISC_CURRENTS_LENGTH;
         return ICD_OK;
-    case CUBEACP_FINE_ESTIMATED_ANGULAR_RATES_ID:
-        *length = CUBEACP_FINE_ESTIMATED_ANGULAR_RATES_LENGTH;
+    case CUBEACP_FINE_ANGULAR_RATES_ID:
+        *length = CUBEACP_FINE_ANGULAR_RATES_LENGTH;
         return ICD_OK;
     case CUBEACP_RAW_GPS_MEASUREMENTS_ID:
         *length = CUBEACP_RAW_GPS_MEASUREMENTS_LENGTH;
@@ -828,8 +828,8 @@ static inline icd_status_t cubeacp_telemetry_length(uint8_t id, size_t *length)
     case CUBEACP_STAR_PERFORMANCE2_ID:
         *length = CUBEACP_STAR_PERFORMANCE2_LENGTH;
         return ICD_OK;
-    case CUBEACP_CUBESENSE2_CURRENT_MEASUREMENTS_ID:
-        *length = CUBEACP_CUBESENSE2_CURRENT_MEASUREMENTS_LENGTH;
+    case CUBEACP_CUBESENSE2_CURRENTS_ID:
+        *length = CUBEACP_CUBESENSE2_CURRENTS_LENGTH;
         return ICD_OK;
     case CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_ID:
         *length = CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_LENGTH;
@@ -864,8 +864,8 @@ static inline icd_status_t cubeacp_telemetry_length(uint8_t id, size_t *length)
     case CUBEACP_MAGNETOMETER_CONFIGURATION_GET_ID:
         *length = CUBEACP_MAGNETOMETER_CONFIGURATION_LENGTH;
         return ICD_OK;
-    case CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_GET_ID:
-        *length = CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_LENGTH;
+    case CUBEACP_REDUNDANT_MAG_CONFIGURATION_GET_ID:
+        *length = CUBEACP_REDUNDANT_MAG_CONFIGURATION_LENGTH;
         return ICD_OK;
     case CUBEACP_ADCS_CONFIGURATION_GET_ID:
         *length = CUBEACP_ADCS_CONFIGURATION_LENGTH;
@@ -990,8 +990,8 @@ static inline icd_status_t cubeacp_telemetry_decode(
         return cubeacp_current_adcs_state_decode(&message->as.current_adcs_state, buffer, length);
     case CUBEACP_JPG_CONVERSION_PROGRESS_ID:
         return cubeacp_jpg_conversion_progress_decode(&message->as.jpg_conversion_progress, buffer, length);
-    case CUBEACP_CUBEACP_STATE_ID:
-        return cubeacp_cubeacp_state_decode(&message->as.cubeacp_state, buffer, length);
+    case CUBEACP_STATE_ID:
+        return cubeacp_state_decode(&message->as.state, buffer, length);
     case CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID:
         return cubeacp_estimated_attitude_angles_decode(&message->as.estimated_attitude_angles, buffer, length);
     case CUBEACP_ESTIMATED_ANGULAR_RATES_ID:
@@ -1045,16 +1045,10 @@ static inline icd_status_t cubeacp_telemetry_decode(
         return cubeacp_raw_css_7_to_10_decode(&message->as.raw_css_7_to_10, buffer, length);
     case CUBEACP_RAW_MAGNETOMETER_ID:
         return cubeacp_raw_magnetometer_decode(&message->as.raw_magnetometer, buffer, length);
-    case CUBEACP_CUBESENSE1_CURRENT_MEASUREMENTS_ID:
-        return cubeacp_cubesense1_current_measurements_decode(
-            &message->as.cubesense1_current_measurements,
-            buffer,
-            length);
-    case CUBEACP_CUBECONTROL_CURRENT_MEASUREMENTS_ID:
-        return cubeacp_cubecontrol_current_measurements_decode(
-            &message->as.cubecontrol_current_measurements,
-            buffer,
-            length);
+    case CUBEACP_CUBESENSE1_CURRENTS_ID:
+        return cubeacp_cubesense1_currents_decode(&message->as.cubesense1_currents, buffer, length);
+    case CUBEACP_CUBECONTROL_CURRENTS_ID:
+        return cubeacp_cubecontrol_currents_decode(&message->as.cubecontrol_currents, buffer, length);
     case CUBEACP_WHEEL_CURRENTS_ID:
         return cubeacp_wheel_currents_decode(&message->as.wheel_currents, buffer, length);
     case CUBEACP_ADCS_TEMPERATURES_ID:
@@ -1099,20 +1093,14 @@ static inline icd_status_t cubeacp_telemetry_decode(
         return cubeacp_estimation_data_decode(&message->as.estimation_data, buffer, length);
     case CUBEACP_RAW_SENSOR_MEASUREMENTS_ID:
         return cubeacp_raw_sensor_measurements_decode(&message->as.raw_sensor_measurements, buffer, length);
-    case CUBEACP_POWER_AND_TEMPERATURE_MEASUREMENTS_ID:
-        return cubeacp_power_and_temperature_measurements_decode(
-            &message->as.power_and_temperature_measurements,
-            buffer,
-            length);
+    case CUBEACP_POWER_AND_TEMPERATURE_ID:
+        return cubeacp_power_and_temperature_decode(&message->as.power_and_temperature, buffer, length);
     case CUBEACP_ADCS_EXECUTION_TIMES_ID:
         return cubeacp_adcs_execution_times_decode(&message->as.adcs_execution_times, buffer, length);
-    case CUBEACP_ADCS_MISC_CURRENT_MEASUREMENTS_ID:
-        return cubeacp_adcs_misc_current_measurements_decode(
-            &message->as.adcs_misc_current_measurements,
-            buffer,
-            length);
-    case CUBEACP_FINE_ESTIMATED_ANGULAR_RATES_ID:
-        return cubeacp_fine_estimated_angular_rates_decode(&message->as.fine_estimated_angular_rates, buffer, length);
+    case CUBEACP_ADCS_MISC_CURRENTS_ID:
+        return cubeacp_adcs_misc_currents_decode(&message->as.adcs_misc_currents, buffer, length);
+    case CUBEACP_FINE_ANGULAR_RATES_ID:
+        return cubeacp_fine_angular_rates_decode(&message->as.fine_angular_rates, buffer, length);
     case CUBEACP_RAW_GPS_MEASUREMENTS_ID:
         return cubeacp_raw_gps_measurements_decode(&message->as.raw_gps_measurements, buffer, length);
     case CUBEACP_RAW_STAR_TRACKER_ID:
@@ -1146,11 +1134,8 @@ static inline icd_status_t cubeacp_telemetry_decode(
         return cubeacp_cubestar_estimated_quaternion_decode(&message->as.cubestar_estimated_quaternion, buffer, length);
     case CUBEACP_STAR_PERFORMANCE2_ID:
         return cubeacp_star_performance2_decode(&message->as.star_performance2, buffer, length);
-    case CUBEACP_CUBESENSE2_CURRENT_MEASUREMENTS_ID:
-        return cubeacp_cubesense2_current_measurements_decode(
-            &message->as.cubesense2_current_measurements,
-            buffer,
-            length);
+    case CUBEACP_CUBESENSE2_CURRENTS_ID:
+        return cubeacp_cubesense2_currents_decode(&message->as.cubesense2_currents, buffer, length);
     case CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_ID:
         return cubeacp_status_of_image_capture_and_save_operation_decode(
             &message->as.status_of_image_capture_and_save_operation,
@@ -1185,11 +1170,8 @@ static inline icd_status_t cubeacp_telemetry_decode(
         return cubeacp_cubesense_configuration_decode(&message->as.cubesense_configuration, buffer, length);
     case CUBEACP_MAGNETOMETER_CONFIGURATION_GET_ID:
         return cubeacp_magnetometer_configuration_decode(&message->as.magnetometer_configuration, buffer, length);
-    case CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_GET_ID:
-        return cubeacp_redundant_magnetometer_configuration_decode(
-            &message->as.redundant_magnetometer_configuration,
-            buffer,
-            length);
+    case CUBEACP_REDUNDANT_MAG_CONFIGURATION_GET_ID:
+        return cubeacp_redundant_mag_configuration_decode(&message->as.redundant_mag_configuration, buffer, length);
     case CUBEACP_ADCS_CONFIGURATION_GET_ID:
         return cubeacp_adcs_configuration_decode(&message->as.adcs_configuration, buffer, length);
     case CUBEACP_SGP4_ORBIT_PARAMETERS_GET_ID:
@@ -1317,8 +1299,8 @@ static inline icd_status_t cubeacp_telemetry_encode(
         return cubeacp_current_adcs_state_encode(&message->as.current_adcs_state, buffer, capacity);
     case CUBEACP_JPG_CONVERSION_PROGRESS_ID:
         return cubeacp_jpg_conversion_progress_encode(&message->as.jpg_conversion_progress, buffer, capacity);
-    case CUBEACP_CUBEACP_STATE_ID:
-        return cubeacp_cubeacp_state_encode(&message->as.cubeacp_state, buffer, capacity);
+    case CUBEACP_STATE_ID:
+        return cubeacp_state_encode(&message->as.state, buffer, capacity);
     case CUBEACP_ESTIMATED_ATTITUDE_ANGLES_ID:
         return cubeacp_estimated_attitude_angles_encode(&message->as.estimated_attitude_angles, buffer, capacity);
     case CUBEACP_ESTIMATED_ANGULAR_RATES_ID:
@@ -1372,16 +1354,10 @@ static inline icd_status_t cubeacp_telemetry_encode(
         return cubeacp_raw_css_7_to_10_encode(&message->as.raw_css_7_to_10, buffer, capacity);
     case CUBEACP_RAW_MAGNETOMETER_ID:
         return cubeacp_raw_magnetometer_encode(&message->as.raw_magnetometer, buffer, capacity);
-    case CUBEACP_CUBESENSE1_CURRENT_MEASUREMENTS_ID:
-        return cubeacp_cubesense1_current_measurements_encode(
-            &message->as.cubesense1_current_measurements,
-            buffer,
-            capacity);
-    case CUBEACP_CUBECONTROL_CURRENT_MEASUREMENTS_ID:
-        return cubeacp_cubecontrol_current_measurements_encode(
-            &message->as.cubecontrol_current_measurements,
-            buffer,
-            capacity);
+    case CUBEACP_CUBESENSE1_CURRENTS_ID:
+        return cubeacp_cubesense1_currents_encode(&message->as.cubesense1_currents, buffer, capacity);
+    case CUBEACP_CUBECONTROL_CURRENTS_ID:
+        return cubeacp_cubecontrol_currents_encode(&message->as.cubecontrol_currents, buffer, capacity);
     case CUBEACP_WHEEL_CURRENTS_ID:
         return cubeacp_wheel_currents_encode(&message->as.wheel_currents, buffer, capacity);
     case CUBEACP_ADCS_TEMPERATURES_ID:
@@ -1426,20 +1402,14 @@ static inline icd_status_t cubeacp_telemetry_encode(
         return cubeacp_estimation_data_encode(&message->as.estimation_data, buffer, capacity);
     case CUBEACP_RAW_SENSOR_MEASUREMENTS_ID:
         return cubeacp_raw_sensor_measurements_encode(&message->as.raw_sensor_measurements, buffer, capacity);
-    case CUBEACP_POWER_AND_TEMPERATURE_MEASUREMENTS_ID:
-        return cubeacp_power_and_temperature_measurements_encode(
-            &message->as.power_and_temperature_measurements,
-            buffer,
-            capacity);
+    case CUBEACP_POWER_AND_TEMPERATURE_ID:
+        return cubeacp_power_and_temperature_encode(&message->as.power_and_temperature, buffer, capacity);
     case CUBEACP_ADCS_EXECUTION_TIMES_ID:
         return cubeacp_adcs_execution_times_encode(&message->as.adcs_execution_times, buffer, capacity);
-    case CUBEACP_ADCS_MISC_CURRENT_MEASUREMENTS_ID:
-        return cubeacp_adcs_misc_current_measurements_encode(
-            &message->as.adcs_misc_current_measurements,
-            buffer,
-            capacity);
-    case CUBEACP_FINE_ESTIMATED_ANGULAR_RATES_ID:
-        return cubeacp_fine_estimated_angular_rates_encode(&message->as.fine_estimated_angular_rates, buffer, capacity);
+    case CUBEACP_ADCS_MISC_CURRENTS_ID:
+        return cubeacp_adcs_misc_currents_encode(&message->as.adcs_misc_currents, buffer, capacity);
+    case CUBEACP_FINE_ANGULAR_RATES_ID:
+        return cubeacp_fine_angular_rates_encode(&message->as.fine_angular_rates, buffer, capacity);
     case CUBEACP_RAW_GPS_MEASUREMENTS_ID:
         return cubeacp_raw_gps_measurements_encode(&message->as.raw_gps_measurements, buffer, capacity);
     case CUBEACP_RAW_STAR_TRACKER_ID:
@@ -1476,11 +1446,8 @@ static inline icd_status_t cubeacp_telemetry_encode(
             capacity);
     case CUBEACP_STAR_PERFORMANCE2_ID:
         return cubeacp_star_performance2_encode(&message->as.star_performance2, buffer, capacity);
-    case CUBEACP_CUBESENSE2_CURRENT_MEASUREMENTS_ID:
-        return cubeacp_cubesense2_current_measurements_encode(
-            &message->as.cubesense2_current_measurements,
-            buffer,
-            capacity);
+    case CUBEACP_CUBESENSE2_CURRENTS_ID:
+        return cubeacp_cubesense2_currents_encode(&message->as.cubesense2_currents, buffer, capacity);
     case CUBEACP_STATUS_OF_IMAGE_CAPTURE_AND_SAVE_OPERATION_ID:
         return cubeacp_status_of_image_capture_and_save_operation_encode(
             &message->as.status_of_image_capture_and_save_operation,
@@ -1515,11 +1482,8 @@ static inline icd_status_t cubeacp_telemetry_encode(
         return cubeacp_cubesense_configuration_encode(&message->as.cubesense_configuration, buffer, capacity);
     case CUBEACP_MAGNETOMETER_CONFIGURATION_GET_ID:
         return cubeacp_magnetometer_configuration_encode(&message->as.magnetometer_configuration, buffer, capacity);
-    case CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_GET_ID:
-        return cubeacp_redundant_magnetometer_configuration_encode(
-            &message->as.redundant_magnetometer_configuration,
-            buffer,
-            capacity);
+    case CUBEACP_REDUNDANT_MAG_CONFIGURATION_GET_ID:
+        return cubeacp_redundant_mag_configuration_encode(&message->as.redundant_mag_configuration, buffer, capacity);
     case CUBEACP_ADCS_CONFIGURATION_GET_ID:
         return cubeacp_adcs_configuration_encode(&message->as.adcs_configuration, buffer, capacity);
     case CUBEACP_SGP4_ORBIT_PARAMETERS_GET_ID:
@@ -1611,7 +1575,7 @@ typedef struct {
         cubeacp_set_magnetorquer_output_t set_magnetorquer_output;
         cubeacp_set_wheel_speed_t set_wheel_speed;
         cubeacp_trigger_adcs_loop_t trigger_adcs_loop;
-        cubeacp_trigger_adcs_loop_with_simulated_sensor_data_t trigger_adcs_loop_with_simulated_sensor_data;
+        cubeacp_trigger_simulated_loop_t trigger_simulated_loop;
         cubeacp_asgp4_run_mode_t asgp4_run_mode;
         cubeacp_asgp4_trigger_t asgp4_trigger;
         cubeacp_set_mode_of_magnetometer_operation_t set_mode_of_magnetometer_operation;
@@ -1629,7 +1593,7 @@ typedef struct {
         cubeacp_set_star_tracker_configuration_t set_star_tracker_configuration;
         cubeacp_cubesense_configuration_t cubesense_configuration;
         cubeacp_magnetometer_configuration_t magnetometer_configuration;
-        cubeacp_redundant_magnetometer_configuration_t redundant_magnetometer_configuration;
+        cubeacp_redundant_mag_configuration_t redundant_mag_configuration;
         cubeacp_adcs_configuration_t adcs_configuration;
         cubeacp_sgp4_orbit_parameters_t sgp4_orbit_parameters;
         cubeacp_set_detumbling_control_parameters_t set_detumbling_control_parameters;
@@ -1720,7 +1684,7 @@ static inline const char *cubeacp_telecommand_name(uint8_t id)
         return "Set Wheel Speed";
     case CUBEACP_TRIGGER_ADCS_LOOP_ID:
         return "Trigger ADCS Loop";
-    case CUBEACP_TRIGGER_ADCS_LOOP_WITH_SIMULATED_SENSOR_DATA_ID:
+    case CUBEACP_TRIGGER_SIMULATED_LOOP_ID:
         return "Trigger ADCS Loop with Simulated Sensor Data";
     case CUBEACP_ASGP4_RUN_MODE_ID:
         return "ASGP4 Run Mode";
@@ -1756,7 +1720,7 @@ static inline const char *cubeacp_telecommand_name(uint8_t id)
         return "CubeSense Configuration";
     case CUBEACP_MAGNETOMETER_CONFIGURATION_SET_ID:
         return "Magnetometer Configuration";
-    case CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_SET_ID:
+    case CUBEACP_REDUNDANT_MAG_CONFIGURATION_SET_ID:
         return "Redundant Magnetometer Configuration";
     case CUBEACP_ADCS_CONFIGURATION_SET_ID:
         return "ADCS Configuration";
@@ -1899,8 +1863,8 @@ static inline icd_status_t cubeacp_telecommand_length(uint8_t id, size_t *length
     case CUBEACP_TRIGGER_ADCS_LOOP_ID:
         *length = CUBEACP_TRIGGER_ADCS_LOOP_LENGTH;
         return ICD_OK;
-    case CUBEACP_TRIGGER_ADCS_LOOP_WITH_SIMULATED_SENSOR_DATA_ID:
-        *length = CUBEACP_TRIGGER_ADCS_LOOP_WITH_SIMULATED_SENSOR_DATA_LENGTH;
+    case CUBEACP_TRIGGER_SIMULATED_LOOP_ID:
+        *length = CUBEACP_TRIGGER_SIMULATED_LOOP_LENGTH;
         return ICD_OK;
     case CUBEACP_ASGP4_RUN_MODE_ID:
         *length = CUBEACP_ASGP4_RUN_MODE_LENGTH;
@@ -1953,8 +1917,8 @@ static inline icd_status_t cubeacp_telecommand_length(uint8_t id, size_t *length
     case CUBEACP_MAGNETOMETER_CONFIGURATION_SET_ID:
         *length = CUBEACP_MAGNETOMETER_CONFIGURATION_LENGTH;
         return ICD_OK;
-    case CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_SET_ID:
-        *length = CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_LENGTH;
+    case CUBEACP_REDUNDANT_MAG_CONFIGURATION_SET_ID:
+        *length = CUBEACP_REDUNDANT_MAG_CONFIGURATION_LENGTH;
         return ICD_OK;
     case CUBEACP_ADCS_CONFIGURATION_SET_ID:
         *length = CUBEACP_ADCS_CONFIGURATION_LENGTH;
@@ -2086,11 +2050,8 @@ static inline icd_status_t cubeacp_telecommand_decode(
         return cubeacp_set_wheel_speed_decode(&message->as.set_wheel_speed, buffer, length);
     case CUBEACP_TRIGGER_ADCS_LOOP_ID:
         return cubeacp_trigger_adcs_loop_decode(&message->as.trigger_adcs_loop, buffer, length);
-    case CUBEACP_TRIGGER_ADCS_LOOP_WITH_SIMULATED_SENSOR_DATA_ID:
-        return cubeacp_trigger_adcs_loop_with_simulated_sensor_data_decode(
-            &message->as.trigger_adcs_loop_with_simulated_sensor_data,
-            buffer,
-            length);
+    case CUBEACP_TRIGGER_SIMULATED_LOOP_ID:
+        return cubeacp_trigger_simulated_loop_decode(&message->as.trigger_simulated_loop, buffer, length);
     case CUBEACP_ASGP4_RUN_MODE_ID:
         return cubeacp_asgp4_run_mode_decode(&message->as.asgp4_run_mode, buffer, length);
     case CUBEACP_ASGP4_TRIGGER_ID:
@@ -2137,11 +2098,8 @@ static inline icd_status_t cubeacp_telecommand_decode(
         return cubeacp_cubesense_configuration_decode(&message->as.cubesense_configuration, buffer, length);
     case CUBEACP_MAGNETOMETER_CONFIGURATION_SET_ID:
         return cubeacp_magnetometer_configuration_decode(&message->as.magnetometer_configuration, buffer, length);
-    case CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_SET_ID:
-        return cubeacp_redundant_magnetometer_configuration_decode(
-            &message->as.redundant_magnetometer_configuration,
-            buffer,
-            length);
+    case CUBEACP_REDUNDANT_MAG_CONFIGURATION_SET_ID:
+        return cubeacp_redundant_mag_configuration_decode(&message->as.redundant_mag_configuration, buffer, length);
     case CUBEACP_ADCS_CONFIGURATION_SET_ID:
         return cubeacp_adcs_configuration_decode(&message->as.adcs_configuration, buffer, length);
     case CUBEACP_SGP4_ORBIT_PARAMETERS_SET_ID:
@@ -2273,11 +2231,8 @@ static inline icd_status_t cubeacp_telecommand_encode(
         return cubeacp_set_wheel_speed_encode(&message->as.set_wheel_speed, buffer, capacity);
     case CUBEACP_TRIGGER_ADCS_LOOP_ID:
         return cubeacp_trigger_adcs_loop_encode(&message->as.trigger_adcs_loop, buffer, capacity);
-    case CUBEACP_TRIGGER_ADCS_LOOP_WITH_SIMULATED_SENSOR_DATA_ID:
-        return cubeacp_trigger_adcs_loop_with_simulated_sensor_data_encode(
-            &message->as.trigger_adcs_loop_with_simulated_sensor_data,
-            buffer,
-            capacity);
+    case CUBEACP_TRIGGER_SIMULATED_LOOP_ID:
+        return cubeacp_trigger_simulated_loop_encode(&message->as.trigger_simulated_loop, buffer, capacity);
     case CUBEACP_ASGP4_RUN_MODE_ID:
         return cubeacp_asgp4_run_mode_encode(&message->as.asgp4_run_mode, buffer, capacity);
     case CUBEACP_ASGP4_TRIGGER_ID:
@@ -2324,11 +2279,8 @@ static inline icd_status_t cubeacp_telecommand_encode(
         return cubeacp_cubesense_configuration_encode(&message->as.cubesense_configuration, buffer, capacity);
     case CUBEACP_MAGNETOMETER_CONFIGURATION_SET_ID:
         return cubeacp_magnetometer_configuration_encode(&message->as.magnetometer_configuration, buffer, capacity);
-    case CUBEACP_REDUNDANT_MAGNETOMETER_CONFIGURATION_SET_ID:
-        return cubeacp_redundant_magnetometer_configuration_encode(
-            &message->as.redundant_magnetometer_configuration,
-            buffer,
-            capacity);
+    case CUBEACP_REDUNDANT_MAG_CONFIGURATION_SET_ID:
+        return cubeacp_redundant_mag_configuration_encode(&message->as.redundant_mag_configuration, buffer, capacity);
     case CUBEACP_ADCS_CONFIGURATION_SET_ID:
         return cubeacp_adcs_configuration_encode(&message->as.adcs_configuration, buffer, capacity);
     case CUBEACP_SGP4_ORBIT_PARAMETERS_SET_ID:

@@ -10,6 +10,7 @@ import subprocess
 import pytest
 
 from icdgen.backends.c import CBackend
+from icdgen.backends.c.declared_names import FILE
 from icdgen.backends.c.text import comment, literal, plain
 from icdgen.icd.model import Icd
 from tests.c import harness, odd
@@ -122,6 +123,11 @@ def test_no_two_names_of_the_shipped_icds_clash():
     for one in CBackend().identifiers(harness.shipped()):
         assert (one.scope, one.text) not in seen, (one, seen[one.scope, one.text])
         seen[one.scope, one.text] = one
+
+
+def test_no_two_names_of_the_shipped_icds_are_the_same_in_the_63_characters_that_c_guarantees():
+    names = {one.text for one in CBackend().identifiers(harness.shipped()) if one.scope == FILE}
+    assert len(names) > 3000 and len({name[:63] for name in names}) == len(names)
 
 
 @pytest.mark.parametrize(

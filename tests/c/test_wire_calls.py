@@ -138,7 +138,7 @@ static icd_status_t ask(const icd_link_t *link, int which)
     static uint8_t buffer[CUBEACP_CLIENT_BYTES > BOOTLOADER_CLIENT_BYTES ? CUBEACP_CLIENT_BYTES : BOOTLOADER_CLIENT_BYTES];
     assert(icd_client_init(&client, link, ICD_BUS_UART, buffer, sizeof buffer) == ICD_OK);
     return which == 0 ? ICD_REQUEST(&client, 0, CUBEACP_CURRENT_ADCS_STATE)
-        : which == 1 ? ICD_REQUEST(&client, 0, BOOTLOADER_BOOTLOADER_STATE)
+        : which == 1 ? ICD_REQUEST(&client, 0, BOOTLOADER_STATE)
                      : ICD_REQUEST(&client, 0, COMMON_IDENTIFICATION);
 }
 

@@ -6,7 +6,8 @@ from dataclasses import asdict
 
 import pytest
 
-from icdgen.protocol import facts
+from icdgen.loading import load
+from icdgen.protocol import facts, uart
 
 
 def test_a_node_has_the_facts_of_what_it_includes_and_its_own(icd, known):
@@ -21,6 +22,26 @@ def test_a_node_without_a_protocol_has_none(icd):
     assert (alone.framing, alone.can, alone.files, alone.assumptions) == (None, None, None, ())
     with pytest.raises(facts.Unsupported, match="uart"):
         facts.need(alone.framing, "uart")
+
+
+WITHOUT_TELEMETRY = """\
+icdgen: 1
+node: {name: demo, title: Demo, byte_order: little, bit_order: lsb0}
+protocol:
+  uart:
+    framing: {escape: 0x10, start_of_message: 0x02, end_of_message: 0x03, escaped_data: 0x10}
+    acknowledge:
+      data: [{byte: 0, bytes: 1, name: Id, role: id, type: uint}, {byte: 1, bytes: 1, name: Error, role: error, type: uint}]
+messages:
+  - {name: Stop, id: 7, kind: telecommand, length: 0}
+"""
+
+
+def test_without_telemetry_an_acknowledge_is_no_reply(tmp_path):
+    (tmp_path / "demo.yaml").write_text(WITHOUT_TELEMETRY)
+    loaded = load([tmp_path])
+    assert loaded.findings == []
+    assert uart.kind(facts.of(loaded.icd, loaded.icd.node("demo")), bytes([7, 0])) == uart.ACKNOWLEDGE
 
 
 def test_buffers_are_as_long_as_the_longest_message_with_id_and_checksum(known):

@@ -145,7 +145,7 @@ def test_a_request_while_another_one_goes_on_is_refused(shipped, wire):
 def test_messages_of_another_node_are_refused(shipped, wire):
     acp, bootloader, errors = shipped.module("cubeacp"), shipped.module("bootloader"), shipped.module()
     client = wire.Client(acp.LINK, "uart")
-    for call, message in ((client.request, bootloader.BootloaderState), (client.send, bootloader.SetBootIndex())):
+    for call, message in ((client.request, bootloader.State), (client.send, bootloader.SetBootIndex())):
         with pytest.raises(errors.UnknownIdError):
             call(0, message)
     with pytest.raises(errors.UnknownIdError):

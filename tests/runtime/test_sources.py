@@ -36,7 +36,9 @@ def test_every_c_file_stands_alone_and_compiles_without_a_warning(compiler, tmp_
         for language, standard in (("c", "c99"), ("c++", "c++11")):
             program = tmp_path / f"{header.stem}_{header.suffix[1:]}.{language}"
             program.write_text(f'#include "{header}"\n#include "{header}"\ntypedef int something;\n')
-            shared = ("-DICDGEN_SHARED",) if header.suffix == ".c" else ()
+            shared = (
+                ("-DICDGEN_SHARED",) if header.parent.name == "wire" else ()
+            )  # a part alone lacks the functions of others
             run(compiler, f"-std={standard}", *STRICT, *shared, "-I", C, "-x", language, program)
 
 

@@ -1,6 +1,6 @@
 //! A session whose port fails, and clients that are asked for what is not the node's; any surprise is a panic.
 
-use icd::bootloader::BootloaderState;
+use icd::bootloader::State as BootloaderState;
 use icd::common::{Identification, Reset};
 use icd::cubeacp::{ClearErrors, CurrentAdcsState, EstimatedAngularRates, EstimatedAttitudeAngles, LINK, LONGEST};
 use icd::wire::{uart, Client, Error, Event, Session, Started, Telemetry};

@@ -4,6 +4,12 @@ from __future__ import annotations
 
 import re
 
+import pytest
+
+from icdgen.loading import load
+from icdgen.protocol import i2c, uart
+from icdgen.protocol.facts import of as facts_of
+from tests.cli.conftest import icdgen  # noqa: F401  (a fixture)
 from tests.site.test_browser import opened
 
 PAGE = "cubeacp/protocol.html"
@@ -21,11 +27,9 @@ def test_the_calculator_computes_the_checksums_of_the_icd(browser, site, shipped
 
 
 def test_every_fact_and_every_assumption_stands_there(site, shipped):
-    from icdgen.protocol.facts import of
-
     text = (site / PAGE).read_text("utf-8")
     plain = re.sub(r"\s+", " ", re.sub("<[^>]*>", " ", text)).replace("&#39;", "'").replace("&#34;", '"')
-    known = of(shipped, shipped.node("cubeacp"))
+    known = facts_of(shipped, shipped.node("cubeacp"))
     assert len(known.assumptions) > 30
     for one in known.assumptions:
         assert " ".join(one.why.split()) in plain, one.key
@@ -42,3 +46,49 @@ def test_procedures_lead_to_their_messages(site):
 
 def test_a_node_of_which_nothing_is_said_has_no_such_page(site):
     assert not (site / "cubemag" / "protocol.html").exists()
+
+
+def test_the_packets_of_a_download_are_drawn_with_their_ids(site):
+    text = (site / PAGE).read_text("utf-8")
+    download = text[text.index("<figcaption>File download") : text.index("<figcaption>File erase")]
+    assert "id 119 on UART; id 241 on I²C, CAN" in download and "2 bytes of counter, 20 bytes of the file" in download
+    assert 'href="../common/file_download_buffer_with_file_contents.html"' in download
+
+
+WIDE = {  # CRC-16/IBM-3740 and CRC-32/ISO-HDLC, as the catalogues have them
+    16: ("0x1021", "0xFFFF", "false", "0x0000", "0x29B1"),
+    32: ("0x04C11DB7", "0xFFFFFFFF", "true", "0xFFFFFFFF", "0xCBF43926"),
+}
+
+
+@pytest.mark.parametrize("width", WIDE)
+def test_a_checksum_of_several_bytes_is_computed_shown_and_taken_off(browser, tmp_path, icdgen, width):  # noqa: F811
+    assert icdgen("init", "battery").status == 0
+    path = tmp_path / "icd" / "battery.yaml"
+    polynomial, init, reflected, xor_out, check = WIDE[width]
+    values = {"width": width, "polynomial": polynomial, "init": init, "xor_out": xor_out, "check": check}
+    values |= {"reflect_in": reflected, "reflect_out": reflected}
+    text = path.read_text("utf-8").replace("extra_bytes: 1", f"extra_bytes: {width // 8}")
+    for key, value in values.items():
+        text = re.sub(rf"(\n    {key}: )\S+", rf"\g<1>{value}", text, count=1)
+    path.write_text(text, "utf-8")
+    built = icdgen("docs", "--out", "site")
+    assert built.status == 0, built.err
+    top = (tmp_path / "site").as_uri() + "/"
+    with opened(browser, top, "battery/protocol.html") as page:
+        assert check in page.inner_text("#crc-values") and f"CRC-{width}" in page.inner_text("main")
+    known = facts_of(loaded := load([path]).icd, loaded.node("battery"))
+    id = next(id for id, message in known.telecommands.items() if message.name == "Reset")
+    body = i2c.telecommand(known, id, b"\x5a", True)
+    line = uart.encode(known.framing, body).hex(" ").upper()
+    assert len(body) == 2 + width // 8
+    with opened(browser, top, "battery/reset.html") as page:
+        page.fill("#frame", line)
+        assert "CRC is right" in page.inner_text("#verdict") and line in page.inner_text(".sent")
+        assert line.replace(" ", "") in re.sub(r"\s", "", page.inner_text(".buses"))
+        page.fill("#frame", body[:-1].hex() + f"{body[-1] ^ 1:02x}")
+        assert page.locator("#verdict.wrong").count()
+    with opened(browser, top, "index.html") as page:
+        page.fill("#paste", body.hex())
+        page.wait_for_selector("#pasted li")
+        assert "CRC is right" in page.inner_text("#pasted li")

@@ -77,8 +77,9 @@ class Reader:
 
     def telemetry_ids(self) -> Direction:
         ids = self.section("message_id", "telemetry")
+        # Without telemetry there is none of them, first above last, and what comes is no reply.
         return Direction(
-            ids.get("first", min(self.telemetry, default=0)), ids.get("last", max(self.telemetry, default=255))
+            ids.get("first", min(self.telemetry, default=1)), ids.get("last", max(self.telemetry, default=0))
         )
 
     def acknowledge(self) -> Acknowledge | None:

@@ -115,17 +115,17 @@ typedef struct {
      * Cam1 Sensor Mounting Transform Alpha Angle: bits 304 to 319, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
      */
-    int16_t cam1_sensor_mounting_transform_alpha_angle;
+    int16_t cam1_mounting_alpha;
     /**
      * Cam1 Sensor Mounting Transform Beta Angle: bits 320 to 335, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
      */
-    int16_t cam1_sensor_mounting_transform_beta_angle;
+    int16_t cam1_mounting_beta;
     /**
      * Cam1 Sensor Mounting Transform Gamma Angle: bits 336 to 351, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
      */
-    int16_t cam1_sensor_mounting_transform_gamma_angle;
+    int16_t cam1_mounting_gamma;
     /** Cam1 detection threshold: bits 352 to 359, raw 0 to 255. */
     uint8_t cam1_detection_threshold;
     /** Cam1 sensor auto adjust mode: bit 360. */
@@ -146,17 +146,17 @@ typedef struct {
      * Cam2 Sensor Mounting Transform Alpha Angle: bits 416 to 431, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
      */
-    int16_t cam2_sensor_mounting_transform_alpha_angle;
+    int16_t cam2_mounting_alpha;
     /**
      * Cam2 Sensor Mounting Transform Beta Angle: bits 432 to 447, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
      */
-    int16_t cam2_sensor_mounting_transform_beta_angle;
+    int16_t cam2_mounting_beta;
     /**
      * Cam2 Sensor Mounting Transform Gamma Angle: bits 448 to 463, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
      */
-    int16_t cam2_sensor_mounting_transform_gamma_angle;
+    int16_t cam2_mounting_gamma;
     /** Cam2 detection threshold: bits 464 to 471, raw 0 to 255. */
     uint8_t cam2_detection_threshold;
     /** Cam2 sensor auto adjust mode: bit 472. */
@@ -278,17 +278,17 @@ typedef struct {
      * Magnetometer Mounting Transform Alpha Angle: bits 1200 to 1215, raw -32768 to 32767; physical `raw*0.01`, -327.68
      * to 327.67 deg.
      */
-    int16_t magnetometer_mounting_transform_alpha_angle;
+    int16_t magnetometer_mounting_alpha;
     /**
      * Magnetometer Mounting Transform Beta Angle: bits 1216 to 1231, raw -32768 to 32767; physical `raw*0.01`, -327.68
      * to 327.67 deg.
      */
-    int16_t magnetometer_mounting_transform_beta_angle;
+    int16_t magnetometer_mounting_beta;
     /**
      * Magnetometer Mounting Transform Gamma Angle: bits 1232 to 1247, raw -32768 to 32767; physical `raw*0.01`, -327.68
      * to 327.67 deg.
      */
-    int16_t magnetometer_mounting_transform_gamma_angle;
+    int16_t magnetometer_mounting_gamma;
     /**
      * Magnetometer Channel 1 Offset: bits 1248 to 1263, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
      */
@@ -305,137 +305,137 @@ typedef struct {
      * Magnetometer Sensitivity Matrix S11: bits 1296 to 1311, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s11;
+    int16_t magnetometer_sensitivity_s11;
     /**
      * Magnetometer Sensitivity Matrix S22: bits 1312 to 1327, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s22;
+    int16_t magnetometer_sensitivity_s22;
     /**
      * Magnetometer Sensitivity Matrix S33: bits 1328 to 1343, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s33;
+    int16_t magnetometer_sensitivity_s33;
     /**
      * Magnetometer Sensitivity Matrix S12: bits 1344 to 1359, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s12;
+    int16_t magnetometer_sensitivity_s12;
     /**
      * Magnetometer Sensitivity Matrix S13: bits 1360 to 1375, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s13;
+    int16_t magnetometer_sensitivity_s13;
     /**
      * Magnetometer Sensitivity Matrix S21: bits 1376 to 1391, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s21;
+    int16_t magnetometer_sensitivity_s21;
     /**
      * Magnetometer Sensitivity Matrix S23: bits 1392 to 1407, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s23;
+    int16_t magnetometer_sensitivity_s23;
     /**
      * Magnetometer Sensitivity Matrix S31: bits 1408 to 1423, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s31;
+    int16_t magnetometer_sensitivity_s31;
     /**
      * Magnetometer Sensitivity Matrix S32: bits 1424 to 1439, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s32;
+    int16_t magnetometer_sensitivity_s32;
     /**
      * Redundant Magnetometer Mounting Transform Alpha Angle: bits 1440 to 1455, raw -32768 to 32767; physical
      * `raw*0.01`, -327.68 to 327.67 deg.
      */
-    int16_t redundant_magnetometer_mounting_transform_alpha_angle;
+    int16_t redundant_mag_mounting_alpha;
     /**
      * Redundant Magnetometer Mounting Transform Beta Angle: bits 1456 to 1471, raw -32768 to 32767; physical
      * `raw*0.01`, -327.68 to 327.67 deg.
      */
-    int16_t redundant_magnetometer_mounting_transform_beta_angle;
+    int16_t redundant_mag_mounting_beta;
     /**
      * Redundant Magnetometer Mounting Transform Gamma Angle: bits 1472 to 1487, raw -32768 to 32767; physical
      * `raw*0.01`, -327.68 to 327.67 deg.
      */
-    int16_t redundant_magnetometer_mounting_transform_gamma_angle;
+    int16_t redundant_mag_mounting_gamma;
     /**
      * Redundant Magnetometer Channel 1 Offset: bits 1488 to 1503, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t redundant_magnetometer_channel_1_offset;
+    int16_t redundant_mag_channel_1_offset;
     /**
      * Redundant Magnetometer Channel 2 Offset: bits 1504 to 1519, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t redundant_magnetometer_channel_2_offset;
+    int16_t redundant_mag_channel_2_offset;
     /**
      * Redundant Magnetometer Channel 3 Offset: bits 1520 to 1535, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t redundant_magnetometer_channel_3_offset;
+    int16_t redundant_mag_channel_3_offset;
     /**
      * Redundant Magnetometer Sensitivity Matrix S11: bits 1536 to 1551, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
      */
-    int16_t redundant_magnetometer_sensitivity_matrix_s11;
+    int16_t redundant_mag_sensitivity_s11;
     /**
      * Redundant Magnetometer Sensitivity Matrix S22: bits 1552 to 1567, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
      */
-    int16_t redundant_magnetometer_sensitivity_matrix_s22;
+    int16_t redundant_mag_sensitivity_s22;
     /**
      * Redundant Magnetometer Sensitivity Matrix S33: bits 1568 to 1583, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
      */
-    int16_t redundant_magnetometer_sensitivity_matrix_s33;
+    int16_t redundant_mag_sensitivity_s33;
     /**
      * Redundant Magnetometer Sensitivity Matrix S12: bits 1584 to 1599, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
      */
-    int16_t redundant_magnetometer_sensitivity_matrix_s12;
+    int16_t redundant_mag_sensitivity_s12;
     /**
      * Redundant Magnetometer Sensitivity Matrix S13: bits 1600 to 1615, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
      */
-    int16_t redundant_magnetometer_sensitivity_matrix_s13;
+    int16_t redundant_mag_sensitivity_s13;
     /**
      * Redundant Magnetometer Sensitivity Matrix S21: bits 1616 to 1631, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
      */
-    int16_t redundant_magnetometer_sensitivity_matrix_s21;
+    int16_t redundant_mag_sensitivity_s21;
     /**
      * Redundant Magnetometer Sensitivity Matrix S23: bits 1632 to 1647, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
      */
-    int16_t redundant_magnetometer_sensitivity_matrix_s23;
+    int16_t redundant_mag_sensitivity_s23;
     /**
      * Redundant Magnetometer Sensitivity Matrix S31: bits 1648 to 1663, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
      */
-    int16_t redundant_magnetometer_sensitivity_matrix_s31;
+    int16_t redundant_mag_sensitivity_s31;
     /**
      * Redundant Magnetometer Sensitivity Matrix S32: bits 1664 to 1679, raw -32768 to 32767; physical `raw*0.001`,
      * -32.768 to 32.767.
      */
-    int16_t redundant_magnetometer_sensitivity_matrix_s32;
+    int16_t redundant_mag_sensitivity_s32;
     /**
      * StarTracker Mounting Transform Alpha Angle: bits 1680 to 1695, raw -32768 to 32767; physical `raw*0.01`, -327.68
      * to 327.67 deg.
      */
-    int16_t star_tracker_mounting_transform_alpha_angle;
+    int16_t star_tracker_mounting_alpha;
     /**
      * StarTracker Mounting Transform Beta Angle: bits 1696 to 1711, raw -32768 to 32767; physical `raw*0.01`, -327.68
      * to 327.67 deg.
      */
-    int16_t star_tracker_mounting_transform_beta_angle;
+    int16_t star_tracker_mounting_beta;
     /**
      * StarTracker Mounting Transform Gamma Angle: bits 1712 to 1727, raw -32768 to 32767; physical `raw*0.01`, -327.68
      * to 327.67 deg.
      */
-    int16_t star_tracker_mounting_transform_gamma_angle;
+    int16_t star_tracker_mounting_gamma;
     /**
      * StarTracker exposure time: bits 1728 to 1743, raw 0 to 65535. Register value.
      * @note Note ACP-145 (open): Exposure and gain are register values.
@@ -779,17 +779,17 @@ static inline icd_status_t cubeacp_adcs_configuration_decode(
     message->y_rate_sensor_offset = icdgen_i16(icdgen_load_u16le(&buffer[12]));
     message->z_rate_sensor_offset = icdgen_i16(icdgen_load_u16le(&buffer[14]));
     ICDGEN_READ_ROW_LE(cubeacp_adcs_configuration_t, message, &buffer[16], 22u, rate_sensor_mult, css_threshold);
-    message->cam1_sensor_mounting_transform_alpha_angle = icdgen_i16(icdgen_load_u16le(&buffer[38]));
-    message->cam1_sensor_mounting_transform_beta_angle = icdgen_i16(icdgen_load_u16le(&buffer[40]));
-    message->cam1_sensor_mounting_transform_gamma_angle = icdgen_i16(icdgen_load_u16le(&buffer[42]));
+    message->cam1_mounting_alpha = icdgen_i16(icdgen_load_u16le(&buffer[38]));
+    message->cam1_mounting_beta = icdgen_i16(icdgen_load_u16le(&buffer[40]));
+    message->cam1_mounting_gamma = icdgen_i16(icdgen_load_u16le(&buffer[42]));
     message->cam1_detection_threshold = buffer[44];
     message->cam1_sensor_auto_adjust_mode = (buffer[45] & 0x01u) != 0u;
     message->cam1_sensor_exposure_time = icdgen_load_u16le(&buffer[46]);
     message->cam1_boresight_x = icdgen_load_u16le(&buffer[48]);
     message->cam1_boresight_y = icdgen_load_u16le(&buffer[50]);
-    message->cam2_sensor_mounting_transform_alpha_angle = icdgen_i16(icdgen_load_u16le(&buffer[52]));
-    message->cam2_sensor_mounting_transform_beta_angle = icdgen_i16(icdgen_load_u16le(&buffer[54]));
-    message->cam2_sensor_mounting_transform_gamma_angle = icdgen_i16(icdgen_load_u16le(&buffer[56]));
+    message->cam2_mounting_alpha = icdgen_i16(icdgen_load_u16le(&buffer[52]));
+    message->cam2_mounting_beta = icdgen_i16(icdgen_load_u16le(&buffer[54]));
+    message->cam2_mounting_gamma = icdgen_i16(icdgen_load_u16le(&buffer[56]));
     message->cam2_detection_threshold = buffer[58];
     message->cam2_sensor_auto_adjust_mode = (buffer[59] & 0x01u) != 0u;
     message->cam2_sensor_exposure_time = icdgen_load_u16le(&buffer[60]);
@@ -940,17 +940,17 @@ static inline icd_status_t cubeacp_adcs_configuration_encode(
     icdgen_store_u16le(&buffer[12], ICDGEN_U16(message->y_rate_sensor_offset));
     icdgen_store_u16le(&buffer[14], ICDGEN_U16(message->z_rate_sensor_offset));
     ICDGEN_WRITE_ROW_LE(cubeacp_adcs_configuration_t, message, &buffer[16], 22u, rate_sensor_mult, css_threshold);
-    icdgen_store_u16le(&buffer[38], ICDGEN_U16(message->cam1_sensor_mounting_transform_alpha_angle));
-    icdgen_store_u16le(&buffer[40], ICDGEN_U16(message->cam1_sensor_mounting_transform_beta_angle));
-    icdgen_store_u16le(&buffer[42], ICDGEN_U16(message->cam1_sensor_mounting_transform_gamma_angle));
+    icdgen_store_u16le(&buffer[38], ICDGEN_U16(message->cam1_mounting_alpha));
+    icdgen_store_u16le(&buffer[40], ICDGEN_U16(message->cam1_mounting_beta));
+    icdgen_store_u16le(&buffer[42], ICDGEN_U16(message->cam1_mounting_gamma));
     buffer[44] = message->cam1_detection_threshold;
     buffer[45] = ICDGEN_U8(message->cam1_sensor_auto_adjust_mode);
     icdgen_store_u16le(&buffer[46], message->cam1_sensor_exposure_time);
     icdgen_store_u16le(&buffer[48], message->cam1_boresight_x);
     icdgen_store_u16le(&buffer[50], message->cam1_boresight_y);
-    icdgen_store_u16le(&buffer[52], ICDGEN_U16(message->cam2_sensor_mounting_transform_alpha_angle));
-    icdgen_store_u16le(&buffer[54], ICDGEN_U16(message->cam2_sensor_mounting_transform_beta_angle));
-    icdgen_store_u16le(&buffer[56], ICDGEN_U16(message->cam2_sensor_mounting_transform_gamma_angle));
+    icdgen_store_u16le(&buffer[52], ICDGEN_U16(message->cam2_mounting_alpha));
+    icdgen_store_u16le(&buffer[54], ICDGEN_U16(message->cam2_mounting_beta));
+    icdgen_store_u16le(&buffer[56], ICDGEN_U16(message->cam2_mounting_gamma));
     buffer[58] = message->cam2_detection_threshold;
     buffer[59] = ICDGEN_U8(message->cam2_sensor_auto_adjust_mode);
     icdgen_store_u16le(&buffer[60], message->cam2_sensor_exposure_time);
@@ -1287,68 +1287,65 @@ static inline icd_status_t cubeacp_adcs_configuration_set_css10_relative_scale_m
 }
 
 /** Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_cam1_sensor_mounting_transform_alpha_angle_mdeg(
-    const cubeacp_adcs_configuration_t *message)
+static inline int32_t cubeacp_adcs_configuration_cam1_mounting_alpha_mdeg(const cubeacp_adcs_configuration_t *message)
 {
-    return message->cam1_sensor_mounting_transform_alpha_angle * INT32_C(10);
+    return message->cam1_mounting_alpha * INT32_C(10);
 }
 
 /**
  * Sets Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_cam1_sensor_mounting_transform_alpha_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_alpha_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->cam1_sensor_mounting_transform_alpha_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->cam1_mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_cam1_sensor_mounting_transform_beta_angle_mdeg(
-    const cubeacp_adcs_configuration_t *message)
+static inline int32_t cubeacp_adcs_configuration_cam1_mounting_beta_mdeg(const cubeacp_adcs_configuration_t *message)
 {
-    return message->cam1_sensor_mounting_transform_beta_angle * INT32_C(10);
+    return message->cam1_mounting_beta * INT32_C(10);
 }
 
 /**
  * Sets Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_cam1_sensor_mounting_transform_beta_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_beta_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->cam1_sensor_mounting_transform_beta_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->cam1_mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_cam1_sensor_mounting_transform_gamma_angle_mdeg(
-    const cubeacp_adcs_configuration_t *message)
+static inline int32_t cubeacp_adcs_configuration_cam1_mounting_gamma_mdeg(const cubeacp_adcs_configuration_t *message)
 {
-    return message->cam1_sensor_mounting_transform_gamma_angle * INT32_C(10);
+    return message->cam1_mounting_gamma * INT32_C(10);
 }
 
 /**
  * Sets Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_cam1_sensor_mounting_transform_gamma_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_gamma_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->cam1_sensor_mounting_transform_gamma_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->cam1_mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
@@ -1391,68 +1388,65 @@ static inline icd_status_t cubeacp_adcs_configuration_set_cam1_boresight_y_milli
 }
 
 /** Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_cam2_sensor_mounting_transform_alpha_angle_mdeg(
-    const cubeacp_adcs_configuration_t *message)
+static inline int32_t cubeacp_adcs_configuration_cam2_mounting_alpha_mdeg(const cubeacp_adcs_configuration_t *message)
 {
-    return message->cam2_sensor_mounting_transform_alpha_angle * INT32_C(10);
+    return message->cam2_mounting_alpha * INT32_C(10);
 }
 
 /**
  * Sets Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_cam2_sensor_mounting_transform_alpha_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_alpha_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->cam2_sensor_mounting_transform_alpha_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->cam2_mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_cam2_sensor_mounting_transform_beta_angle_mdeg(
-    const cubeacp_adcs_configuration_t *message)
+static inline int32_t cubeacp_adcs_configuration_cam2_mounting_beta_mdeg(const cubeacp_adcs_configuration_t *message)
 {
-    return message->cam2_sensor_mounting_transform_beta_angle * INT32_C(10);
+    return message->cam2_mounting_beta * INT32_C(10);
 }
 
 /**
  * Sets Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_cam2_sensor_mounting_transform_beta_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_beta_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->cam2_sensor_mounting_transform_beta_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->cam2_mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_cam2_sensor_mounting_transform_gamma_angle_mdeg(
-    const cubeacp_adcs_configuration_t *message)
+static inline int32_t cubeacp_adcs_configuration_cam2_mounting_gamma_mdeg(const cubeacp_adcs_configuration_t *message)
 {
-    return message->cam2_sensor_mounting_transform_gamma_angle * INT32_C(10);
+    return message->cam2_mounting_gamma * INT32_C(10);
 }
 
 /**
  * Sets Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_cam2_sensor_mounting_transform_gamma_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_gamma_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->cam2_sensor_mounting_transform_gamma_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->cam2_mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
@@ -1495,68 +1489,68 @@ static inline icd_status_t cubeacp_adcs_configuration_set_cam2_boresight_y_milli
 }
 
 /** Magnetometer Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_magnetometer_mounting_transform_alpha_angle_mdeg(
+static inline int32_t cubeacp_adcs_configuration_magnetometer_mounting_alpha_mdeg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->magnetometer_mounting_transform_alpha_angle * INT32_C(10);
+    return message->magnetometer_mounting_alpha * INT32_C(10);
 }
 
 /**
  * Sets Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_transform_alpha_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_alpha_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_mounting_transform_alpha_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->magnetometer_mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Magnetometer Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_magnetometer_mounting_transform_beta_angle_mdeg(
+static inline int32_t cubeacp_adcs_configuration_magnetometer_mounting_beta_mdeg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->magnetometer_mounting_transform_beta_angle * INT32_C(10);
+    return message->magnetometer_mounting_beta * INT32_C(10);
 }
 
 /**
  * Sets Magnetometer Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_transform_beta_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_beta_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_mounting_transform_beta_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->magnetometer_mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Magnetometer Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_magnetometer_mounting_transform_gamma_angle_mdeg(
+static inline int32_t cubeacp_adcs_configuration_magnetometer_mounting_gamma_mdeg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->magnetometer_mounting_transform_gamma_angle * INT32_C(10);
+    return message->magnetometer_mounting_gamma * INT32_C(10);
 }
 
 /**
  * Sets Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_transform_gamma_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_gamma_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_mounting_transform_gamma_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->magnetometer_mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
@@ -1618,587 +1612,587 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_3
 }
 
 /** Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s11_milli(
+static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s11_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s11;
+    return message->magnetometer_sensitivity_s11;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s11_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s11_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s11 = ICDGEN_I16(value);
+    message->magnetometer_sensitivity_s11 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s22_milli(
+static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s22_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s22;
+    return message->magnetometer_sensitivity_s22;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s22_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s22_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s22 = ICDGEN_I16(value);
+    message->magnetometer_sensitivity_s22 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s33_milli(
+static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s33_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s33;
+    return message->magnetometer_sensitivity_s33;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s33_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s33_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s33 = ICDGEN_I16(value);
+    message->magnetometer_sensitivity_s33 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s12_milli(
+static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s12_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s12;
+    return message->magnetometer_sensitivity_s12;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s12_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s12_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s12 = ICDGEN_I16(value);
+    message->magnetometer_sensitivity_s12 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s13_milli(
+static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s13_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s13;
+    return message->magnetometer_sensitivity_s13;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s13_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s13_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s13 = ICDGEN_I16(value);
+    message->magnetometer_sensitivity_s13 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s21_milli(
+static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s21_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s21;
+    return message->magnetometer_sensitivity_s21;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s21_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s21_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s21 = ICDGEN_I16(value);
+    message->magnetometer_sensitivity_s21 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s23_milli(
+static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s23_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s23;
+    return message->magnetometer_sensitivity_s23;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s23_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s23_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s23 = ICDGEN_I16(value);
+    message->magnetometer_sensitivity_s23 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s31_milli(
+static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s31_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s31;
+    return message->magnetometer_sensitivity_s31;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s31_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s31_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s31 = ICDGEN_I16(value);
+    message->magnetometer_sensitivity_s31 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s32_milli(
+static inline int32_t cubeacp_adcs_configuration_magnetometer_sensitivity_s32_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s32;
+    return message->magnetometer_sensitivity_s32;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s32_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s32_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s32 = ICDGEN_I16(value);
+    message->magnetometer_sensitivity_s32 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_mounting_transform_alpha_angle_mdeg(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_mounting_alpha_mdeg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_mounting_transform_alpha_angle * INT32_C(10);
+    return message->redundant_mag_mounting_alpha * INT32_C(10);
 }
 
 /**
  * Sets Redundant Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value;
  * ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_mounting_transform_alpha_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_alpha_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_mounting_transform_alpha_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->redundant_mag_mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_mounting_transform_beta_angle_mdeg(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_mounting_beta_mdeg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_mounting_transform_beta_angle * INT32_C(10);
+    return message->redundant_mag_mounting_beta * INT32_C(10);
 }
 
 /**
  * Sets Redundant Magnetometer Mounting Transform Beta Angle in thousandths of deg to the nearest raw value;
  * ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_mounting_transform_beta_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_beta_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_mounting_transform_beta_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->redundant_mag_mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_mounting_transform_gamma_angle_mdeg(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_mounting_gamma_mdeg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_mounting_transform_gamma_angle * INT32_C(10);
+    return message->redundant_mag_mounting_gamma * INT32_C(10);
 }
 
 /**
  * Sets Redundant Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value;
  * ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_mounting_transform_gamma_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_gamma_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_mounting_transform_gamma_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->redundant_mag_mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Channel 1 Offset in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_channel_1_offset_milli(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_channel_1_offset_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_channel_1_offset;
+    return message->redundant_mag_channel_1_offset;
 }
 
 /**
  * Sets Redundant Magnetometer Channel 1 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_channel_1_offset_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_1_offset_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_channel_1_offset = ICDGEN_I16(value);
+    message->redundant_mag_channel_1_offset = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Channel 2 Offset in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_channel_2_offset_milli(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_channel_2_offset_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_channel_2_offset;
+    return message->redundant_mag_channel_2_offset;
 }
 
 /**
  * Sets Redundant Magnetometer Channel 2 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_channel_2_offset_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_2_offset_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_channel_2_offset = ICDGEN_I16(value);
+    message->redundant_mag_channel_2_offset = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Channel 3 Offset in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_channel_3_offset_milli(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_channel_3_offset_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_channel_3_offset;
+    return message->redundant_mag_channel_3_offset;
 }
 
 /**
  * Sets Redundant Magnetometer Channel 3 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_channel_3_offset_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_3_offset_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_channel_3_offset = ICDGEN_I16(value);
+    message->redundant_mag_channel_3_offset = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s11_milli(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s11_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_sensitivity_matrix_s11;
+    return message->redundant_mag_sensitivity_s11;
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s11_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s11_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_sensitivity_matrix_s11 = ICDGEN_I16(value);
+    message->redundant_mag_sensitivity_s11 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s22_milli(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s22_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_sensitivity_matrix_s22;
+    return message->redundant_mag_sensitivity_s22;
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s22_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s22_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_sensitivity_matrix_s22 = ICDGEN_I16(value);
+    message->redundant_mag_sensitivity_s22 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s33_milli(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s33_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_sensitivity_matrix_s33;
+    return message->redundant_mag_sensitivity_s33;
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s33_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s33_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_sensitivity_matrix_s33 = ICDGEN_I16(value);
+    message->redundant_mag_sensitivity_s33 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s12_milli(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s12_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_sensitivity_matrix_s12;
+    return message->redundant_mag_sensitivity_s12;
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s12_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s12_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_sensitivity_matrix_s12 = ICDGEN_I16(value);
+    message->redundant_mag_sensitivity_s12 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s13_milli(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s13_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_sensitivity_matrix_s13;
+    return message->redundant_mag_sensitivity_s13;
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s13_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s13_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_sensitivity_matrix_s13 = ICDGEN_I16(value);
+    message->redundant_mag_sensitivity_s13 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s21_milli(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s21_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_sensitivity_matrix_s21;
+    return message->redundant_mag_sensitivity_s21;
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s21_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s21_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_sensitivity_matrix_s21 = ICDGEN_I16(value);
+    message->redundant_mag_sensitivity_s21 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s23_milli(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s23_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_sensitivity_matrix_s23;
+    return message->redundant_mag_sensitivity_s23;
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s23_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s23_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_sensitivity_matrix_s23 = ICDGEN_I16(value);
+    message->redundant_mag_sensitivity_s23 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s31_milli(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s31_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_sensitivity_matrix_s31;
+    return message->redundant_mag_sensitivity_s31;
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s31_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s31_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_sensitivity_matrix_s31 = ICDGEN_I16(value);
+    message->redundant_mag_sensitivity_s31 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s32_milli(
+static inline int32_t cubeacp_adcs_configuration_redundant_mag_sensitivity_s32_milli(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->redundant_magnetometer_sensitivity_matrix_s32;
+    return message->redundant_mag_sensitivity_s32;
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s32_milli(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s32_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_sensitivity_matrix_s32 = ICDGEN_I16(value);
+    message->redundant_mag_sensitivity_s32 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** StarTracker Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_star_tracker_mounting_transform_alpha_angle_mdeg(
+static inline int32_t cubeacp_adcs_configuration_star_tracker_mounting_alpha_mdeg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->star_tracker_mounting_transform_alpha_angle * INT32_C(10);
+    return message->star_tracker_mounting_alpha * INT32_C(10);
 }
 
 /**
  * Sets StarTracker Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_transform_alpha_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_alpha_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->star_tracker_mounting_transform_alpha_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->star_tracker_mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** StarTracker Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_star_tracker_mounting_transform_beta_angle_mdeg(
+static inline int32_t cubeacp_adcs_configuration_star_tracker_mounting_beta_mdeg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->star_tracker_mounting_transform_beta_angle * INT32_C(10);
+    return message->star_tracker_mounting_beta * INT32_C(10);
 }
 
 /**
  * Sets StarTracker Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_transform_beta_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_beta_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->star_tracker_mounting_transform_beta_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->star_tracker_mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** StarTracker Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_adcs_configuration_star_tracker_mounting_transform_gamma_angle_mdeg(
+static inline int32_t cubeacp_adcs_configuration_star_tracker_mounting_gamma_mdeg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return message->star_tracker_mounting_transform_gamma_angle * INT32_C(10);
+    return message->star_tracker_mounting_gamma * INT32_C(10);
 }
 
 /**
  * Sets StarTracker Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_transform_gamma_angle_mdeg(
+static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_gamma_mdeg(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->star_tracker_mounting_transform_gamma_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->star_tracker_mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
@@ -2693,52 +2687,49 @@ static inline icd_status_t cubeacp_adcs_configuration_set_css10_relative_scale_p
 }
 
 /** Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_cam1_sensor_mounting_transform_alpha_angle_deg(
-    const cubeacp_adcs_configuration_t *message)
+static inline double cubeacp_adcs_configuration_cam1_mounting_alpha_deg(const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->cam1_sensor_mounting_transform_alpha_angle, 100);
+    return icdgen_quotient(message->cam1_mounting_alpha, 100);
 }
 
 /**
  * Sets Cam1 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_cam1_sensor_mounting_transform_alpha_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_alpha_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->cam1_sensor_mounting_transform_alpha_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->cam1_mounting_alpha, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_cam1_sensor_mounting_transform_beta_angle_deg(
-    const cubeacp_adcs_configuration_t *message)
+static inline double cubeacp_adcs_configuration_cam1_mounting_beta_deg(const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->cam1_sensor_mounting_transform_beta_angle, 100);
+    return icdgen_quotient(message->cam1_mounting_beta, 100);
 }
 
 /** Sets Cam1 Sensor Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_adcs_configuration_set_cam1_sensor_mounting_transform_beta_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_beta_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->cam1_sensor_mounting_transform_beta_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->cam1_mounting_beta, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_cam1_sensor_mounting_transform_gamma_angle_deg(
-    const cubeacp_adcs_configuration_t *message)
+static inline double cubeacp_adcs_configuration_cam1_mounting_gamma_deg(const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->cam1_sensor_mounting_transform_gamma_angle, 100);
+    return icdgen_quotient(message->cam1_mounting_gamma, 100);
 }
 
 /**
  * Sets Cam1 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_cam1_sensor_mounting_transform_gamma_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_gamma_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->cam1_sensor_mounting_transform_gamma_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->cam1_mounting_gamma, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Cam1 Boresight X in pixels: 0 to 655.35. */
@@ -2770,52 +2761,49 @@ static inline icd_status_t cubeacp_adcs_configuration_set_cam1_boresight_y_pixel
 }
 
 /** Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_cam2_sensor_mounting_transform_alpha_angle_deg(
-    const cubeacp_adcs_configuration_t *message)
+static inline double cubeacp_adcs_configuration_cam2_mounting_alpha_deg(const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->cam2_sensor_mounting_transform_alpha_angle, 100);
+    return icdgen_quotient(message->cam2_mounting_alpha, 100);
 }
 
 /**
  * Sets Cam2 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_cam2_sensor_mounting_transform_alpha_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_alpha_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->cam2_sensor_mounting_transform_alpha_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->cam2_mounting_alpha, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_cam2_sensor_mounting_transform_beta_angle_deg(
-    const cubeacp_adcs_configuration_t *message)
+static inline double cubeacp_adcs_configuration_cam2_mounting_beta_deg(const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->cam2_sensor_mounting_transform_beta_angle, 100);
+    return icdgen_quotient(message->cam2_mounting_beta, 100);
 }
 
 /** Sets Cam2 Sensor Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_adcs_configuration_set_cam2_sensor_mounting_transform_beta_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_beta_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->cam2_sensor_mounting_transform_beta_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->cam2_mounting_beta, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_cam2_sensor_mounting_transform_gamma_angle_deg(
-    const cubeacp_adcs_configuration_t *message)
+static inline double cubeacp_adcs_configuration_cam2_mounting_gamma_deg(const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->cam2_sensor_mounting_transform_gamma_angle, 100);
+    return icdgen_quotient(message->cam2_mounting_gamma, 100);
 }
 
 /**
  * Sets Cam2 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_cam2_sensor_mounting_transform_gamma_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_gamma_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->cam2_sensor_mounting_transform_gamma_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->cam2_mounting_gamma, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Cam2 Boresight X in pixels: 0 to 655.35. */
@@ -2847,68 +2835,54 @@ static inline icd_status_t cubeacp_adcs_configuration_set_cam2_boresight_y_pixel
 }
 
 /** Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_magnetometer_mounting_transform_alpha_angle_deg(
+static inline double cubeacp_adcs_configuration_magnetometer_mounting_alpha_deg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_mounting_transform_alpha_angle, 100);
+    return icdgen_quotient(message->magnetometer_mounting_alpha, 100);
 }
 
 /**
  * Sets Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_transform_alpha_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_alpha_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->magnetometer_mounting_transform_alpha_angle,
-        value,
-        1,
-        0,
-        100,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->magnetometer_mounting_alpha, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_magnetometer_mounting_transform_beta_angle_deg(
+static inline double cubeacp_adcs_configuration_magnetometer_mounting_beta_deg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_mounting_transform_beta_angle, 100);
+    return icdgen_quotient(message->magnetometer_mounting_beta, 100);
 }
 
 /**
  * Sets Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_transform_beta_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_beta_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_mounting_transform_beta_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->magnetometer_mounting_beta, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_magnetometer_mounting_transform_gamma_angle_deg(
+static inline double cubeacp_adcs_configuration_magnetometer_mounting_gamma_deg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_mounting_transform_gamma_angle, 100);
+    return icdgen_quotient(message->magnetometer_mounting_gamma, 100);
 }
 
 /**
  * Sets Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_transform_gamma_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_gamma_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->magnetometer_mounting_transform_gamma_angle,
-        value,
-        1,
-        0,
-        100,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->magnetometer_mounting_gamma, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767. */
@@ -2963,582 +2937,484 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_3
 }
 
 /** Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s11_physical(
+static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s11_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s11, 1000);
+    return icdgen_quotient(message->magnetometer_sensitivity_s11, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s11_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s11_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s11, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->magnetometer_sensitivity_s11, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s22_physical(
+static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s22_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s22, 1000);
+    return icdgen_quotient(message->magnetometer_sensitivity_s22, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s22_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s22_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s22, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->magnetometer_sensitivity_s22, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s33_physical(
+static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s33_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s33, 1000);
+    return icdgen_quotient(message->magnetometer_sensitivity_s33, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s33_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s33_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s33, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->magnetometer_sensitivity_s33, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s12_physical(
+static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s12_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s12, 1000);
+    return icdgen_quotient(message->magnetometer_sensitivity_s12, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s12_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s12_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s12, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->magnetometer_sensitivity_s12, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s13_physical(
+static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s13_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s13, 1000);
+    return icdgen_quotient(message->magnetometer_sensitivity_s13, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s13_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s13_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s13, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->magnetometer_sensitivity_s13, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s21_physical(
+static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s21_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s21, 1000);
+    return icdgen_quotient(message->magnetometer_sensitivity_s21, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s21_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s21_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s21, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->magnetometer_sensitivity_s21, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s23_physical(
+static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s23_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s23, 1000);
+    return icdgen_quotient(message->magnetometer_sensitivity_s23, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s23_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s23_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s23, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->magnetometer_sensitivity_s23, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s31_physical(
+static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s31_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s31, 1000);
+    return icdgen_quotient(message->magnetometer_sensitivity_s31, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s31_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s31_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s31, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->magnetometer_sensitivity_s31, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_matrix_s32_physical(
+static inline double cubeacp_adcs_configuration_magnetometer_sensitivity_s32_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s32, 1000);
+    return icdgen_quotient(message->magnetometer_sensitivity_s32, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_matrix_s32_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivity_s32_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s32, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->magnetometer_sensitivity_s32, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_mounting_transform_alpha_angle_deg(
+static inline double cubeacp_adcs_configuration_redundant_mag_mounting_alpha_deg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_mounting_transform_alpha_angle, 100);
+    return icdgen_quotient(message->redundant_mag_mounting_alpha, 100);
 }
 
 /**
  * Sets Redundant Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_mounting_transform_alpha_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_alpha_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->redundant_magnetometer_mounting_transform_alpha_angle,
-        value,
-        1,
-        0,
-        100,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_mounting_alpha, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_mounting_transform_beta_angle_deg(
+static inline double cubeacp_adcs_configuration_redundant_mag_mounting_beta_deg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_mounting_transform_beta_angle, 100);
+    return icdgen_quotient(message->redundant_mag_mounting_beta, 100);
 }
 
 /**
  * Sets Redundant Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_mounting_transform_beta_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_beta_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->redundant_magnetometer_mounting_transform_beta_angle,
-        value,
-        1,
-        0,
-        100,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_mounting_beta, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_mounting_transform_gamma_angle_deg(
+static inline double cubeacp_adcs_configuration_redundant_mag_mounting_gamma_deg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_mounting_transform_gamma_angle, 100);
+    return icdgen_quotient(message->redundant_mag_mounting_gamma, 100);
 }
 
 /**
  * Sets Redundant Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_mounting_transform_gamma_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting_gamma_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->redundant_magnetometer_mounting_transform_gamma_angle,
-        value,
-        1,
-        0,
-        100,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_mounting_gamma, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_channel_1_offset_physical(
+static inline double cubeacp_adcs_configuration_redundant_mag_channel_1_offset_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_channel_1_offset, 1000);
+    return icdgen_quotient(message->redundant_mag_channel_1_offset, 1000);
 }
 
 /**
  * Sets Redundant Magnetometer Channel 1 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_channel_1_offset_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_1_offset_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->redundant_magnetometer_channel_1_offset, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_channel_1_offset, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_channel_2_offset_physical(
+static inline double cubeacp_adcs_configuration_redundant_mag_channel_2_offset_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_channel_2_offset, 1000);
+    return icdgen_quotient(message->redundant_mag_channel_2_offset, 1000);
 }
 
 /**
  * Sets Redundant Magnetometer Channel 2 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_channel_2_offset_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_2_offset_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->redundant_magnetometer_channel_2_offset, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_channel_2_offset, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_channel_3_offset_physical(
+static inline double cubeacp_adcs_configuration_redundant_mag_channel_3_offset_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_channel_3_offset, 1000);
+    return icdgen_quotient(message->redundant_mag_channel_3_offset, 1000);
 }
 
 /**
  * Sets Redundant Magnetometer Channel 3 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there
  * is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_channel_3_offset_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_3_offset_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->redundant_magnetometer_channel_3_offset, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_channel_3_offset, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s11_physical(
+static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s11_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_sensitivity_matrix_s11, 1000);
+    return icdgen_quotient(message->redundant_mag_sensitivity_s11, 1000);
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s11_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s11_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->redundant_magnetometer_sensitivity_matrix_s11,
-        value,
-        1,
-        0,
-        1000,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_sensitivity_s11, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s22_physical(
+static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s22_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_sensitivity_matrix_s22, 1000);
+    return icdgen_quotient(message->redundant_mag_sensitivity_s22, 1000);
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s22_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s22_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->redundant_magnetometer_sensitivity_matrix_s22,
-        value,
-        1,
-        0,
-        1000,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_sensitivity_s22, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s33_physical(
+static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s33_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_sensitivity_matrix_s33, 1000);
+    return icdgen_quotient(message->redundant_mag_sensitivity_s33, 1000);
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s33_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s33_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->redundant_magnetometer_sensitivity_matrix_s33,
-        value,
-        1,
-        0,
-        1000,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_sensitivity_s33, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s12_physical(
+static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s12_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_sensitivity_matrix_s12, 1000);
+    return icdgen_quotient(message->redundant_mag_sensitivity_s12, 1000);
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s12_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s12_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->redundant_magnetometer_sensitivity_matrix_s12,
-        value,
-        1,
-        0,
-        1000,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_sensitivity_s12, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s13_physical(
+static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s13_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_sensitivity_matrix_s13, 1000);
+    return icdgen_quotient(message->redundant_mag_sensitivity_s13, 1000);
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s13_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s13_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->redundant_magnetometer_sensitivity_matrix_s13,
-        value,
-        1,
-        0,
-        1000,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_sensitivity_s13, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s21_physical(
+static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s21_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_sensitivity_matrix_s21, 1000);
+    return icdgen_quotient(message->redundant_mag_sensitivity_s21, 1000);
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s21_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s21_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->redundant_magnetometer_sensitivity_matrix_s21,
-        value,
-        1,
-        0,
-        1000,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_sensitivity_s21, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s23_physical(
+static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s23_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_sensitivity_matrix_s23, 1000);
+    return icdgen_quotient(message->redundant_mag_sensitivity_s23, 1000);
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s23_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s23_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->redundant_magnetometer_sensitivity_matrix_s23,
-        value,
-        1,
-        0,
-        1000,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_sensitivity_s23, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s31_physical(
+static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s31_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_sensitivity_matrix_s31, 1000);
+    return icdgen_quotient(message->redundant_mag_sensitivity_s31, 1000);
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s31_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s31_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->redundant_magnetometer_sensitivity_matrix_s31,
-        value,
-        1,
-        0,
-        1000,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_sensitivity_s31, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Redundant Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_adcs_configuration_redundant_magnetometer_sensitivity_matrix_s32_physical(
+static inline double cubeacp_adcs_configuration_redundant_mag_sensitivity_s32_physical(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_sensitivity_matrix_s32, 1000);
+    return icdgen_quotient(message->redundant_mag_sensitivity_s32, 1000);
 }
 
 /**
  * Sets Redundant Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_redundant_magnetometer_sensitivity_matrix_s32_physical(
+static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitivity_s32_physical(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->redundant_magnetometer_sensitivity_matrix_s32,
-        value,
-        1,
-        0,
-        1000,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_sensitivity_s32, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_star_tracker_mounting_transform_alpha_angle_deg(
+static inline double cubeacp_adcs_configuration_star_tracker_mounting_alpha_deg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->star_tracker_mounting_transform_alpha_angle, 100);
+    return icdgen_quotient(message->star_tracker_mounting_alpha, 100);
 }
 
 /**
  * Sets StarTracker Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_transform_alpha_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_alpha_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->star_tracker_mounting_transform_alpha_angle,
-        value,
-        1,
-        0,
-        100,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->star_tracker_mounting_alpha, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_star_tracker_mounting_transform_beta_angle_deg(
+static inline double cubeacp_adcs_configuration_star_tracker_mounting_beta_deg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->star_tracker_mounting_transform_beta_angle, 100);
+    return icdgen_quotient(message->star_tracker_mounting_beta, 100);
 }
 
 /** Sets StarTracker Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_transform_beta_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_beta_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->star_tracker_mounting_transform_beta_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->star_tracker_mounting_beta, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_adcs_configuration_star_tracker_mounting_transform_gamma_angle_deg(
+static inline double cubeacp_adcs_configuration_star_tracker_mounting_gamma_deg(
     const cubeacp_adcs_configuration_t *message)
 {
-    return icdgen_quotient(message->star_tracker_mounting_transform_gamma_angle, 100);
+    return icdgen_quotient(message->star_tracker_mounting_gamma, 100);
 }
 
 /**
  * Sets StarTracker Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_transform_gamma_angle_deg(
+static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_gamma_deg(
     cubeacp_adcs_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->star_tracker_mounting_transform_gamma_angle,
-        value,
-        1,
-        0,
-        100,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->star_tracker_mounting_gamma, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Star Tracker Error Margin in \%: 0 to 2.55. */

@@ -35,7 +35,7 @@ typedef struct {
      * @note Note ACP-005 (likely): Symbol C is the coulomb.
      * @note Note ACP-086 (certain): ADCS Temperatures: the redundant magnetometer is left out of the description.
      */
-    int16_t redundant_magnetometer_temperature;
+    int16_t redundant_mag_temperature;
 } cubeacp_adcs_temperatures_t;
 
 /** Makes every raw value 0. */
@@ -55,7 +55,7 @@ static inline icd_status_t cubeacp_adcs_temperatures_decode(
     }
     message->mcu_temperature = icdgen_i16(icdgen_load_u16le(&buffer[0]));
     message->magnetometer_temperature = icdgen_i16(icdgen_load_u16le(&buffer[2]));
-    message->redundant_magnetometer_temperature = icdgen_i16(icdgen_load_u16le(&buffer[4]));
+    message->redundant_mag_temperature = icdgen_i16(icdgen_load_u16le(&buffer[4]));
     return ICD_OK;
 }
 
@@ -70,7 +70,7 @@ static inline icd_status_t cubeacp_adcs_temperatures_encode(
     }
     icdgen_store_u16le(&buffer[0], ICDGEN_U16(message->mcu_temperature));
     icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->magnetometer_temperature));
-    icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->redundant_magnetometer_temperature));
+    icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->redundant_mag_temperature));
     return ICD_OK;
 }
 
@@ -93,24 +93,23 @@ static inline icd_status_t cubeacp_adcs_temperatures_set_magnetometer_temperatur
 }
 
 /** Redundant Magnetometer Temperature in thousandths of C, exact: -3276800 to 3276700. */
-static inline int32_t cubeacp_adcs_temperatures_redundant_magnetometer_temperature_mc(
-    const cubeacp_adcs_temperatures_t *message)
+static inline int32_t cubeacp_adcs_temperatures_redundant_mag_temperature_mc(const cubeacp_adcs_temperatures_t *message)
 {
-    return message->redundant_magnetometer_temperature * INT32_C(100);
+    return message->redundant_mag_temperature * INT32_C(100);
 }
 
 /**
  * Sets Redundant Magnetometer Temperature in thousandths of C to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_adcs_temperatures_set_redundant_magnetometer_temperature_mc(
+static inline icd_status_t cubeacp_adcs_temperatures_set_redundant_mag_temperature_mc(
     cubeacp_adcs_temperatures_t *message,
     int32_t value)
 {
     if (value < -3276850 || value > 3276749) {
         return ICD_ERROR_RANGE;
     }
-    message->redundant_magnetometer_temperature = ICDGEN_I16(icdgen_nearest32(value, 100));
+    message->redundant_mag_temperature = ICDGEN_I16(icdgen_nearest32(value, 100));
     return ICD_OK;
 }
 
@@ -131,18 +130,17 @@ static inline icd_status_t cubeacp_adcs_temperatures_set_magnetometer_temperatur
 }
 
 /** Redundant Magnetometer Temperature in C: -3276.8 to 3276.7. */
-static inline double cubeacp_adcs_temperatures_redundant_magnetometer_temperature_c(
-    const cubeacp_adcs_temperatures_t *message)
+static inline double cubeacp_adcs_temperatures_redundant_mag_temperature_c(const cubeacp_adcs_temperatures_t *message)
 {
-    return icdgen_quotient(message->redundant_magnetometer_temperature, 10);
+    return icdgen_quotient(message->redundant_mag_temperature, 10);
 }
 
 /** Sets Redundant Magnetometer Temperature in C to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_adcs_temperatures_set_redundant_magnetometer_temperature_c(
+static inline icd_status_t cubeacp_adcs_temperatures_set_redundant_mag_temperature_c(
     cubeacp_adcs_temperatures_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->redundant_magnetometer_temperature, value, 1, 0, 10, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->redundant_mag_temperature, value, 1, 0, 10, INT16_MIN, INT16_MAX);
 }
 
 #endif /* ICDGEN_NO_DOUBLE */

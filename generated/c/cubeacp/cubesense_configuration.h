@@ -25,19 +25,19 @@ typedef struct {
      * 327.67 deg.
      * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
-    int16_t cam1_sensor_mounting_transform_alpha_angle;
+    int16_t cam1_mounting_alpha;
     /**
      * Cam1 Sensor Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
      * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
-    int16_t cam1_sensor_mounting_transform_beta_angle;
+    int16_t cam1_mounting_beta;
     /**
      * Cam1 Sensor Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
      * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
-    int16_t cam1_sensor_mounting_transform_gamma_angle;
+    int16_t cam1_mounting_gamma;
     /**
      * Cam1 detection threshold: bits 48 to 55, raw 0 to 255.
      * @note Note ACP-150 (certain): Cam1 detection threshold has no description in one table.
@@ -66,19 +66,19 @@ typedef struct {
      * 327.67 deg.
      * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
-    int16_t cam2_sensor_mounting_transform_alpha_angle;
+    int16_t cam2_mounting_alpha;
     /**
      * Cam2 Sensor Mounting Transform Beta Angle: bits 128 to 143, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
      * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
-    int16_t cam2_sensor_mounting_transform_beta_angle;
+    int16_t cam2_mounting_beta;
     /**
      * Cam2 Sensor Mounting Transform Gamma Angle: bits 144 to 159, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
      * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
-    int16_t cam2_sensor_mounting_transform_gamma_angle;
+    int16_t cam2_mounting_gamma;
     /** Cam2 detection threshold: bits 160 to 167, raw 0 to 255. */
     uint8_t cam2_detection_threshold;
     /** Cam2 sensor auto adjust mode: bit 168. */
@@ -339,17 +339,17 @@ static inline icd_status_t cubeacp_cubesense_configuration_decode(
     if (length != CUBEACP_CUBESENSE_CONFIGURATION_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    message->cam1_sensor_mounting_transform_alpha_angle = icdgen_i16(icdgen_load_u16le(&buffer[0]));
-    message->cam1_sensor_mounting_transform_beta_angle = icdgen_i16(icdgen_load_u16le(&buffer[2]));
-    message->cam1_sensor_mounting_transform_gamma_angle = icdgen_i16(icdgen_load_u16le(&buffer[4]));
+    message->cam1_mounting_alpha = icdgen_i16(icdgen_load_u16le(&buffer[0]));
+    message->cam1_mounting_beta = icdgen_i16(icdgen_load_u16le(&buffer[2]));
+    message->cam1_mounting_gamma = icdgen_i16(icdgen_load_u16le(&buffer[4]));
     message->cam1_detection_threshold = buffer[6];
     message->cam1_sensor_auto_adjust_mode = (buffer[7] & 0x01u) != 0u;
     message->cam1_sensor_exposure_time = icdgen_load_u16le(&buffer[8]);
     message->cam1_boresight_x = icdgen_load_u16le(&buffer[10]);
     message->cam1_boresight_y = icdgen_load_u16le(&buffer[12]);
-    message->cam2_sensor_mounting_transform_alpha_angle = icdgen_i16(icdgen_load_u16le(&buffer[14]));
-    message->cam2_sensor_mounting_transform_beta_angle = icdgen_i16(icdgen_load_u16le(&buffer[16]));
-    message->cam2_sensor_mounting_transform_gamma_angle = icdgen_i16(icdgen_load_u16le(&buffer[18]));
+    message->cam2_mounting_alpha = icdgen_i16(icdgen_load_u16le(&buffer[14]));
+    message->cam2_mounting_beta = icdgen_i16(icdgen_load_u16le(&buffer[16]));
+    message->cam2_mounting_gamma = icdgen_i16(icdgen_load_u16le(&buffer[18]));
     message->cam2_detection_threshold = buffer[20];
     message->cam2_sensor_auto_adjust_mode = (buffer[21] & 0x01u) != 0u;
     message->cam2_sensor_exposure_time = icdgen_load_u16le(&buffer[22]);
@@ -378,17 +378,17 @@ static inline icd_status_t cubeacp_cubesense_configuration_encode(
     if (capacity < CUBEACP_CUBESENSE_CONFIGURATION_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    icdgen_store_u16le(&buffer[0], ICDGEN_U16(message->cam1_sensor_mounting_transform_alpha_angle));
-    icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->cam1_sensor_mounting_transform_beta_angle));
-    icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->cam1_sensor_mounting_transform_gamma_angle));
+    icdgen_store_u16le(&buffer[0], ICDGEN_U16(message->cam1_mounting_alpha));
+    icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->cam1_mounting_beta));
+    icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->cam1_mounting_gamma));
     buffer[6] = message->cam1_detection_threshold;
     buffer[7] = ICDGEN_U8(message->cam1_sensor_auto_adjust_mode);
     icdgen_store_u16le(&buffer[8], message->cam1_sensor_exposure_time);
     icdgen_store_u16le(&buffer[10], message->cam1_boresight_x);
     icdgen_store_u16le(&buffer[12], message->cam1_boresight_y);
-    icdgen_store_u16le(&buffer[14], ICDGEN_U16(message->cam2_sensor_mounting_transform_alpha_angle));
-    icdgen_store_u16le(&buffer[16], ICDGEN_U16(message->cam2_sensor_mounting_transform_beta_angle));
-    icdgen_store_u16le(&buffer[18], ICDGEN_U16(message->cam2_sensor_mounting_transform_gamma_angle));
+    icdgen_store_u16le(&buffer[14], ICDGEN_U16(message->cam2_mounting_alpha));
+    icdgen_store_u16le(&buffer[16], ICDGEN_U16(message->cam2_mounting_beta));
+    icdgen_store_u16le(&buffer[18], ICDGEN_U16(message->cam2_mounting_gamma));
     buffer[20] = message->cam2_detection_threshold;
     buffer[21] = ICDGEN_U8(message->cam2_sensor_auto_adjust_mode);
     icdgen_store_u16le(&buffer[22], message->cam2_sensor_exposure_time);
@@ -409,68 +409,68 @@ static inline icd_status_t cubeacp_cubesense_configuration_encode(
 }
 
 /** Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_cubesense_configuration_cam1_sensor_mounting_transform_alpha_angle_mdeg(
+static inline int32_t cubeacp_cubesense_configuration_cam1_mounting_alpha_mdeg(
     const cubeacp_cubesense_configuration_t *message)
 {
-    return message->cam1_sensor_mounting_transform_alpha_angle * INT32_C(10);
+    return message->cam1_mounting_alpha * INT32_C(10);
 }
 
 /**
  * Sets Cam1 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_sensor_mounting_transform_alpha_angle_mdeg(
+static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_alpha_mdeg(
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->cam1_sensor_mounting_transform_alpha_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->cam1_mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_cubesense_configuration_cam1_sensor_mounting_transform_beta_angle_mdeg(
+static inline int32_t cubeacp_cubesense_configuration_cam1_mounting_beta_mdeg(
     const cubeacp_cubesense_configuration_t *message)
 {
-    return message->cam1_sensor_mounting_transform_beta_angle * INT32_C(10);
+    return message->cam1_mounting_beta * INT32_C(10);
 }
 
 /**
  * Sets Cam1 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_sensor_mounting_transform_beta_angle_mdeg(
+static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_beta_mdeg(
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->cam1_sensor_mounting_transform_beta_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->cam1_mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_cubesense_configuration_cam1_sensor_mounting_transform_gamma_angle_mdeg(
+static inline int32_t cubeacp_cubesense_configuration_cam1_mounting_gamma_mdeg(
     const cubeacp_cubesense_configuration_t *message)
 {
-    return message->cam1_sensor_mounting_transform_gamma_angle * INT32_C(10);
+    return message->cam1_mounting_gamma * INT32_C(10);
 }
 
 /**
  * Sets Cam1 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_sensor_mounting_transform_gamma_angle_mdeg(
+static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_gamma_mdeg(
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->cam1_sensor_mounting_transform_gamma_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->cam1_mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
@@ -513,68 +513,68 @@ static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_boresight_y_
 }
 
 /** Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_cubesense_configuration_cam2_sensor_mounting_transform_alpha_angle_mdeg(
+static inline int32_t cubeacp_cubesense_configuration_cam2_mounting_alpha_mdeg(
     const cubeacp_cubesense_configuration_t *message)
 {
-    return message->cam2_sensor_mounting_transform_alpha_angle * INT32_C(10);
+    return message->cam2_mounting_alpha * INT32_C(10);
 }
 
 /**
  * Sets Cam2 Sensor Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_sensor_mounting_transform_alpha_angle_mdeg(
+static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_alpha_mdeg(
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->cam2_sensor_mounting_transform_alpha_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->cam2_mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_cubesense_configuration_cam2_sensor_mounting_transform_beta_angle_mdeg(
+static inline int32_t cubeacp_cubesense_configuration_cam2_mounting_beta_mdeg(
     const cubeacp_cubesense_configuration_t *message)
 {
-    return message->cam2_sensor_mounting_transform_beta_angle * INT32_C(10);
+    return message->cam2_mounting_beta * INT32_C(10);
 }
 
 /**
  * Sets Cam2 Sensor Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_sensor_mounting_transform_beta_angle_mdeg(
+static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_beta_mdeg(
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->cam2_sensor_mounting_transform_beta_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->cam2_mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_cubesense_configuration_cam2_sensor_mounting_transform_gamma_angle_mdeg(
+static inline int32_t cubeacp_cubesense_configuration_cam2_mounting_gamma_mdeg(
     const cubeacp_cubesense_configuration_t *message)
 {
-    return message->cam2_sensor_mounting_transform_gamma_angle * INT32_C(10);
+    return message->cam2_mounting_gamma * INT32_C(10);
 }
 
 /**
  * Sets Cam2 Sensor Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_sensor_mounting_transform_gamma_angle_mdeg(
+static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_gamma_mdeg(
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->cam2_sensor_mounting_transform_gamma_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->cam2_mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
@@ -619,52 +619,52 @@ static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_boresight_y_
 #ifndef ICDGEN_NO_DOUBLE
 
 /** Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_cubesense_configuration_cam1_sensor_mounting_transform_alpha_angle_deg(
+static inline double cubeacp_cubesense_configuration_cam1_mounting_alpha_deg(
     const cubeacp_cubesense_configuration_t *message)
 {
-    return icdgen_quotient(message->cam1_sensor_mounting_transform_alpha_angle, 100);
+    return icdgen_quotient(message->cam1_mounting_alpha, 100);
 }
 
 /**
  * Sets Cam1 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_sensor_mounting_transform_alpha_angle_deg(
+static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_alpha_deg(
     cubeacp_cubesense_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->cam1_sensor_mounting_transform_alpha_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->cam1_mounting_alpha, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_cubesense_configuration_cam1_sensor_mounting_transform_beta_angle_deg(
+static inline double cubeacp_cubesense_configuration_cam1_mounting_beta_deg(
     const cubeacp_cubesense_configuration_t *message)
 {
-    return icdgen_quotient(message->cam1_sensor_mounting_transform_beta_angle, 100);
+    return icdgen_quotient(message->cam1_mounting_beta, 100);
 }
 
 /** Sets Cam1 Sensor Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_sensor_mounting_transform_beta_angle_deg(
+static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_beta_deg(
     cubeacp_cubesense_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->cam1_sensor_mounting_transform_beta_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->cam1_mounting_beta, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_cubesense_configuration_cam1_sensor_mounting_transform_gamma_angle_deg(
+static inline double cubeacp_cubesense_configuration_cam1_mounting_gamma_deg(
     const cubeacp_cubesense_configuration_t *message)
 {
-    return icdgen_quotient(message->cam1_sensor_mounting_transform_gamma_angle, 100);
+    return icdgen_quotient(message->cam1_mounting_gamma, 100);
 }
 
 /**
  * Sets Cam1 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_sensor_mounting_transform_gamma_angle_deg(
+static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_gamma_deg(
     cubeacp_cubesense_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->cam1_sensor_mounting_transform_gamma_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->cam1_mounting_gamma, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Cam1 Boresight X in pixels: 0 to 655.35. */
@@ -698,52 +698,52 @@ static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_boresight_y_
 }
 
 /** Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_cubesense_configuration_cam2_sensor_mounting_transform_alpha_angle_deg(
+static inline double cubeacp_cubesense_configuration_cam2_mounting_alpha_deg(
     const cubeacp_cubesense_configuration_t *message)
 {
-    return icdgen_quotient(message->cam2_sensor_mounting_transform_alpha_angle, 100);
+    return icdgen_quotient(message->cam2_mounting_alpha, 100);
 }
 
 /**
  * Sets Cam2 Sensor Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_sensor_mounting_transform_alpha_angle_deg(
+static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_alpha_deg(
     cubeacp_cubesense_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->cam2_sensor_mounting_transform_alpha_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->cam2_mounting_alpha, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_cubesense_configuration_cam2_sensor_mounting_transform_beta_angle_deg(
+static inline double cubeacp_cubesense_configuration_cam2_mounting_beta_deg(
     const cubeacp_cubesense_configuration_t *message)
 {
-    return icdgen_quotient(message->cam2_sensor_mounting_transform_beta_angle, 100);
+    return icdgen_quotient(message->cam2_mounting_beta, 100);
 }
 
 /** Sets Cam2 Sensor Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_sensor_mounting_transform_beta_angle_deg(
+static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_beta_deg(
     cubeacp_cubesense_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->cam2_sensor_mounting_transform_beta_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->cam2_mounting_beta, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_cubesense_configuration_cam2_sensor_mounting_transform_gamma_angle_deg(
+static inline double cubeacp_cubesense_configuration_cam2_mounting_gamma_deg(
     const cubeacp_cubesense_configuration_t *message)
 {
-    return icdgen_quotient(message->cam2_sensor_mounting_transform_gamma_angle, 100);
+    return icdgen_quotient(message->cam2_mounting_gamma, 100);
 }
 
 /**
  * Sets Cam2 Sensor Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_sensor_mounting_transform_gamma_angle_deg(
+static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_gamma_deg(
     cubeacp_cubesense_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->cam2_sensor_mounting_transform_gamma_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->cam2_mounting_gamma, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Cam2 Boresight X in pixels: 0 to 655.35. */

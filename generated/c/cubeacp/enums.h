@@ -192,9 +192,9 @@ enum {
      */
     CUBEACP_ESTIM_MODE_SELECT_MAGNETOMETER_RATE_FILTER = 2,
     /** Magnetometer rate filter with pitch estimation (3). */
-    CUBEACP_ESTIM_MODE_SELECT_MAGNETOMETER_RATE_FILTER_WITH_PITCH_ESTIMATION = 3,
+    CUBEACP_ESTIM_MODE_SELECT_MAGNETOMETER_RATE_FILTER_WITH_PITCH = 3,
     /** Magnetometer and Fine-sun TRIAD algorithm (4). */
-    CUBEACP_ESTIM_MODE_SELECT_MAGNETOMETER_AND_FINE_SUN_TRIAD_ALGORITHM = 4,
+    CUBEACP_ESTIM_MODE_SELECT_MAGNETOMETER_AND_FINE_SUN_TRIAD = 4,
     /** Full-state EKF (5). */
     CUBEACP_ESTIM_MODE_SELECT_FULL_STATE_EKF = 5,
     /** MEMS gyro EKF (6). */
@@ -213,9 +213,9 @@ static inline const char *cubeacp_estim_mode_select_name(cubeacp_estim_mode_sele
         return "MEMS rate sensing";
     case CUBEACP_ESTIM_MODE_SELECT_MAGNETOMETER_RATE_FILTER:
         return "Magnetometer rate filter";
-    case CUBEACP_ESTIM_MODE_SELECT_MAGNETOMETER_RATE_FILTER_WITH_PITCH_ESTIMATION:
+    case CUBEACP_ESTIM_MODE_SELECT_MAGNETOMETER_RATE_FILTER_WITH_PITCH:
         return "Magnetometer rate filter with pitch estimation";
-    case CUBEACP_ESTIM_MODE_SELECT_MAGNETOMETER_AND_FINE_SUN_TRIAD_ALGORITHM:
+    case CUBEACP_ESTIM_MODE_SELECT_MAGNETOMETER_AND_FINE_SUN_TRIAD:
         return "Magnetometer and Fine-sun TRIAD algorithm";
     case CUBEACP_ESTIM_MODE_SELECT_FULL_STATE_EKF:
         return "Full-state EKF";
@@ -252,9 +252,9 @@ enum {
     /** Variance exceeds limits (7). */
     CUBEACP_GPS_SOLUTION_STATUS_VARIANCE_EXCEEDS_LIMITS = 7,
     /** Large residuals make position unreliable (8). */
-    CUBEACP_GPS_SOLUTION_STATUS_LARGE_RESIDUALS_MAKE_POSITION_UNRELIABLE = 8,
+    CUBEACP_GPS_SOLUTION_STATUS_LARGE_RESIDUALS = 8,
     /** Calculating comparison to user provided (9). */
-    CUBEACP_GPS_SOLUTION_STATUS_CALCULATING_COMPARISON_TO_USER_PROVIDED = 9,
+    CUBEACP_GPS_SOLUTION_STATUS_COMPARING_TO_USER_PROVIDED = 9,
     /** The fixed position is invalid (10). */
     CUBEACP_GPS_SOLUTION_STATUS_THE_FIXED_POSITION_IS_INVALID = 10,
     /** Position type is unauthorized (11). */
@@ -281,9 +281,9 @@ static inline const char *cubeacp_gps_solution_status_name(cubeacp_gps_solution_
         return "Height or velocity limits exceeded";
     case CUBEACP_GPS_SOLUTION_STATUS_VARIANCE_EXCEEDS_LIMITS:
         return "Variance exceeds limits";
-    case CUBEACP_GPS_SOLUTION_STATUS_LARGE_RESIDUALS_MAKE_POSITION_UNRELIABLE:
+    case CUBEACP_GPS_SOLUTION_STATUS_LARGE_RESIDUALS:
         return "Large residuals make position unreliable";
-    case CUBEACP_GPS_SOLUTION_STATUS_CALCULATING_COMPARISON_TO_USER_PROVIDED:
+    case CUBEACP_GPS_SOLUTION_STATUS_COMPARING_TO_USER_PROVIDED:
         return "Calculating comparison to user provided";
     case CUBEACP_GPS_SOLUTION_STATUS_THE_FIXED_POSITION_IS_INVALID:
         return "The fixed position is invalid";

@@ -20,15 +20,15 @@
 /** Raw values. */
 typedef struct {
     /** IGRF Modelled Magnetic Field X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 uT. */
-    int16_t igrf_modelled_magnetic_field_x;
+    int16_t field_x;
     /**
      * IGRF Modelled Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 uT.
      */
-    int16_t igrf_modelled_magnetic_field_y;
+    int16_t field_y;
     /**
      * IGRF Modelled Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 uT.
      */
-    int16_t igrf_modelled_magnetic_field_z;
+    int16_t field_z;
 } cubeacp_igrf_modelled_magnetic_field_vector_t;
 
 /** Makes every raw value 0. */
@@ -47,9 +47,9 @@ static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_decode(
     if (length != CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    message->igrf_modelled_magnetic_field_x = icdgen_i16(icdgen_load_u16le(&buffer[0]));
-    message->igrf_modelled_magnetic_field_y = icdgen_i16(icdgen_load_u16le(&buffer[2]));
-    message->igrf_modelled_magnetic_field_z = icdgen_i16(icdgen_load_u16le(&buffer[4]));
+    message->field_x = icdgen_i16(icdgen_load_u16le(&buffer[0]));
+    message->field_y = icdgen_i16(icdgen_load_u16le(&buffer[2]));
+    message->field_z = icdgen_i16(icdgen_load_u16le(&buffer[4]));
     return ICD_OK;
 }
 
@@ -62,120 +62,120 @@ static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_encode(
     if (capacity < CUBEACP_IGRF_MODELLED_MAGNETIC_FIELD_VECTOR_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    icdgen_store_u16le(&buffer[0], ICDGEN_U16(message->igrf_modelled_magnetic_field_x));
-    icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->igrf_modelled_magnetic_field_y));
-    icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->igrf_modelled_magnetic_field_z));
+    icdgen_store_u16le(&buffer[0], ICDGEN_U16(message->field_x));
+    icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->field_y));
+    icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->field_z));
     return ICD_OK;
 }
 
 /** IGRF Modelled Magnetic Field X in thousandths of uT, exact: -327680 to 327670. */
-static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_igrf_modelled_magnetic_field_x_nt(
+static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_field_x_nt(
     const cubeacp_igrf_modelled_magnetic_field_vector_t *message)
 {
-    return message->igrf_modelled_magnetic_field_x * INT32_C(10);
+    return message->field_x * INT32_C(10);
 }
 
 /**
  * Sets IGRF Modelled Magnetic Field X in thousandths of uT to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_igrf_modelled_magnetic_field_x_nt(
+static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_x_nt(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->igrf_modelled_magnetic_field_x = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->field_x = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** IGRF Modelled Magnetic Field Y in thousandths of uT, exact: -327680 to 327670. */
-static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_igrf_modelled_magnetic_field_y_nt(
+static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_field_y_nt(
     const cubeacp_igrf_modelled_magnetic_field_vector_t *message)
 {
-    return message->igrf_modelled_magnetic_field_y * INT32_C(10);
+    return message->field_y * INT32_C(10);
 }
 
 /**
  * Sets IGRF Modelled Magnetic Field Y in thousandths of uT to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_igrf_modelled_magnetic_field_y_nt(
+static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_y_nt(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->igrf_modelled_magnetic_field_y = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->field_y = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** IGRF Modelled Magnetic Field Z in thousandths of uT, exact: -327680 to 327670. */
-static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_igrf_modelled_magnetic_field_z_nt(
+static inline int32_t cubeacp_igrf_modelled_magnetic_field_vector_field_z_nt(
     const cubeacp_igrf_modelled_magnetic_field_vector_t *message)
 {
-    return message->igrf_modelled_magnetic_field_z * INT32_C(10);
+    return message->field_z * INT32_C(10);
 }
 
 /**
  * Sets IGRF Modelled Magnetic Field Z in thousandths of uT to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_igrf_modelled_magnetic_field_z_nt(
+static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_z_nt(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->igrf_modelled_magnetic_field_z = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->field_z = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 #ifndef ICDGEN_NO_DOUBLE
 
 /** IGRF Modelled Magnetic Field X in uT: -327.68 to 327.67. */
-static inline double cubeacp_igrf_modelled_magnetic_field_vector_igrf_modelled_magnetic_field_x_ut(
+static inline double cubeacp_igrf_modelled_magnetic_field_vector_field_x_ut(
     const cubeacp_igrf_modelled_magnetic_field_vector_t *message)
 {
-    return icdgen_quotient(message->igrf_modelled_magnetic_field_x, 100);
+    return icdgen_quotient(message->field_x, 100);
 }
 
 /** Sets IGRF Modelled Magnetic Field X in uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_igrf_modelled_magnetic_field_x_ut(
+static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_x_ut(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->igrf_modelled_magnetic_field_x, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->field_x, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** IGRF Modelled Magnetic Field Y in uT: -327.68 to 327.67. */
-static inline double cubeacp_igrf_modelled_magnetic_field_vector_igrf_modelled_magnetic_field_y_ut(
+static inline double cubeacp_igrf_modelled_magnetic_field_vector_field_y_ut(
     const cubeacp_igrf_modelled_magnetic_field_vector_t *message)
 {
-    return icdgen_quotient(message->igrf_modelled_magnetic_field_y, 100);
+    return icdgen_quotient(message->field_y, 100);
 }
 
 /** Sets IGRF Modelled Magnetic Field Y in uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_igrf_modelled_magnetic_field_y_ut(
+static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_y_ut(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->igrf_modelled_magnetic_field_y, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->field_y, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** IGRF Modelled Magnetic Field Z in uT: -327.68 to 327.67. */
-static inline double cubeacp_igrf_modelled_magnetic_field_vector_igrf_modelled_magnetic_field_z_ut(
+static inline double cubeacp_igrf_modelled_magnetic_field_vector_field_z_ut(
     const cubeacp_igrf_modelled_magnetic_field_vector_t *message)
 {
-    return icdgen_quotient(message->igrf_modelled_magnetic_field_z, 100);
+    return icdgen_quotient(message->field_z, 100);
 }
 
 /** Sets IGRF Modelled Magnetic Field Z in uT to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_igrf_modelled_magnetic_field_z_ut(
+static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field_z_ut(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->igrf_modelled_magnetic_field_z, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->field_z, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 #endif /* ICDGEN_NO_DOUBLE */

@@ -25,17 +25,17 @@ typedef struct {
      * Inertial Reference X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
      * @note Note ACP-188 (open): Inertial reference: unit vector without a frame.
      */
-    int16_t inertial_reference_x;
+    int16_t reference_x;
     /**
      * Inertial Reference Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
      * @note Note ACP-188 (open): Inertial reference: unit vector without a frame.
      */
-    int16_t inertial_reference_y;
+    int16_t reference_y;
     /**
      * Inertial Reference Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
      * @note Note ACP-188 (open): Inertial reference: unit vector without a frame.
      */
-    int16_t inertial_reference_z;
+    int16_t reference_z;
 } cubeacp_inertial_pointing_reference_vector_t;
 
 /** Makes every raw value 0. */
@@ -54,9 +54,9 @@ static inline icd_status_t cubeacp_inertial_pointing_reference_vector_decode(
     if (length != CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    message->inertial_reference_x = icdgen_i16(icdgen_load_u16le(&buffer[0]));
-    message->inertial_reference_y = icdgen_i16(icdgen_load_u16le(&buffer[2]));
-    message->inertial_reference_z = icdgen_i16(icdgen_load_u16le(&buffer[4]));
+    message->reference_x = icdgen_i16(icdgen_load_u16le(&buffer[0]));
+    message->reference_y = icdgen_i16(icdgen_load_u16le(&buffer[2]));
+    message->reference_z = icdgen_i16(icdgen_load_u16le(&buffer[4]));
     return ICD_OK;
 }
 
@@ -69,114 +69,114 @@ static inline icd_status_t cubeacp_inertial_pointing_reference_vector_encode(
     if (capacity < CUBEACP_INERTIAL_POINTING_REFERENCE_VECTOR_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    icdgen_store_u16le(&buffer[0], ICDGEN_U16(message->inertial_reference_x));
-    icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->inertial_reference_y));
-    icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->inertial_reference_z));
+    icdgen_store_u16le(&buffer[0], ICDGEN_U16(message->reference_x));
+    icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->reference_y));
+    icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->reference_z));
     return ICD_OK;
 }
 
 /** Inertial Reference X in millionths, exact: -3276800 to 3276700. */
-static inline int32_t cubeacp_inertial_pointing_reference_vector_inertial_reference_x_micro(
+static inline int32_t cubeacp_inertial_pointing_reference_vector_reference_x_micro(
     const cubeacp_inertial_pointing_reference_vector_t *message)
 {
-    return message->inertial_reference_x * INT32_C(100);
+    return message->reference_x * INT32_C(100);
 }
 
 /** Sets Inertial Reference X in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_inertial_reference_x_micro(
+static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_x_micro(
     cubeacp_inertial_pointing_reference_vector_t *message,
     int32_t value)
 {
     if (value < -3276850 || value > 3276749) {
         return ICD_ERROR_RANGE;
     }
-    message->inertial_reference_x = ICDGEN_I16(icdgen_nearest32(value, 100));
+    message->reference_x = ICDGEN_I16(icdgen_nearest32(value, 100));
     return ICD_OK;
 }
 
 /** Inertial Reference Y in millionths, exact: -3276800 to 3276700. */
-static inline int32_t cubeacp_inertial_pointing_reference_vector_inertial_reference_y_micro(
+static inline int32_t cubeacp_inertial_pointing_reference_vector_reference_y_micro(
     const cubeacp_inertial_pointing_reference_vector_t *message)
 {
-    return message->inertial_reference_y * INT32_C(100);
+    return message->reference_y * INT32_C(100);
 }
 
 /** Sets Inertial Reference Y in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_inertial_reference_y_micro(
+static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_y_micro(
     cubeacp_inertial_pointing_reference_vector_t *message,
     int32_t value)
 {
     if (value < -3276850 || value > 3276749) {
         return ICD_ERROR_RANGE;
     }
-    message->inertial_reference_y = ICDGEN_I16(icdgen_nearest32(value, 100));
+    message->reference_y = ICDGEN_I16(icdgen_nearest32(value, 100));
     return ICD_OK;
 }
 
 /** Inertial Reference Z in millionths, exact: -3276800 to 3276700. */
-static inline int32_t cubeacp_inertial_pointing_reference_vector_inertial_reference_z_micro(
+static inline int32_t cubeacp_inertial_pointing_reference_vector_reference_z_micro(
     const cubeacp_inertial_pointing_reference_vector_t *message)
 {
-    return message->inertial_reference_z * INT32_C(100);
+    return message->reference_z * INT32_C(100);
 }
 
 /** Sets Inertial Reference Z in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_inertial_reference_z_micro(
+static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_z_micro(
     cubeacp_inertial_pointing_reference_vector_t *message,
     int32_t value)
 {
     if (value < -3276850 || value > 3276749) {
         return ICD_ERROR_RANGE;
     }
-    message->inertial_reference_z = ICDGEN_I16(icdgen_nearest32(value, 100));
+    message->reference_z = ICDGEN_I16(icdgen_nearest32(value, 100));
     return ICD_OK;
 }
 
 #ifndef ICDGEN_NO_DOUBLE
 
 /** Inertial Reference X, as a physical value: -3.2768 to 3.2767. */
-static inline double cubeacp_inertial_pointing_reference_vector_inertial_reference_x_physical(
+static inline double cubeacp_inertial_pointing_reference_vector_reference_x_physical(
     const cubeacp_inertial_pointing_reference_vector_t *message)
 {
-    return icdgen_quotient(message->inertial_reference_x, 10000);
+    return icdgen_quotient(message->reference_x, 10000);
 }
 
 /** Sets Inertial Reference X, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_inertial_reference_x_physical(
+static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_x_physical(
     cubeacp_inertial_pointing_reference_vector_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->inertial_reference_x, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->reference_x, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
 }
 
 /** Inertial Reference Y, as a physical value: -3.2768 to 3.2767. */
-static inline double cubeacp_inertial_pointing_reference_vector_inertial_reference_y_physical(
+static inline double cubeacp_inertial_pointing_reference_vector_reference_y_physical(
     const cubeacp_inertial_pointing_reference_vector_t *message)
 {
-    return icdgen_quotient(message->inertial_reference_y, 10000);
+    return icdgen_quotient(message->reference_y, 10000);
 }
 
 /** Sets Inertial Reference Y, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_inertial_reference_y_physical(
+static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_y_physical(
     cubeacp_inertial_pointing_reference_vector_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->inertial_reference_y, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->reference_y, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
 }
 
 /** Inertial Reference Z, as a physical value: -3.2768 to 3.2767. */
-static inline double cubeacp_inertial_pointing_reference_vector_inertial_reference_z_physical(
+static inline double cubeacp_inertial_pointing_reference_vector_reference_z_physical(
     const cubeacp_inertial_pointing_reference_vector_t *message)
 {
-    return icdgen_quotient(message->inertial_reference_z, 10000);
+    return icdgen_quotient(message->reference_z, 10000);
 }
 
 /** Sets Inertial Reference Z, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_inertial_reference_z_physical(
+static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_reference_z_physical(
     cubeacp_inertial_pointing_reference_vector_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->inertial_reference_z, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->reference_z, value, 1, 0, 10000, INT16_MIN, INT16_MAX);
 }
 
 #endif /* ICDGEN_NO_DOUBLE */

@@ -25,79 +25,79 @@ typedef struct {
      * 327.67 deg.
      * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
-    int16_t magnetometer_mounting_transform_alpha_angle;
+    int16_t mounting_alpha;
     /**
      * Magnetometer Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
      * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
-    int16_t magnetometer_mounting_transform_beta_angle;
+    int16_t mounting_beta;
     /**
      * Magnetometer Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
      * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
-    int16_t magnetometer_mounting_transform_gamma_angle;
+    int16_t mounting_gamma;
     /**
      * Magnetometer Channel 1 Offset: bits 48 to 63, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
      * @note Note ACP-155 (open): Magnetometer offsets have no unit.
      */
-    int16_t magnetometer_channel_1_offset;
+    int16_t channel_1_offset;
     /**
      * Magnetometer Channel 2 Offset: bits 64 to 79, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
      * @note Note ACP-155 (open): Magnetometer offsets have no unit.
      */
-    int16_t magnetometer_channel_2_offset;
+    int16_t channel_2_offset;
     /**
      * Magnetometer Channel 3 Offset: bits 80 to 95, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
      * @note Note ACP-155 (open): Magnetometer offsets have no unit.
      */
-    int16_t magnetometer_channel_3_offset;
+    int16_t channel_3_offset;
     /**
      * Magnetometer Sensitivity Matrix S11: bits 96 to 111, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s11;
+    int16_t sensitivity_s11;
     /**
      * Magnetometer Sensitivity Matrix S22: bits 112 to 127, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s22;
+    int16_t sensitivity_s22;
     /**
      * Magnetometer Sensitivity Matrix S33: bits 128 to 143, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s33;
+    int16_t sensitivity_s33;
     /**
      * Magnetometer Sensitivity Matrix S12: bits 144 to 159, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s12;
+    int16_t sensitivity_s12;
     /**
      * Magnetometer Sensitivity Matrix S13: bits 160 to 175, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s13;
+    int16_t sensitivity_s13;
     /**
      * Magnetometer Sensitivity Matrix S21: bits 176 to 191, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s21;
+    int16_t sensitivity_s21;
     /**
      * Magnetometer Sensitivity Matrix S23: bits 192 to 207, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s23;
+    int16_t sensitivity_s23;
     /**
      * Magnetometer Sensitivity Matrix S31: bits 208 to 223, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s31;
+    int16_t sensitivity_s31;
     /**
      * Magnetometer Sensitivity Matrix S32: bits 224 to 239, raw -32768 to 32767; physical `raw*0.001`, -32.768 to
      * 32.767.
      */
-    int16_t magnetometer_sensitivity_matrix_s32;
+    int16_t sensitivity_s32;
 } cubeacp_magnetometer_configuration_t;
 
 /** Makes every raw value 0. */
@@ -115,13 +115,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_decode(
     if (length != CUBEACP_MAGNETOMETER_CONFIGURATION_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    ICDGEN_READ_ROW_LE(
-        cubeacp_magnetometer_configuration_t,
-        message,
-        &buffer[0],
-        15u,
-        magnetometer_mounting_transform_alpha_angle,
-        magnetometer_sensitivity_matrix_s32);
+    ICDGEN_READ_ROW_LE(cubeacp_magnetometer_configuration_t, message, &buffer[0], 15u, mounting_alpha, sensitivity_s32);
     return ICD_OK;
 }
 
@@ -139,601 +133,587 @@ static inline icd_status_t cubeacp_magnetometer_configuration_encode(
         message,
         &buffer[0],
         15u,
-        magnetometer_mounting_transform_alpha_angle,
-        magnetometer_sensitivity_matrix_s32);
+        mounting_alpha,
+        sensitivity_s32);
     return ICD_OK;
 }
 
 /** Magnetometer Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_mounting_transform_alpha_angle_mdeg(
+static inline int32_t cubeacp_magnetometer_configuration_mounting_alpha_mdeg(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_mounting_transform_alpha_angle * INT32_C(10);
+    return message->mounting_alpha * INT32_C(10);
 }
 
 /**
  * Sets Magnetometer Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_mounting_transform_alpha_angle_mdeg(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_alpha_mdeg(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_mounting_transform_alpha_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Magnetometer Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_mounting_transform_beta_angle_mdeg(
+static inline int32_t cubeacp_magnetometer_configuration_mounting_beta_mdeg(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_mounting_transform_beta_angle * INT32_C(10);
+    return message->mounting_beta * INT32_C(10);
 }
 
 /**
  * Sets Magnetometer Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_mounting_transform_beta_angle_mdeg(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_beta_mdeg(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_mounting_transform_beta_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Magnetometer Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_mounting_transform_gamma_angle_mdeg(
+static inline int32_t cubeacp_magnetometer_configuration_mounting_gamma_mdeg(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_mounting_transform_gamma_angle * INT32_C(10);
+    return message->mounting_gamma * INT32_C(10);
 }
 
 /**
  * Sets Magnetometer Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_mounting_transform_gamma_angle_mdeg(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_gamma_mdeg(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_mounting_transform_gamma_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Magnetometer Channel 1 Offset in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_channel_1_offset_milli(
+static inline int32_t cubeacp_magnetometer_configuration_channel_1_offset_milli(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_channel_1_offset;
+    return message->channel_1_offset;
 }
 
 /** Sets Magnetometer Channel 1 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_channel_1_offset_milli(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_1_offset_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_channel_1_offset = ICDGEN_I16(value);
+    message->channel_1_offset = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Channel 2 Offset in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_channel_2_offset_milli(
+static inline int32_t cubeacp_magnetometer_configuration_channel_2_offset_milli(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_channel_2_offset;
+    return message->channel_2_offset;
 }
 
 /** Sets Magnetometer Channel 2 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_channel_2_offset_milli(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_2_offset_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_channel_2_offset = ICDGEN_I16(value);
+    message->channel_2_offset = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Channel 3 Offset in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_channel_3_offset_milli(
+static inline int32_t cubeacp_magnetometer_configuration_channel_3_offset_milli(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_channel_3_offset;
+    return message->channel_3_offset;
 }
 
 /** Sets Magnetometer Channel 3 Offset in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_channel_3_offset_milli(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_3_offset_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_channel_3_offset = ICDGEN_I16(value);
+    message->channel_3_offset = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S11 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s11_milli(
+static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s11_milli(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s11;
+    return message->sensitivity_s11;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S11 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s11_milli(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s11_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s11 = ICDGEN_I16(value);
+    message->sensitivity_s11 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S22 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s22_milli(
+static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s22_milli(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s22;
+    return message->sensitivity_s22;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S22 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s22_milli(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s22_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s22 = ICDGEN_I16(value);
+    message->sensitivity_s22 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S33 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s33_milli(
+static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s33_milli(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s33;
+    return message->sensitivity_s33;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S33 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s33_milli(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s33_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s33 = ICDGEN_I16(value);
+    message->sensitivity_s33 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S12 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s12_milli(
+static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s12_milli(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s12;
+    return message->sensitivity_s12;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S12 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s12_milli(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s12_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s12 = ICDGEN_I16(value);
+    message->sensitivity_s12 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S13 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s13_milli(
+static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s13_milli(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s13;
+    return message->sensitivity_s13;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S13 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s13_milli(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s13_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s13 = ICDGEN_I16(value);
+    message->sensitivity_s13 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S21 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s21_milli(
+static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s21_milli(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s21;
+    return message->sensitivity_s21;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S21 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s21_milli(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s21_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s21 = ICDGEN_I16(value);
+    message->sensitivity_s21 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S23 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s23_milli(
+static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s23_milli(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s23;
+    return message->sensitivity_s23;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S23 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s23_milli(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s23_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s23 = ICDGEN_I16(value);
+    message->sensitivity_s23 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S31 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s31_milli(
+static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s31_milli(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s31;
+    return message->sensitivity_s31;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S31 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s31_milli(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s31_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s31 = ICDGEN_I16(value);
+    message->sensitivity_s31 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Magnetometer Sensitivity Matrix S32 in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s32_milli(
+static inline int32_t cubeacp_magnetometer_configuration_sensitivity_s32_milli(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return message->magnetometer_sensitivity_matrix_s32;
+    return message->sensitivity_s32;
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S32 in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s32_milli(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s32_milli(
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->magnetometer_sensitivity_matrix_s32 = ICDGEN_I16(value);
+    message->sensitivity_s32 = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 #ifndef ICDGEN_NO_DOUBLE
 
 /** Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_mounting_transform_alpha_angle_deg(
+static inline double cubeacp_magnetometer_configuration_mounting_alpha_deg(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_mounting_transform_alpha_angle, 100);
+    return icdgen_quotient(message->mounting_alpha, 100);
 }
 
 /**
  * Sets Magnetometer Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_mounting_transform_alpha_angle_deg(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_alpha_deg(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->magnetometer_mounting_transform_alpha_angle,
-        value,
-        1,
-        0,
-        100,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->mounting_alpha, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_mounting_transform_beta_angle_deg(
+static inline double cubeacp_magnetometer_configuration_mounting_beta_deg(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_mounting_transform_beta_angle, 100);
+    return icdgen_quotient(message->mounting_beta, 100);
 }
 
 /**
  * Sets Magnetometer Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_mounting_transform_beta_angle_deg(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_beta_deg(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_mounting_transform_beta_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->mounting_beta, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_mounting_transform_gamma_angle_deg(
+static inline double cubeacp_magnetometer_configuration_mounting_gamma_deg(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_mounting_transform_gamma_angle, 100);
+    return icdgen_quotient(message->mounting_gamma, 100);
 }
 
 /**
  * Sets Magnetometer Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_mounting_transform_gamma_angle_deg(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_gamma_deg(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->magnetometer_mounting_transform_gamma_angle,
-        value,
-        1,
-        0,
-        100,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->mounting_gamma, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_channel_1_offset_physical(
+static inline double cubeacp_magnetometer_configuration_channel_1_offset_physical(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_channel_1_offset, 1000);
+    return icdgen_quotient(message->channel_1_offset, 1000);
 }
 
 /**
  * Sets Magnetometer Channel 1 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_channel_1_offset_physical(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_1_offset_physical(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_channel_1_offset, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->channel_1_offset, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_channel_2_offset_physical(
+static inline double cubeacp_magnetometer_configuration_channel_2_offset_physical(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_channel_2_offset, 1000);
+    return icdgen_quotient(message->channel_2_offset, 1000);
 }
 
 /**
  * Sets Magnetometer Channel 2 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_channel_2_offset_physical(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_2_offset_physical(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_channel_2_offset, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->channel_2_offset, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_channel_3_offset_physical(
+static inline double cubeacp_magnetometer_configuration_channel_3_offset_physical(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_channel_3_offset, 1000);
+    return icdgen_quotient(message->channel_3_offset, 1000);
 }
 
 /**
  * Sets Magnetometer Channel 3 Offset, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_channel_3_offset_physical(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_3_offset_physical(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_channel_3_offset, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->channel_3_offset, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s11_physical(
+static inline double cubeacp_magnetometer_configuration_sensitivity_s11_physical(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s11, 1000);
+    return icdgen_quotient(message->sensitivity_s11, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S11, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s11_physical(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s11_physical(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s11, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->sensitivity_s11, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s22_physical(
+static inline double cubeacp_magnetometer_configuration_sensitivity_s22_physical(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s22, 1000);
+    return icdgen_quotient(message->sensitivity_s22, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S22, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s22_physical(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s22_physical(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s22, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->sensitivity_s22, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s33_physical(
+static inline double cubeacp_magnetometer_configuration_sensitivity_s33_physical(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s33, 1000);
+    return icdgen_quotient(message->sensitivity_s33, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S33, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s33_physical(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s33_physical(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s33, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->sensitivity_s33, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s12_physical(
+static inline double cubeacp_magnetometer_configuration_sensitivity_s12_physical(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s12, 1000);
+    return icdgen_quotient(message->sensitivity_s12, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S12, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s12_physical(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s12_physical(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s12, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->sensitivity_s12, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s13_physical(
+static inline double cubeacp_magnetometer_configuration_sensitivity_s13_physical(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s13, 1000);
+    return icdgen_quotient(message->sensitivity_s13, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S13, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s13_physical(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s13_physical(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s13, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->sensitivity_s13, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s21_physical(
+static inline double cubeacp_magnetometer_configuration_sensitivity_s21_physical(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s21, 1000);
+    return icdgen_quotient(message->sensitivity_s21, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S21, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s21_physical(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s21_physical(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s21, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->sensitivity_s21, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s23_physical(
+static inline double cubeacp_magnetometer_configuration_sensitivity_s23_physical(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s23, 1000);
+    return icdgen_quotient(message->sensitivity_s23, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S23, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s23_physical(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s23_physical(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s23, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->sensitivity_s23, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s31_physical(
+static inline double cubeacp_magnetometer_configuration_sensitivity_s31_physical(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s31, 1000);
+    return icdgen_quotient(message->sensitivity_s31, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S31, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s31_physical(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s31_physical(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s31, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->sensitivity_s31, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_magnetometer_configuration_magnetometer_sensitivity_matrix_s32_physical(
+static inline double cubeacp_magnetometer_configuration_sensitivity_s32_physical(
     const cubeacp_magnetometer_configuration_t *message)
 {
-    return icdgen_quotient(message->magnetometer_sensitivity_matrix_s32, 1000);
+    return icdgen_quotient(message->sensitivity_s32, 1000);
 }
 
 /**
  * Sets Magnetometer Sensitivity Matrix S32, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_magnetometer_configuration_set_magnetometer_sensitivity_matrix_s32_physical(
+static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s32_physical(
     cubeacp_magnetometer_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->magnetometer_sensitivity_matrix_s32, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->sensitivity_s32, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 #endif /* ICDGEN_NO_DOUBLE */

@@ -22,17 +22,17 @@ typedef struct {
      * Quaternion Covariance - Q1 RMS: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
      * @note Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
      */
-    int16_t quaternion_covariance_q1_rms;
+    int16_t q1_rms;
     /**
      * Quaternion Covariance - Q2 RMS: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
      * @note Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
      */
-    int16_t quaternion_covariance_q2_rms;
+    int16_t q2_rms;
     /**
      * Quaternion Covariance - Q3 RMS: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`, -32.768 to 32.767.
      * @note Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
      */
-    int16_t quaternion_covariance_q3_rms;
+    int16_t q3_rms;
 } cubeacp_quaternion_covariance_t;
 
 /** Makes every raw value 0. */
@@ -50,9 +50,9 @@ static inline icd_status_t cubeacp_quaternion_covariance_decode(
     if (length != CUBEACP_QUATERNION_COVARIANCE_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    message->quaternion_covariance_q1_rms = icdgen_i16(icdgen_load_u16le(&buffer[0]));
-    message->quaternion_covariance_q2_rms = icdgen_i16(icdgen_load_u16le(&buffer[2]));
-    message->quaternion_covariance_q3_rms = icdgen_i16(icdgen_load_u16le(&buffer[4]));
+    message->q1_rms = icdgen_i16(icdgen_load_u16le(&buffer[0]));
+    message->q2_rms = icdgen_i16(icdgen_load_u16le(&buffer[2]));
+    message->q3_rms = icdgen_i16(icdgen_load_u16le(&buffer[4]));
     return ICD_OK;
 }
 
@@ -65,120 +65,114 @@ static inline icd_status_t cubeacp_quaternion_covariance_encode(
     if (capacity < CUBEACP_QUATERNION_COVARIANCE_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    icdgen_store_u16le(&buffer[0], ICDGEN_U16(message->quaternion_covariance_q1_rms));
-    icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->quaternion_covariance_q2_rms));
-    icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->quaternion_covariance_q3_rms));
+    icdgen_store_u16le(&buffer[0], ICDGEN_U16(message->q1_rms));
+    icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->q2_rms));
+    icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->q3_rms));
     return ICD_OK;
 }
 
 /** Quaternion Covariance - Q1 RMS in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_quaternion_covariance_quaternion_covariance_q1_rms_milli(
-    const cubeacp_quaternion_covariance_t *message)
+static inline int32_t cubeacp_quaternion_covariance_q1_rms_milli(const cubeacp_quaternion_covariance_t *message)
 {
-    return message->quaternion_covariance_q1_rms;
+    return message->q1_rms;
 }
 
 /** Sets Quaternion Covariance - Q1 RMS in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_quaternion_covariance_set_quaternion_covariance_q1_rms_milli(
+static inline icd_status_t cubeacp_quaternion_covariance_set_q1_rms_milli(
     cubeacp_quaternion_covariance_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->quaternion_covariance_q1_rms = ICDGEN_I16(value);
+    message->q1_rms = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Quaternion Covariance - Q2 RMS in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_quaternion_covariance_quaternion_covariance_q2_rms_milli(
-    const cubeacp_quaternion_covariance_t *message)
+static inline int32_t cubeacp_quaternion_covariance_q2_rms_milli(const cubeacp_quaternion_covariance_t *message)
 {
-    return message->quaternion_covariance_q2_rms;
+    return message->q2_rms;
 }
 
 /** Sets Quaternion Covariance - Q2 RMS in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_quaternion_covariance_set_quaternion_covariance_q2_rms_milli(
+static inline icd_status_t cubeacp_quaternion_covariance_set_q2_rms_milli(
     cubeacp_quaternion_covariance_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->quaternion_covariance_q2_rms = ICDGEN_I16(value);
+    message->q2_rms = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Quaternion Covariance - Q3 RMS in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_quaternion_covariance_quaternion_covariance_q3_rms_milli(
-    const cubeacp_quaternion_covariance_t *message)
+static inline int32_t cubeacp_quaternion_covariance_q3_rms_milli(const cubeacp_quaternion_covariance_t *message)
 {
-    return message->quaternion_covariance_q3_rms;
+    return message->q3_rms;
 }
 
 /** Sets Quaternion Covariance - Q3 RMS in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_quaternion_covariance_set_quaternion_covariance_q3_rms_milli(
+static inline icd_status_t cubeacp_quaternion_covariance_set_q3_rms_milli(
     cubeacp_quaternion_covariance_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->quaternion_covariance_q3_rms = ICDGEN_I16(value);
+    message->q3_rms = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 #ifndef ICDGEN_NO_DOUBLE
 
 /** Quaternion Covariance - Q1 RMS, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_quaternion_covariance_quaternion_covariance_q1_rms_physical(
-    const cubeacp_quaternion_covariance_t *message)
+static inline double cubeacp_quaternion_covariance_q1_rms_physical(const cubeacp_quaternion_covariance_t *message)
 {
-    return icdgen_quotient(message->quaternion_covariance_q1_rms, 1000);
+    return icdgen_quotient(message->q1_rms, 1000);
 }
 
 /**
  * Sets Quaternion Covariance - Q1 RMS, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_quaternion_covariance_set_quaternion_covariance_q1_rms_physical(
+static inline icd_status_t cubeacp_quaternion_covariance_set_q1_rms_physical(
     cubeacp_quaternion_covariance_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->quaternion_covariance_q1_rms, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->q1_rms, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Quaternion Covariance - Q2 RMS, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_quaternion_covariance_quaternion_covariance_q2_rms_physical(
-    const cubeacp_quaternion_covariance_t *message)
+static inline double cubeacp_quaternion_covariance_q2_rms_physical(const cubeacp_quaternion_covariance_t *message)
 {
-    return icdgen_quotient(message->quaternion_covariance_q2_rms, 1000);
+    return icdgen_quotient(message->q2_rms, 1000);
 }
 
 /**
  * Sets Quaternion Covariance - Q2 RMS, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_quaternion_covariance_set_quaternion_covariance_q2_rms_physical(
+static inline icd_status_t cubeacp_quaternion_covariance_set_q2_rms_physical(
     cubeacp_quaternion_covariance_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->quaternion_covariance_q2_rms, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->q2_rms, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Quaternion Covariance - Q3 RMS, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_quaternion_covariance_quaternion_covariance_q3_rms_physical(
-    const cubeacp_quaternion_covariance_t *message)
+static inline double cubeacp_quaternion_covariance_q3_rms_physical(const cubeacp_quaternion_covariance_t *message)
 {
-    return icdgen_quotient(message->quaternion_covariance_q3_rms, 1000);
+    return icdgen_quotient(message->q3_rms, 1000);
 }
 
 /**
  * Sets Quaternion Covariance - Q3 RMS, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_quaternion_covariance_set_quaternion_covariance_q3_rms_physical(
+static inline icd_status_t cubeacp_quaternion_covariance_set_q3_rms_physical(
     cubeacp_quaternion_covariance_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->quaternion_covariance_q3_rms, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->q3_rms, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 #endif /* ICDGEN_NO_DOUBLE */

@@ -19,7 +19,7 @@
 /** Bytes of a frame, without the id. */
 #define CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_LENGTH 14u
 /** Reference spin rate in deg/s: must be below this. */
-#define CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_REFERENCE_SPIN_RATE_DEG_PER_S_BELOW 0
+#define CUBEACP_SET_DETUMBLING_CONTROL_PARAMETERS_SPIN_RATE_DEG_PER_S_BELOW 0
 
 /** Raw values. */
 typedef struct {
@@ -38,7 +38,7 @@ typedef struct {
      * Must be below 0 deg/s.
      * @note Note ACP-162 (certain): Limits of a sign in words only.
      */
-    int16_t reference_spin_rate;
+    int16_t spin_rate;
     /**
      * Fast BDot Detumbling Gain: bits 80 to 111, 32-bit float. Kdf.
      * @note Note ACP-163 (open): Gains have no units.
@@ -63,7 +63,7 @@ static inline icd_status_t cubeacp_set_detumbling_control_parameters_decode(
     }
     icdgen_set_f32(&message->detumbling_spin_gain, icdgen_load_u32le(&buffer[0]));
     icdgen_set_f32(&message->detumbling_damping_gain, icdgen_load_u32le(&buffer[4]));
-    message->reference_spin_rate = icdgen_i16(icdgen_load_u16le(&buffer[8]));
+    message->spin_rate = icdgen_i16(icdgen_load_u16le(&buffer[8]));
     icdgen_set_f32(&message->fast_bdot_detumbling_gain, icdgen_load_u32le(&buffer[10]));
     return ICD_OK;
 }
@@ -79,45 +79,45 @@ static inline icd_status_t cubeacp_set_detumbling_control_parameters_encode(
     }
     icdgen_store_u32le(&buffer[0], icdgen_bits_f32(&message->detumbling_spin_gain));
     icdgen_store_u32le(&buffer[4], icdgen_bits_f32(&message->detumbling_damping_gain));
-    icdgen_store_u16le(&buffer[8], ICDGEN_U16(message->reference_spin_rate));
+    icdgen_store_u16le(&buffer[8], ICDGEN_U16(message->spin_rate));
     icdgen_store_u32le(&buffer[10], icdgen_bits_f32(&message->fast_bdot_detumbling_gain));
     return ICD_OK;
 }
 
 /** Reference spin rate in thousandths of deg/s, exact: -32768 to 32767. */
-static inline int32_t cubeacp_set_detumbling_control_parameters_reference_spin_rate_mdeg_per_s(
+static inline int32_t cubeacp_set_detumbling_control_parameters_spin_rate_mdeg_per_s(
     const cubeacp_set_detumbling_control_parameters_t *message)
 {
-    return message->reference_spin_rate;
+    return message->spin_rate;
 }
 
 /** Sets Reference spin rate in thousandths of deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_set_detumbling_control_parameters_set_reference_spin_rate_mdeg_per_s(
+static inline icd_status_t cubeacp_set_detumbling_control_parameters_set_spin_rate_mdeg_per_s(
     cubeacp_set_detumbling_control_parameters_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->reference_spin_rate = ICDGEN_I16(value);
+    message->spin_rate = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 #ifndef ICDGEN_NO_DOUBLE
 
 /** Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s. */
-static inline double cubeacp_set_detumbling_control_parameters_reference_spin_rate_deg_per_s(
+static inline double cubeacp_set_detumbling_control_parameters_spin_rate_deg_per_s(
     const cubeacp_set_detumbling_control_parameters_t *message)
 {
-    return icdgen_quotient(message->reference_spin_rate, 1000);
+    return icdgen_quotient(message->spin_rate, 1000);
 }
 
 /** Sets Reference spin rate in deg/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_set_detumbling_control_parameters_set_reference_spin_rate_deg_per_s(
+static inline icd_status_t cubeacp_set_detumbling_control_parameters_set_spin_rate_deg_per_s(
     cubeacp_set_detumbling_control_parameters_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->reference_spin_rate, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->spin_rate, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 #endif /* ICDGEN_NO_DOUBLE */

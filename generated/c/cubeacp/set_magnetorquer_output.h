@@ -25,21 +25,21 @@ typedef struct {
      * @note Note ACP-030 (certain): Formulas are written in two directions.
      * @note Note ACP-031 (likely): Duty cycle: unit and range are not given.
      */
-    int16_t commanded_x_magnetorquer_duty_cycle;
+    int16_t x_duty_cycle;
     /**
      * Commanded Y Magnetorquer duty cycle: bits 16 to 31, raw -32768 to 32767; physical `raw = value*1000.0`, -32.768
      * to 32.767.
      * @note Note ACP-030 (certain): Formulas are written in two directions.
      * @note Note ACP-031 (likely): Duty cycle: unit and range are not given.
      */
-    int16_t commanded_y_magnetorquer_duty_cycle;
+    int16_t y_duty_cycle;
     /**
      * Commanded Z Magnetorquer duty cycle: bits 32 to 47, raw -32768 to 32767; physical `raw = value*1000.0`, -32.768
      * to 32.767.
      * @note Note ACP-030 (certain): Formulas are written in two directions.
      * @note Note ACP-031 (likely): Duty cycle: unit and range are not given.
      */
-    int16_t commanded_z_magnetorquer_duty_cycle;
+    int16_t z_duty_cycle;
 } cubeacp_set_magnetorquer_output_t;
 
 /** Makes every raw value 0. */
@@ -57,9 +57,9 @@ static inline icd_status_t cubeacp_set_magnetorquer_output_decode(
     if (length != CUBEACP_SET_MAGNETORQUER_OUTPUT_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    message->commanded_x_magnetorquer_duty_cycle = icdgen_i16(icdgen_load_u16le(&buffer[0]));
-    message->commanded_y_magnetorquer_duty_cycle = icdgen_i16(icdgen_load_u16le(&buffer[2]));
-    message->commanded_z_magnetorquer_duty_cycle = icdgen_i16(icdgen_load_u16le(&buffer[4]));
+    message->x_duty_cycle = icdgen_i16(icdgen_load_u16le(&buffer[0]));
+    message->y_duty_cycle = icdgen_i16(icdgen_load_u16le(&buffer[2]));
+    message->z_duty_cycle = icdgen_i16(icdgen_load_u16le(&buffer[4]));
     return ICD_OK;
 }
 
@@ -72,129 +72,129 @@ static inline icd_status_t cubeacp_set_magnetorquer_output_encode(
     if (capacity < CUBEACP_SET_MAGNETORQUER_OUTPUT_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    icdgen_store_u16le(&buffer[0], ICDGEN_U16(message->commanded_x_magnetorquer_duty_cycle));
-    icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->commanded_y_magnetorquer_duty_cycle));
-    icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->commanded_z_magnetorquer_duty_cycle));
+    icdgen_store_u16le(&buffer[0], ICDGEN_U16(message->x_duty_cycle));
+    icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->y_duty_cycle));
+    icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->z_duty_cycle));
     return ICD_OK;
 }
 
 /** Commanded X Magnetorquer duty cycle in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_set_magnetorquer_output_commanded_x_magnetorquer_duty_cycle_milli(
+static inline int32_t cubeacp_set_magnetorquer_output_x_duty_cycle_milli(
     const cubeacp_set_magnetorquer_output_t *message)
 {
-    return message->commanded_x_magnetorquer_duty_cycle;
+    return message->x_duty_cycle;
 }
 
 /**
  * Sets Commanded X Magnetorquer duty cycle in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_set_magnetorquer_output_set_commanded_x_magnetorquer_duty_cycle_milli(
+static inline icd_status_t cubeacp_set_magnetorquer_output_set_x_duty_cycle_milli(
     cubeacp_set_magnetorquer_output_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->commanded_x_magnetorquer_duty_cycle = ICDGEN_I16(value);
+    message->x_duty_cycle = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Commanded Y Magnetorquer duty cycle in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_set_magnetorquer_output_commanded_y_magnetorquer_duty_cycle_milli(
+static inline int32_t cubeacp_set_magnetorquer_output_y_duty_cycle_milli(
     const cubeacp_set_magnetorquer_output_t *message)
 {
-    return message->commanded_y_magnetorquer_duty_cycle;
+    return message->y_duty_cycle;
 }
 
 /**
  * Sets Commanded Y Magnetorquer duty cycle in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_set_magnetorquer_output_set_commanded_y_magnetorquer_duty_cycle_milli(
+static inline icd_status_t cubeacp_set_magnetorquer_output_set_y_duty_cycle_milli(
     cubeacp_set_magnetorquer_output_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->commanded_y_magnetorquer_duty_cycle = ICDGEN_I16(value);
+    message->y_duty_cycle = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 /** Commanded Z Magnetorquer duty cycle in thousandths, exact: -32768 to 32767. */
-static inline int32_t cubeacp_set_magnetorquer_output_commanded_z_magnetorquer_duty_cycle_milli(
+static inline int32_t cubeacp_set_magnetorquer_output_z_duty_cycle_milli(
     const cubeacp_set_magnetorquer_output_t *message)
 {
-    return message->commanded_z_magnetorquer_duty_cycle;
+    return message->z_duty_cycle;
 }
 
 /**
  * Sets Commanded Z Magnetorquer duty cycle in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_set_magnetorquer_output_set_commanded_z_magnetorquer_duty_cycle_milli(
+static inline icd_status_t cubeacp_set_magnetorquer_output_set_z_duty_cycle_milli(
     cubeacp_set_magnetorquer_output_t *message,
     int32_t value)
 {
     if (value < -32768 || value > 32767) {
         return ICD_ERROR_RANGE;
     }
-    message->commanded_z_magnetorquer_duty_cycle = ICDGEN_I16(value);
+    message->z_duty_cycle = ICDGEN_I16(value);
     return ICD_OK;
 }
 
 #ifndef ICDGEN_NO_DOUBLE
 
 /** Commanded X Magnetorquer duty cycle, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_set_magnetorquer_output_commanded_x_magnetorquer_duty_cycle_physical(
+static inline double cubeacp_set_magnetorquer_output_x_duty_cycle_physical(
     const cubeacp_set_magnetorquer_output_t *message)
 {
-    return icdgen_quotient(message->commanded_x_magnetorquer_duty_cycle, 1000);
+    return icdgen_quotient(message->x_duty_cycle, 1000);
 }
 
 /**
  * Sets Commanded X Magnetorquer duty cycle, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_set_magnetorquer_output_set_commanded_x_magnetorquer_duty_cycle_physical(
+static inline icd_status_t cubeacp_set_magnetorquer_output_set_x_duty_cycle_physical(
     cubeacp_set_magnetorquer_output_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->commanded_x_magnetorquer_duty_cycle, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->x_duty_cycle, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Commanded Y Magnetorquer duty cycle, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_set_magnetorquer_output_commanded_y_magnetorquer_duty_cycle_physical(
+static inline double cubeacp_set_magnetorquer_output_y_duty_cycle_physical(
     const cubeacp_set_magnetorquer_output_t *message)
 {
-    return icdgen_quotient(message->commanded_y_magnetorquer_duty_cycle, 1000);
+    return icdgen_quotient(message->y_duty_cycle, 1000);
 }
 
 /**
  * Sets Commanded Y Magnetorquer duty cycle, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_set_magnetorquer_output_set_commanded_y_magnetorquer_duty_cycle_physical(
+static inline icd_status_t cubeacp_set_magnetorquer_output_set_y_duty_cycle_physical(
     cubeacp_set_magnetorquer_output_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->commanded_y_magnetorquer_duty_cycle, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->y_duty_cycle, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 /** Commanded Z Magnetorquer duty cycle, as a physical value: -32.768 to 32.767. */
-static inline double cubeacp_set_magnetorquer_output_commanded_z_magnetorquer_duty_cycle_physical(
+static inline double cubeacp_set_magnetorquer_output_z_duty_cycle_physical(
     const cubeacp_set_magnetorquer_output_t *message)
 {
-    return icdgen_quotient(message->commanded_z_magnetorquer_duty_cycle, 1000);
+    return icdgen_quotient(message->z_duty_cycle, 1000);
 }
 
 /**
  * Sets Commanded Z Magnetorquer duty cycle, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is
  * none.
  */
-static inline icd_status_t cubeacp_set_magnetorquer_output_set_commanded_z_magnetorquer_duty_cycle_physical(
+static inline icd_status_t cubeacp_set_magnetorquer_output_set_z_duty_cycle_physical(
     cubeacp_set_magnetorquer_output_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->commanded_z_magnetorquer_duty_cycle, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->z_duty_cycle, value, 1, 0, 1000, INT16_MIN, INT16_MAX);
 }
 
 #endif /* ICDGEN_NO_DOUBLE */

@@ -27,19 +27,19 @@ typedef struct {
      * 327.67 deg.
      * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
-    int16_t star_tracker_mounting_transform_alpha_angle;
+    int16_t mounting_alpha;
     /**
      * StarTracker Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
      * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
-    int16_t star_tracker_mounting_transform_beta_angle;
+    int16_t mounting_beta;
     /**
      * StarTracker Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
      * 327.67 deg.
      * @note Note ACP-157 (open): Mounting angles: order of rotation.
      */
-    int16_t star_tracker_mounting_transform_gamma_angle;
+    int16_t mounting_gamma;
     /**
      * StarTracker exposure time: bits 48 to 63, raw 0 to 65535. Register value.
      * @note Note ACP-145 (open): Exposure and gain are register values.
@@ -80,7 +80,7 @@ typedef struct {
      * identification.
      * @note Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
      */
-    uint8_t star_tracker_error_margin;
+    uint8_t error_margin;
     /**
      * Star Tracker Delay Time: bits 144 to 159, raw 0 to 65535, in ms.
      * @note Erratum ACP-140 (certain): milliseconds is ms.
@@ -130,12 +130,12 @@ typedef struct {
      * @note Note ACP-143 (open): Margins and search width have no unit.
      * @note Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
      */
-    uint8_t star_tracking_margin;
+    uint8_t tracking_margin;
     /**
      * Star Validation Margin: bits 400 to 407, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
      * @note Note ACP-143 (open): Margins and search width have no unit.
      */
-    uint8_t star_validation_margin;
+    uint8_t validation_margin;
     /** Star Tracking Module Enable: bit 408. */
     bool star_tracking_module_enable;
     /**
@@ -147,7 +147,7 @@ typedef struct {
      * Star Tracking Search Width: bits 416 to 423, raw 0 to 255; physical `raw/5.0`, 0 to 51.
      * @note Note ACP-143 (open): Margins and search width have no unit.
      */
-    uint8_t star_tracking_search_width;
+    uint8_t search_width;
 } cubeacp_set_star_tracker_configuration_t;
 
 /** Makes every raw value 0. */
@@ -165,9 +165,9 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_decode(
     if (length != CUBEACP_SET_STAR_TRACKER_CONFIGURATION_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    message->star_tracker_mounting_transform_alpha_angle = icdgen_i16(icdgen_load_u16le(&buffer[0]));
-    message->star_tracker_mounting_transform_beta_angle = icdgen_i16(icdgen_load_u16le(&buffer[2]));
-    message->star_tracker_mounting_transform_gamma_angle = icdgen_i16(icdgen_load_u16le(&buffer[4]));
+    message->mounting_alpha = icdgen_i16(icdgen_load_u16le(&buffer[0]));
+    message->mounting_beta = icdgen_i16(icdgen_load_u16le(&buffer[2]));
+    message->mounting_gamma = icdgen_i16(icdgen_load_u16le(&buffer[4]));
     message->star_tracker_exposure_time = icdgen_load_u16le(&buffer[6]);
     message->star_tracker_analog_gain = icdgen_load_u16le(&buffer[8]);
     message->star_tracker_detection_threshold = buffer[10];
@@ -176,7 +176,7 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_decode(
     message->detection_timeout_duration = icdgen_load_u16le(&buffer[13]);
     message->maximum_star_pixel = buffer[15];
     message->minimum_star_pixel = buffer[16];
-    message->star_tracker_error_margin = buffer[17];
+    message->error_margin = buffer[17];
     message->star_tracker_delay_time = icdgen_load_u16le(&buffer[18]);
     icdgen_set_f32(&message->star_tracker_centroid_x, icdgen_load_u32le(&buffer[20]));
     icdgen_set_f32(&message->star_tracker_centroid_y, icdgen_load_u32le(&buffer[24]));
@@ -186,11 +186,11 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_decode(
     icdgen_set_f32(&message->p1_tangential_distortion_coefficient, icdgen_load_u32le(&buffer[40]));
     icdgen_set_f32(&message->p2_tangential_distortion_coefficient, icdgen_load_u32le(&buffer[44]));
     message->star_tracking_window_width = buffer[48];
-    message->star_tracking_margin = buffer[49];
-    message->star_validation_margin = buffer[50];
+    message->tracking_margin = buffer[49];
+    message->validation_margin = buffer[50];
     message->star_tracking_module_enable = (buffer[51] & 0x01u) != 0u;
     message->star_tracking_location_prediction_enable = (buffer[51] & 0x02u) != 0u;
-    message->star_tracking_search_width = buffer[52];
+    message->search_width = buffer[52];
     return ICD_OK;
 }
 
@@ -203,9 +203,9 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_encode(
     if (capacity < CUBEACP_SET_STAR_TRACKER_CONFIGURATION_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    icdgen_store_u16le(&buffer[0], ICDGEN_U16(message->star_tracker_mounting_transform_alpha_angle));
-    icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->star_tracker_mounting_transform_beta_angle));
-    icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->star_tracker_mounting_transform_gamma_angle));
+    icdgen_store_u16le(&buffer[0], ICDGEN_U16(message->mounting_alpha));
+    icdgen_store_u16le(&buffer[2], ICDGEN_U16(message->mounting_beta));
+    icdgen_store_u16le(&buffer[4], ICDGEN_U16(message->mounting_gamma));
     icdgen_store_u16le(&buffer[6], message->star_tracker_exposure_time);
     icdgen_store_u16le(&buffer[8], message->star_tracker_analog_gain);
     buffer[10] = message->star_tracker_detection_threshold;
@@ -214,7 +214,7 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_encode(
     icdgen_store_u16le(&buffer[13], message->detection_timeout_duration);
     buffer[15] = message->maximum_star_pixel;
     buffer[16] = message->minimum_star_pixel;
-    buffer[17] = message->star_tracker_error_margin;
+    buffer[17] = message->error_margin;
     icdgen_store_u16le(&buffer[18], message->star_tracker_delay_time);
     icdgen_store_u32le(&buffer[20], icdgen_bits_f32(&message->star_tracker_centroid_x));
     icdgen_store_u32le(&buffer[24], icdgen_bits_f32(&message->star_tracker_centroid_y));
@@ -224,280 +224,266 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_encode(
     icdgen_store_u32le(&buffer[40], icdgen_bits_f32(&message->p1_tangential_distortion_coefficient));
     icdgen_store_u32le(&buffer[44], icdgen_bits_f32(&message->p2_tangential_distortion_coefficient));
     buffer[48] = message->star_tracking_window_width;
-    buffer[49] = message->star_tracking_margin;
-    buffer[50] = message->star_validation_margin;
+    buffer[49] = message->tracking_margin;
+    buffer[50] = message->validation_margin;
     buffer[51] = ICDGEN_U8(
         message->star_tracking_module_enable |
         (message->star_tracking_location_prediction_enable << 1));
-    buffer[52] = message->star_tracking_search_width;
+    buffer[52] = message->search_width;
     return ICD_OK;
 }
 
 /** StarTracker Mounting Transform Alpha Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_set_star_tracker_configuration_star_tracker_mounting_transform_alpha_angle_mdeg(
+static inline int32_t cubeacp_set_star_tracker_configuration_mounting_alpha_mdeg(
     const cubeacp_set_star_tracker_configuration_t *message)
 {
-    return message->star_tracker_mounting_transform_alpha_angle * INT32_C(10);
+    return message->mounting_alpha * INT32_C(10);
 }
 
 /**
  * Sets StarTracker Mounting Transform Alpha Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_tracker_mounting_transform_alpha_angle_mdeg(
+static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_alpha_mdeg(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->star_tracker_mounting_transform_alpha_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** StarTracker Mounting Transform Beta Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_set_star_tracker_configuration_star_tracker_mounting_transform_beta_angle_mdeg(
+static inline int32_t cubeacp_set_star_tracker_configuration_mounting_beta_mdeg(
     const cubeacp_set_star_tracker_configuration_t *message)
 {
-    return message->star_tracker_mounting_transform_beta_angle * INT32_C(10);
+    return message->mounting_beta * INT32_C(10);
 }
 
 /**
  * Sets StarTracker Mounting Transform Beta Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_tracker_mounting_transform_beta_angle_mdeg(
+static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_beta_mdeg(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->star_tracker_mounting_transform_beta_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** StarTracker Mounting Transform Gamma Angle in thousandths of deg, exact: -327680 to 327670. */
-static inline int32_t cubeacp_set_star_tracker_configuration_star_tracker_mounting_transform_gamma_angle_mdeg(
+static inline int32_t cubeacp_set_star_tracker_configuration_mounting_gamma_mdeg(
     const cubeacp_set_star_tracker_configuration_t *message)
 {
-    return message->star_tracker_mounting_transform_gamma_angle * INT32_C(10);
+    return message->mounting_gamma * INT32_C(10);
 }
 
 /**
  * Sets StarTracker Mounting Transform Gamma Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if
  * there is none.
  */
-static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_tracker_mounting_transform_gamma_angle_mdeg(
+static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_gamma_mdeg(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
 {
     if (value < -327685 || value > 327674) {
         return ICD_ERROR_RANGE;
     }
-    message->star_tracker_mounting_transform_gamma_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
+    message->mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Star Tracker Error Margin in thousandths of %, exact: 0 to 2550. */
-static inline int32_t cubeacp_set_star_tracker_configuration_star_tracker_error_margin_milli_percent(
+static inline int32_t cubeacp_set_star_tracker_configuration_error_margin_milli_percent(
     const cubeacp_set_star_tracker_configuration_t *message)
 {
-    return message->star_tracker_error_margin * INT32_C(10);
+    return message->error_margin * INT32_C(10);
 }
 
 /** Sets Star Tracker Error Margin in thousandths of % to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_tracker_error_margin_milli_percent(
+static inline icd_status_t cubeacp_set_star_tracker_configuration_set_error_margin_milli_percent(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
 {
     if (value < -5 || value > 2554) {
         return ICD_ERROR_RANGE;
     }
-    message->star_tracker_error_margin = ICDGEN_U8(icdgen_nearest32(value, 10));
+    message->error_margin = ICDGEN_U8(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Star Tracking Margin in thousandths, exact: 0 to 2550. */
-static inline int32_t cubeacp_set_star_tracker_configuration_star_tracking_margin_milli(
+static inline int32_t cubeacp_set_star_tracker_configuration_tracking_margin_milli(
     const cubeacp_set_star_tracker_configuration_t *message)
 {
-    return message->star_tracking_margin * INT32_C(10);
+    return message->tracking_margin * INT32_C(10);
 }
 
 /** Sets Star Tracking Margin in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_tracking_margin_milli(
+static inline icd_status_t cubeacp_set_star_tracker_configuration_set_tracking_margin_milli(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
 {
     if (value < -5 || value > 2554) {
         return ICD_ERROR_RANGE;
     }
-    message->star_tracking_margin = ICDGEN_U8(icdgen_nearest32(value, 10));
+    message->tracking_margin = ICDGEN_U8(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Star Validation Margin in thousandths, exact: 0 to 2550. */
-static inline int32_t cubeacp_set_star_tracker_configuration_star_validation_margin_milli(
+static inline int32_t cubeacp_set_star_tracker_configuration_validation_margin_milli(
     const cubeacp_set_star_tracker_configuration_t *message)
 {
-    return message->star_validation_margin * INT32_C(10);
+    return message->validation_margin * INT32_C(10);
 }
 
 /** Sets Star Validation Margin in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_validation_margin_milli(
+static inline icd_status_t cubeacp_set_star_tracker_configuration_set_validation_margin_milli(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
 {
     if (value < -5 || value > 2554) {
         return ICD_ERROR_RANGE;
     }
-    message->star_validation_margin = ICDGEN_U8(icdgen_nearest32(value, 10));
+    message->validation_margin = ICDGEN_U8(icdgen_nearest32(value, 10));
     return ICD_OK;
 }
 
 /** Star Tracking Search Width in thousandths, exact: 0 to 51000. */
-static inline int32_t cubeacp_set_star_tracker_configuration_star_tracking_search_width_milli(
+static inline int32_t cubeacp_set_star_tracker_configuration_search_width_milli(
     const cubeacp_set_star_tracker_configuration_t *message)
 {
-    return message->star_tracking_search_width * INT32_C(200);
+    return message->search_width * INT32_C(200);
 }
 
 /** Sets Star Tracking Search Width in thousandths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_tracking_search_width_milli(
+static inline icd_status_t cubeacp_set_star_tracker_configuration_set_search_width_milli(
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
 {
     if (value < -100 || value > 51099) {
         return ICD_ERROR_RANGE;
     }
-    message->star_tracking_search_width = ICDGEN_U8(icdgen_nearest32(value, 200));
+    message->search_width = ICDGEN_U8(icdgen_nearest32(value, 200));
     return ICD_OK;
 }
 
 #ifndef ICDGEN_NO_DOUBLE
 
 /** StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_set_star_tracker_configuration_star_tracker_mounting_transform_alpha_angle_deg(
+static inline double cubeacp_set_star_tracker_configuration_mounting_alpha_deg(
     const cubeacp_set_star_tracker_configuration_t *message)
 {
-    return icdgen_quotient(message->star_tracker_mounting_transform_alpha_angle, 100);
+    return icdgen_quotient(message->mounting_alpha, 100);
 }
 
 /**
  * Sets StarTracker Mounting Transform Alpha Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_tracker_mounting_transform_alpha_angle_deg(
+static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_alpha_deg(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->star_tracker_mounting_transform_alpha_angle,
-        value,
-        1,
-        0,
-        100,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->mounting_alpha, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_set_star_tracker_configuration_star_tracker_mounting_transform_beta_angle_deg(
+static inline double cubeacp_set_star_tracker_configuration_mounting_beta_deg(
     const cubeacp_set_star_tracker_configuration_t *message)
 {
-    return icdgen_quotient(message->star_tracker_mounting_transform_beta_angle, 100);
+    return icdgen_quotient(message->mounting_beta, 100);
 }
 
 /** Sets StarTracker Mounting Transform Beta Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_tracker_mounting_transform_beta_angle_deg(
+static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_beta_deg(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(&message->star_tracker_mounting_transform_beta_angle, value, 1, 0, 100, INT16_MIN, INT16_MAX);
+    return icdgen_set_i16(&message->mounting_beta, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67. */
-static inline double cubeacp_set_star_tracker_configuration_star_tracker_mounting_transform_gamma_angle_deg(
+static inline double cubeacp_set_star_tracker_configuration_mounting_gamma_deg(
     const cubeacp_set_star_tracker_configuration_t *message)
 {
-    return icdgen_quotient(message->star_tracker_mounting_transform_gamma_angle, 100);
+    return icdgen_quotient(message->mounting_gamma, 100);
 }
 
 /**
  * Sets StarTracker Mounting Transform Gamma Angle in deg to the nearest raw value; ICD_ERROR_RANGE if there is none.
  */
-static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_tracker_mounting_transform_gamma_angle_deg(
+static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_gamma_deg(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)
 {
-    return icdgen_set_i16(
-        &message->star_tracker_mounting_transform_gamma_angle,
-        value,
-        1,
-        0,
-        100,
-        INT16_MIN,
-        INT16_MAX);
+    return icdgen_set_i16(&message->mounting_gamma, value, 1, 0, 100, INT16_MIN, INT16_MAX);
 }
 
 /** Star Tracker Error Margin in \%: 0 to 2.55. */
-static inline double cubeacp_set_star_tracker_configuration_star_tracker_error_margin_percent(
+static inline double cubeacp_set_star_tracker_configuration_error_margin_percent(
     const cubeacp_set_star_tracker_configuration_t *message)
 {
-    return icdgen_quotient(message->star_tracker_error_margin, 100);
+    return icdgen_quotient(message->error_margin, 100);
 }
 
 /** Sets Star Tracker Error Margin in % to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_tracker_error_margin_percent(
+static inline icd_status_t cubeacp_set_star_tracker_configuration_set_error_margin_percent(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)
 {
-    return icdgen_set_u8(&message->star_tracker_error_margin, value, 1, 0, 100, UINT8_MAX);
+    return icdgen_set_u8(&message->error_margin, value, 1, 0, 100, UINT8_MAX);
 }
 
 /** Star Tracking Margin, as a physical value: 0 to 2.55. */
-static inline double cubeacp_set_star_tracker_configuration_star_tracking_margin_physical(
+static inline double cubeacp_set_star_tracker_configuration_tracking_margin_physical(
     const cubeacp_set_star_tracker_configuration_t *message)
 {
-    return icdgen_quotient(message->star_tracking_margin, 100);
+    return icdgen_quotient(message->tracking_margin, 100);
 }
 
 /** Sets Star Tracking Margin, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_tracking_margin_physical(
+static inline icd_status_t cubeacp_set_star_tracker_configuration_set_tracking_margin_physical(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)
 {
-    return icdgen_set_u8(&message->star_tracking_margin, value, 1, 0, 100, UINT8_MAX);
+    return icdgen_set_u8(&message->tracking_margin, value, 1, 0, 100, UINT8_MAX);
 }
 
 /** Star Validation Margin, as a physical value: 0 to 2.55. */
-static inline double cubeacp_set_star_tracker_configuration_star_validation_margin_physical(
+static inline double cubeacp_set_star_tracker_configuration_validation_margin_physical(
     const cubeacp_set_star_tracker_configuration_t *message)
 {
-    return icdgen_quotient(message->star_validation_margin, 100);
+    return icdgen_quotient(message->validation_margin, 100);
 }
 
 /** Sets Star Validation Margin, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_validation_margin_physical(
+static inline icd_status_t cubeacp_set_star_tracker_configuration_set_validation_margin_physical(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)
 {
-    return icdgen_set_u8(&message->star_validation_margin, value, 1, 0, 100, UINT8_MAX);
+    return icdgen_set_u8(&message->validation_margin, value, 1, 0, 100, UINT8_MAX);
 }
 
 /** Star Tracking Search Width, as a physical value: 0 to 51. */
-static inline double cubeacp_set_star_tracker_configuration_star_tracking_search_width_physical(
+static inline double cubeacp_set_star_tracker_configuration_search_width_physical(
     const cubeacp_set_star_tracker_configuration_t *message)
 {
-    return icdgen_quotient(message->star_tracking_search_width, 5);
+    return icdgen_quotient(message->search_width, 5);
 }
 
 /** Sets Star Tracking Search Width, as a physical value to the nearest raw value; ICD_ERROR_RANGE if there is none. */
-static inline icd_status_t cubeacp_set_star_tracker_configuration_set_star_tracking_search_width_physical(
+static inline icd_status_t cubeacp_set_star_tracker_configuration_set_search_width_physical(
     cubeacp_set_star_tracker_configuration_t *message,
     double value)
 {
-    return icdgen_set_u8(&message->star_tracking_search_width, value, 1, 0, 5, UINT8_MAX);
+    return icdgen_set_u8(&message->search_width, value, 1, 0, 5, UINT8_MAX);
 }
 
 #endif /* ICDGEN_NO_DOUBLE */

@@ -36,6 +36,7 @@ class CBackend:
 
     name = "c"
     reserved = RESERVED
+    significant = 63  # characters of a name that C99 warrants to tell it from others
 
     def files(self, icd: Icd, render: Renderer) -> Iterator[tuple[PurePosixPath, str]]:
         """Every file, the support header first, then node by node."""

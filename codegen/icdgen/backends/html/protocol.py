@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
-from icdgen.backends.html import sequences
+from icdgen.backends.html import sequences, texts
 from icdgen.backends.html.relations import Place, Relations
 from icdgen.icd.model import Enum, Node
 from icdgen.protocol import facts
@@ -15,7 +15,6 @@ from icdgen.protocol.declared import Fact, Kind, facts_of
 from icdgen.protocol.facts import Facts
 from icdgen.protocol.sections import CanPart, Crc, Step
 
-_BUSES = {"uart": "UART", "i2c": "I²C", "can": "CAN"}
 _WIDTH = 720
 
 
@@ -80,7 +79,7 @@ def values(relations: Relations, node: Node) -> dict[str, object]:
 def lines(section: dict[str, Any]) -> list[tuple[str, list[Row]]]:
     """The settings of each bus."""
     found = []
-    for key, title in _BUSES.items():
+    for key, title in texts.BUSES.items():
         rows = list(_settings(section.get(key, {}), ""))
         if rows:
             found.append((title, rows))
@@ -146,7 +145,7 @@ def _plain(crc: Crc) -> dict[str, object]:
 
 def _crc_rows(crc: Crc) -> list[Row]:
     return [
-        Row(fact.about, _value(fact, getattr(crc, fact.name)))
+        Row(_sentence(fact.about), _value(fact, getattr(crc, fact.name)))
         for fact in facts_of(Crc)
         if getattr(crc, fact.name) is not None
     ]
@@ -181,9 +180,7 @@ def parts(relations: Relations, known: Facts) -> list[Part]:
             if value is None or value == ():
                 continue
             url = relations.links.message(value.message) if isinstance(value, Step) else ""
-            rows.append(
-                Row(fact.about[:1].upper() + fact.about[1:], _value(fact, value), why.get((path, fact.key), ""), url)
-            )
+            rows.append(Row(_sentence(fact.about), _value(fact, value), why.get((path, fact.key), ""), url))
         if rows:
             found.append(Part(f"facts-{path.replace('.', '-')}", path.replace(".", ": ").replace("_", " "), rows))
     return found
@@ -214,6 +211,10 @@ def _value(fact: Fact, value: object) -> str:
     if fact.kind is Kind.SPAN and isinstance(value, tuple):
         return f"bytes {value[0]} to {value[0] + value[1] - 1}"
     return _text(value)
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]
 
 
 def _text(value: object) -> str:

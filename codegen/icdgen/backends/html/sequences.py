@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from icdgen.backends.html.relations import Relations
-from icdgen.backends.html.texts import clip
+from icdgen.backends.html.texts import BUSES, clip, count
 from icdgen.icd.model import Message, Node
 from icdgen.protocol.declared import Kind, facts_of
 from icdgen.protocol.facts import Facts
-from icdgen.protocol.sections import Operation, Step
+from icdgen.protocol.sections import Download, Operation, Step
 
 TOP, ROW = 40, 46
 _TEXT, _NOTE = 50, 62  # characters that fit between the lines
@@ -87,7 +88,8 @@ def procedures(relations: Relations, node: Node, known: Facts) -> list[Sequence]
     """The steps of each procedure that the ICD describes, in their order."""
     found = []
     for name, one in (known.files.procedures if known.files else {}).items():
-        found.append(Sequence(f"File {name}", node.title, list(_steps(relations, one)), _limits(one)))
+        arrows = [*_steps(relations, one), *(_packets(relations, known) if isinstance(one, Download) else [])]
+        found.append(Sequence(f"File {name}", node.title, arrows, _limits(one)))
     for title, operation in (("Program copy", known.program_copy), ("Program information", known.program_information)):
         if isinstance(operation, Operation):
             found.append(Sequence(title, node.title, list(_steps(relations, operation)), _limits(operation)))
@@ -104,6 +106,23 @@ def _steps(relations: Relations, one: object) -> Iterator[Arrow]:
             yield Arrow(
                 False, step.message.name, ", ".join(step.fields.values()), relations.links.message(step.message)
             )
+
+
+def _packets(relations: Relations, known: Facts) -> Iterator[Arrow]:
+    """The packets of a download, whose id is another one on each bus where the ICD says so."""
+    files = known.files
+    assert files is not None
+    buses: dict[int, list[str]] = defaultdict(list)
+    for bus, id in files.packet_ids.items():
+        buses[id].append(BUSES[bus])
+    told = "; ".join(f"id {id} on {', '.join(names)}" for id, names in buses.items())
+    message = next((known.telemetry[id] for id in buses if id in known.telemetry), None)
+    url = relations.links.message(message) if message else ""
+    counter = f"{count(files.counter_bytes, 'byte')} of counter, " if files.counter_bytes else ""
+    yield Arrow(False, message.name if message else "packets of the file", told, url)
+    yield Arrow(
+        False, "… one packet after another", f"{counter}{count(files.packet_bytes, 'byte')} of the file each", url
+    )
 
 
 def _title(message: Message, direction: str) -> str:

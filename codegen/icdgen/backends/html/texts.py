@@ -9,6 +9,7 @@ from icdgen.describe.numbers import exact_text, factor_text
 from icdgen.icd.model import CONFIGURATION, Field, Message
 
 MINUS = "\N{MINUS SIGN}"
+BUSES = {"uart": "UART", "i2c": "I²C", "can": "CAN"}
 
 
 def number(value: Fraction | int) -> str:

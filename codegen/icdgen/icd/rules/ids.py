@@ -33,10 +33,16 @@ class Use(NamedTuple):
     key: str
 
 
-def _uses(node: Node) -> Iterator[Use]:
+def _used(node: Node) -> Iterator[Use]:
+    """The ids of its messages."""
     for message in node.messages:
         for key, direction in KEYS[message.kind]:
             yield Use(node, direction, wire_ids.number(message.source[key]), message.source, key)
+
+
+def _uses(node: Node) -> Iterator[Use]:
+    """Those, and the ids of messages that are said to be missing."""
+    yield from _used(node)
     for item in mappings(node.source.get("missing")):
         if item.get("kind") in (TELECOMMAND, TELEMETRY) and _is_id(item.get("id")):
             yield Use(node, item["kind"], wire_ids.number(item["id"]), item, "id")
@@ -110,6 +116,25 @@ def ids_that_links_carry(ctx: Context) -> Iterator[Fault]:
             message = f"ids have {node.id_bits} bits, but the links that `protocol` describes carry ids of one byte"
             help = "leave `protocol` out: messages can be read and written without it; or correct `id_bits`"
             yield Fault(head, head.at("id_bits"), message, help)
+
+
+@rule("ICD114")
+def ids_that_tell_the_direction(ctx: Context) -> Iterator[Fault]:
+    told: set[int] = set()
+    for node in ctx.icd.nodes:
+        uart, declared = ctx.protocol_of(node).get("uart"), _ranges(ctx, node)
+        if not isinstance(uart, dict) or "framing" not in uart or len(declared) == 2:  # ICD056 and ICD103 see to ranges
+            continue
+        uses = [use for one in ctx.scope(node) for use in _used(one)]
+        ids = [use.id for use in uses if use.direction == TELEMETRY]
+        first, last = declared.get(TELEMETRY, (min(ids, default=0), max(ids, default=-1)))
+        for use in uses:
+            if use.direction == TELECOMMAND and first <= use.id <= last and id(use.source) not in told:
+                told.add(id(use.source))  # once, though other nodes may include it
+                among = f"telecommand id {use.id} lies among those of telemetry, {first} to {last}"
+                message = f"{among}: on a UART only the id tells the direction, so an acknowledge is taken for a reply"
+                help = "give each direction ids of its own, one range before the other; or leave `uart: framing` out"
+                yield Fault(use.source, use.source.at(use.key), message, help)
 
 
 @rule("ICD059")

@@ -110,13 +110,13 @@ pub struct AdcsConfiguration {
     pub css_threshold: u8,
     /// Cam1 Sensor Mounting Transform Alpha Angle: bits 304 to 319, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    pub cam1_sensor_mounting_transform_alpha_angle: i16,
+    pub cam1_mounting_alpha: i16,
     /// Cam1 Sensor Mounting Transform Beta Angle: bits 320 to 335, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    pub cam1_sensor_mounting_transform_beta_angle: i16,
+    pub cam1_mounting_beta: i16,
     /// Cam1 Sensor Mounting Transform Gamma Angle: bits 336 to 351, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    pub cam1_sensor_mounting_transform_gamma_angle: i16,
+    pub cam1_mounting_gamma: i16,
     /// Cam1 detection threshold: bits 352 to 359, raw 0 to 255.
     pub cam1_detection_threshold: u8,
     /// Cam1 sensor auto adjust mode: bit 360.
@@ -135,13 +135,13 @@ pub struct AdcsConfiguration {
     pub cam1_boresight_y: u16,
     /// Cam2 Sensor Mounting Transform Alpha Angle: bits 416 to 431, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    pub cam2_sensor_mounting_transform_alpha_angle: i16,
+    pub cam2_mounting_alpha: i16,
     /// Cam2 Sensor Mounting Transform Beta Angle: bits 432 to 447, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    pub cam2_sensor_mounting_transform_beta_angle: i16,
+    pub cam2_mounting_beta: i16,
     /// Cam2 Sensor Mounting Transform Gamma Angle: bits 448 to 463, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    pub cam2_sensor_mounting_transform_gamma_angle: i16,
+    pub cam2_mounting_gamma: i16,
     /// Cam2 detection threshold: bits 464 to 471, raw 0 to 255.
     pub cam2_detection_threshold: u8,
     /// Cam2 sensor auto adjust mode: bit 472.
@@ -258,13 +258,13 @@ pub struct AdcsConfiguration {
     pub cam_2_maximum_y_of_area_5: u16,
     /// Magnetometer Mounting Transform Alpha Angle: bits 1200 to 1215, raw -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
-    pub magnetometer_mounting_transform_alpha_angle: i16,
+    pub magnetometer_mounting_alpha: i16,
     /// Magnetometer Mounting Transform Beta Angle: bits 1216 to 1231, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    pub magnetometer_mounting_transform_beta_angle: i16,
+    pub magnetometer_mounting_beta: i16,
     /// Magnetometer Mounting Transform Gamma Angle: bits 1232 to 1247, raw -32768 to 32767;
     /// physical `raw*0.01`, -327.68 to 327.67 deg.
-    pub magnetometer_mounting_transform_gamma_angle: i16,
+    pub magnetometer_mounting_gamma: i16,
     /// Magnetometer Channel 1 Offset: bits 1248 to 1263, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     pub magnetometer_channel_1_offset: i16,
@@ -276,85 +276,85 @@ pub struct AdcsConfiguration {
     pub magnetometer_channel_3_offset: i16,
     /// Magnetometer Sensitivity Matrix S11: bits 1296 to 1311, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s11: i16,
+    pub magnetometer_sensitivity_s11: i16,
     /// Magnetometer Sensitivity Matrix S22: bits 1312 to 1327, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s22: i16,
+    pub magnetometer_sensitivity_s22: i16,
     /// Magnetometer Sensitivity Matrix S33: bits 1328 to 1343, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s33: i16,
+    pub magnetometer_sensitivity_s33: i16,
     /// Magnetometer Sensitivity Matrix S12: bits 1344 to 1359, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s12: i16,
+    pub magnetometer_sensitivity_s12: i16,
     /// Magnetometer Sensitivity Matrix S13: bits 1360 to 1375, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s13: i16,
+    pub magnetometer_sensitivity_s13: i16,
     /// Magnetometer Sensitivity Matrix S21: bits 1376 to 1391, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s21: i16,
+    pub magnetometer_sensitivity_s21: i16,
     /// Magnetometer Sensitivity Matrix S23: bits 1392 to 1407, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s23: i16,
+    pub magnetometer_sensitivity_s23: i16,
     /// Magnetometer Sensitivity Matrix S31: bits 1408 to 1423, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s31: i16,
+    pub magnetometer_sensitivity_s31: i16,
     /// Magnetometer Sensitivity Matrix S32: bits 1424 to 1439, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s32: i16,
+    pub magnetometer_sensitivity_s32: i16,
     /// Redundant Magnetometer Mounting Transform Alpha Angle: bits 1440 to 1455, raw -32768 to
     /// 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-    pub redundant_magnetometer_mounting_transform_alpha_angle: i16,
+    pub redundant_mag_mounting_alpha: i16,
     /// Redundant Magnetometer Mounting Transform Beta Angle: bits 1456 to 1471, raw -32768 to
     /// 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-    pub redundant_magnetometer_mounting_transform_beta_angle: i16,
+    pub redundant_mag_mounting_beta: i16,
     /// Redundant Magnetometer Mounting Transform Gamma Angle: bits 1472 to 1487, raw -32768 to
     /// 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
-    pub redundant_magnetometer_mounting_transform_gamma_angle: i16,
+    pub redundant_mag_mounting_gamma: i16,
     /// Redundant Magnetometer Channel 1 Offset: bits 1488 to 1503, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub redundant_magnetometer_channel_1_offset: i16,
+    pub redundant_mag_channel_1_offset: i16,
     /// Redundant Magnetometer Channel 2 Offset: bits 1504 to 1519, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub redundant_magnetometer_channel_2_offset: i16,
+    pub redundant_mag_channel_2_offset: i16,
     /// Redundant Magnetometer Channel 3 Offset: bits 1520 to 1535, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub redundant_magnetometer_channel_3_offset: i16,
+    pub redundant_mag_channel_3_offset: i16,
     /// Redundant Magnetometer Sensitivity Matrix S11: bits 1536 to 1551, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    pub redundant_magnetometer_sensitivity_matrix_s11: i16,
+    pub redundant_mag_sensitivity_s11: i16,
     /// Redundant Magnetometer Sensitivity Matrix S22: bits 1552 to 1567, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    pub redundant_magnetometer_sensitivity_matrix_s22: i16,
+    pub redundant_mag_sensitivity_s22: i16,
     /// Redundant Magnetometer Sensitivity Matrix S33: bits 1568 to 1583, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    pub redundant_magnetometer_sensitivity_matrix_s33: i16,
+    pub redundant_mag_sensitivity_s33: i16,
     /// Redundant Magnetometer Sensitivity Matrix S12: bits 1584 to 1599, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    pub redundant_magnetometer_sensitivity_matrix_s12: i16,
+    pub redundant_mag_sensitivity_s12: i16,
     /// Redundant Magnetometer Sensitivity Matrix S13: bits 1600 to 1615, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    pub redundant_magnetometer_sensitivity_matrix_s13: i16,
+    pub redundant_mag_sensitivity_s13: i16,
     /// Redundant Magnetometer Sensitivity Matrix S21: bits 1616 to 1631, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    pub redundant_magnetometer_sensitivity_matrix_s21: i16,
+    pub redundant_mag_sensitivity_s21: i16,
     /// Redundant Magnetometer Sensitivity Matrix S23: bits 1632 to 1647, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    pub redundant_magnetometer_sensitivity_matrix_s23: i16,
+    pub redundant_mag_sensitivity_s23: i16,
     /// Redundant Magnetometer Sensitivity Matrix S31: bits 1648 to 1663, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    pub redundant_magnetometer_sensitivity_matrix_s31: i16,
+    pub redundant_mag_sensitivity_s31: i16,
     /// Redundant Magnetometer Sensitivity Matrix S32: bits 1664 to 1679, raw -32768 to 32767;
     /// physical `raw*0.001`, -32.768 to 32.767.
-    pub redundant_magnetometer_sensitivity_matrix_s32: i16,
+    pub redundant_mag_sensitivity_s32: i16,
     /// StarTracker Mounting Transform Alpha Angle: bits 1680 to 1695, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    pub star_tracker_mounting_transform_alpha_angle: i16,
+    pub star_tracker_mounting_alpha: i16,
     /// StarTracker Mounting Transform Beta Angle: bits 1696 to 1711, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    pub star_tracker_mounting_transform_beta_angle: i16,
+    pub star_tracker_mounting_beta: i16,
     /// StarTracker Mounting Transform Gamma Angle: bits 1712 to 1727, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
-    pub star_tracker_mounting_transform_gamma_angle: i16,
+    pub star_tracker_mounting_gamma: i16,
     /// StarTracker exposure time: bits 1728 to 1743, raw 0 to 65535.
     ///
     /// Register value.
@@ -773,17 +773,17 @@ impl AdcsConfiguration {
             css9_relative_scale: bytes[35],
             css10_relative_scale: bytes[36],
             css_threshold: bytes[37],
-            cam1_sensor_mounting_transform_alpha_angle: i16::from_le_bytes(take!(bytes[38; 2])),
-            cam1_sensor_mounting_transform_beta_angle: i16::from_le_bytes(take!(bytes[40; 2])),
-            cam1_sensor_mounting_transform_gamma_angle: i16::from_le_bytes(take!(bytes[42; 2])),
+            cam1_mounting_alpha: i16::from_le_bytes(take!(bytes[38; 2])),
+            cam1_mounting_beta: i16::from_le_bytes(take!(bytes[40; 2])),
+            cam1_mounting_gamma: i16::from_le_bytes(take!(bytes[42; 2])),
             cam1_detection_threshold: bytes[44],
             cam1_sensor_auto_adjust_mode: bytes[45] & 0x01 != 0,
             cam1_sensor_exposure_time: u16::from_le_bytes(take!(bytes[46; 2])),
             cam1_boresight_x: u16::from_le_bytes(take!(bytes[48; 2])),
             cam1_boresight_y: u16::from_le_bytes(take!(bytes[50; 2])),
-            cam2_sensor_mounting_transform_alpha_angle: i16::from_le_bytes(take!(bytes[52; 2])),
-            cam2_sensor_mounting_transform_beta_angle: i16::from_le_bytes(take!(bytes[54; 2])),
-            cam2_sensor_mounting_transform_gamma_angle: i16::from_le_bytes(take!(bytes[56; 2])),
+            cam2_mounting_alpha: i16::from_le_bytes(take!(bytes[52; 2])),
+            cam2_mounting_beta: i16::from_le_bytes(take!(bytes[54; 2])),
+            cam2_mounting_gamma: i16::from_le_bytes(take!(bytes[56; 2])),
             cam2_detection_threshold: bytes[58],
             cam2_sensor_auto_adjust_mode: bytes[59] & 0x01 != 0,
             cam2_sensor_exposure_time: u16::from_le_bytes(take!(bytes[60; 2])),
@@ -833,39 +833,39 @@ impl AdcsConfiguration {
             cam_2_maximum_x_of_area_5: u16::from_le_bytes(take!(bytes[144; 2])),
             cam_2_minimum_y_of_area_5: u16::from_le_bytes(take!(bytes[146; 2])),
             cam_2_maximum_y_of_area_5: u16::from_le_bytes(take!(bytes[148; 2])),
-            magnetometer_mounting_transform_alpha_angle: i16::from_le_bytes(take!(bytes[150; 2])),
-            magnetometer_mounting_transform_beta_angle: i16::from_le_bytes(take!(bytes[152; 2])),
-            magnetometer_mounting_transform_gamma_angle: i16::from_le_bytes(take!(bytes[154; 2])),
+            magnetometer_mounting_alpha: i16::from_le_bytes(take!(bytes[150; 2])),
+            magnetometer_mounting_beta: i16::from_le_bytes(take!(bytes[152; 2])),
+            magnetometer_mounting_gamma: i16::from_le_bytes(take!(bytes[154; 2])),
             magnetometer_channel_1_offset: i16::from_le_bytes(take!(bytes[156; 2])),
             magnetometer_channel_2_offset: i16::from_le_bytes(take!(bytes[158; 2])),
             magnetometer_channel_3_offset: i16::from_le_bytes(take!(bytes[160; 2])),
-            magnetometer_sensitivity_matrix_s11: i16::from_le_bytes(take!(bytes[162; 2])),
-            magnetometer_sensitivity_matrix_s22: i16::from_le_bytes(take!(bytes[164; 2])),
-            magnetometer_sensitivity_matrix_s33: i16::from_le_bytes(take!(bytes[166; 2])),
-            magnetometer_sensitivity_matrix_s12: i16::from_le_bytes(take!(bytes[168; 2])),
-            magnetometer_sensitivity_matrix_s13: i16::from_le_bytes(take!(bytes[170; 2])),
-            magnetometer_sensitivity_matrix_s21: i16::from_le_bytes(take!(bytes[172; 2])),
-            magnetometer_sensitivity_matrix_s23: i16::from_le_bytes(take!(bytes[174; 2])),
-            magnetometer_sensitivity_matrix_s31: i16::from_le_bytes(take!(bytes[176; 2])),
-            magnetometer_sensitivity_matrix_s32: i16::from_le_bytes(take!(bytes[178; 2])),
-            redundant_magnetometer_mounting_transform_alpha_angle: i16::from_le_bytes(take!(bytes[180; 2])),
-            redundant_magnetometer_mounting_transform_beta_angle: i16::from_le_bytes(take!(bytes[182; 2])),
-            redundant_magnetometer_mounting_transform_gamma_angle: i16::from_le_bytes(take!(bytes[184; 2])),
-            redundant_magnetometer_channel_1_offset: i16::from_le_bytes(take!(bytes[186; 2])),
-            redundant_magnetometer_channel_2_offset: i16::from_le_bytes(take!(bytes[188; 2])),
-            redundant_magnetometer_channel_3_offset: i16::from_le_bytes(take!(bytes[190; 2])),
-            redundant_magnetometer_sensitivity_matrix_s11: i16::from_le_bytes(take!(bytes[192; 2])),
-            redundant_magnetometer_sensitivity_matrix_s22: i16::from_le_bytes(take!(bytes[194; 2])),
-            redundant_magnetometer_sensitivity_matrix_s33: i16::from_le_bytes(take!(bytes[196; 2])),
-            redundant_magnetometer_sensitivity_matrix_s12: i16::from_le_bytes(take!(bytes[198; 2])),
-            redundant_magnetometer_sensitivity_matrix_s13: i16::from_le_bytes(take!(bytes[200; 2])),
-            redundant_magnetometer_sensitivity_matrix_s21: i16::from_le_bytes(take!(bytes[202; 2])),
-            redundant_magnetometer_sensitivity_matrix_s23: i16::from_le_bytes(take!(bytes[204; 2])),
-            redundant_magnetometer_sensitivity_matrix_s31: i16::from_le_bytes(take!(bytes[206; 2])),
-            redundant_magnetometer_sensitivity_matrix_s32: i16::from_le_bytes(take!(bytes[208; 2])),
-            star_tracker_mounting_transform_alpha_angle: i16::from_le_bytes(take!(bytes[210; 2])),
-            star_tracker_mounting_transform_beta_angle: i16::from_le_bytes(take!(bytes[212; 2])),
-            star_tracker_mounting_transform_gamma_angle: i16::from_le_bytes(take!(bytes[214; 2])),
+            magnetometer_sensitivity_s11: i16::from_le_bytes(take!(bytes[162; 2])),
+            magnetometer_sensitivity_s22: i16::from_le_bytes(take!(bytes[164; 2])),
+            magnetometer_sensitivity_s33: i16::from_le_bytes(take!(bytes[166; 2])),
+            magnetometer_sensitivity_s12: i16::from_le_bytes(take!(bytes[168; 2])),
+            magnetometer_sensitivity_s13: i16::from_le_bytes(take!(bytes[170; 2])),
+            magnetometer_sensitivity_s21: i16::from_le_bytes(take!(bytes[172; 2])),
+            magnetometer_sensitivity_s23: i16::from_le_bytes(take!(bytes[174; 2])),
+            magnetometer_sensitivity_s31: i16::from_le_bytes(take!(bytes[176; 2])),
+            magnetometer_sensitivity_s32: i16::from_le_bytes(take!(bytes[178; 2])),
+            redundant_mag_mounting_alpha: i16::from_le_bytes(take!(bytes[180; 2])),
+            redundant_mag_mounting_beta: i16::from_le_bytes(take!(bytes[182; 2])),
+            redundant_mag_mounting_gamma: i16::from_le_bytes(take!(bytes[184; 2])),
+            redundant_mag_channel_1_offset: i16::from_le_bytes(take!(bytes[186; 2])),
+            redundant_mag_channel_2_offset: i16::from_le_bytes(take!(bytes[188; 2])),
+            redundant_mag_channel_3_offset: i16::from_le_bytes(take!(bytes[190; 2])),
+            redundant_mag_sensitivity_s11: i16::from_le_bytes(take!(bytes[192; 2])),
+            redundant_mag_sensitivity_s22: i16::from_le_bytes(take!(bytes[194; 2])),
+            redundant_mag_sensitivity_s33: i16::from_le_bytes(take!(bytes[196; 2])),
+            redundant_mag_sensitivity_s12: i16::from_le_bytes(take!(bytes[198; 2])),
+            redundant_mag_sensitivity_s13: i16::from_le_bytes(take!(bytes[200; 2])),
+            redundant_mag_sensitivity_s21: i16::from_le_bytes(take!(bytes[202; 2])),
+            redundant_mag_sensitivity_s23: i16::from_le_bytes(take!(bytes[204; 2])),
+            redundant_mag_sensitivity_s31: i16::from_le_bytes(take!(bytes[206; 2])),
+            redundant_mag_sensitivity_s32: i16::from_le_bytes(take!(bytes[208; 2])),
+            star_tracker_mounting_alpha: i16::from_le_bytes(take!(bytes[210; 2])),
+            star_tracker_mounting_beta: i16::from_le_bytes(take!(bytes[212; 2])),
+            star_tracker_mounting_gamma: i16::from_le_bytes(take!(bytes[214; 2])),
             star_tracker_exposure_time: u16::from_le_bytes(take!(bytes[216; 2])),
             star_tracker_analog_gain: u16::from_le_bytes(take!(bytes[218; 2])),
             star_tracker_detection_threshold: bytes[220],
@@ -995,17 +995,17 @@ impl AdcsConfiguration {
         bytes[35] = self.css9_relative_scale;
         bytes[36] = self.css10_relative_scale;
         bytes[37] = self.css_threshold;
-        put!(self.cam1_sensor_mounting_transform_alpha_angle.to_le_bytes() => bytes[38; 2]);
-        put!(self.cam1_sensor_mounting_transform_beta_angle.to_le_bytes() => bytes[40; 2]);
-        put!(self.cam1_sensor_mounting_transform_gamma_angle.to_le_bytes() => bytes[42; 2]);
+        put!(self.cam1_mounting_alpha.to_le_bytes() => bytes[38; 2]);
+        put!(self.cam1_mounting_beta.to_le_bytes() => bytes[40; 2]);
+        put!(self.cam1_mounting_gamma.to_le_bytes() => bytes[42; 2]);
         bytes[44] = self.cam1_detection_threshold;
         bytes[45] |= u8::from(self.cam1_sensor_auto_adjust_mode);
         put!(self.cam1_sensor_exposure_time.to_le_bytes() => bytes[46; 2]);
         put!(self.cam1_boresight_x.to_le_bytes() => bytes[48; 2]);
         put!(self.cam1_boresight_y.to_le_bytes() => bytes[50; 2]);
-        put!(self.cam2_sensor_mounting_transform_alpha_angle.to_le_bytes() => bytes[52; 2]);
-        put!(self.cam2_sensor_mounting_transform_beta_angle.to_le_bytes() => bytes[54; 2]);
-        put!(self.cam2_sensor_mounting_transform_gamma_angle.to_le_bytes() => bytes[56; 2]);
+        put!(self.cam2_mounting_alpha.to_le_bytes() => bytes[52; 2]);
+        put!(self.cam2_mounting_beta.to_le_bytes() => bytes[54; 2]);
+        put!(self.cam2_mounting_gamma.to_le_bytes() => bytes[56; 2]);
         bytes[58] = self.cam2_detection_threshold;
         bytes[59] |= u8::from(self.cam2_sensor_auto_adjust_mode);
         put!(self.cam2_sensor_exposure_time.to_le_bytes() => bytes[60; 2]);
@@ -1055,39 +1055,39 @@ impl AdcsConfiguration {
         put!(self.cam_2_maximum_x_of_area_5.to_le_bytes() => bytes[144; 2]);
         put!(self.cam_2_minimum_y_of_area_5.to_le_bytes() => bytes[146; 2]);
         put!(self.cam_2_maximum_y_of_area_5.to_le_bytes() => bytes[148; 2]);
-        put!(self.magnetometer_mounting_transform_alpha_angle.to_le_bytes() => bytes[150; 2]);
-        put!(self.magnetometer_mounting_transform_beta_angle.to_le_bytes() => bytes[152; 2]);
-        put!(self.magnetometer_mounting_transform_gamma_angle.to_le_bytes() => bytes[154; 2]);
+        put!(self.magnetometer_mounting_alpha.to_le_bytes() => bytes[150; 2]);
+        put!(self.magnetometer_mounting_beta.to_le_bytes() => bytes[152; 2]);
+        put!(self.magnetometer_mounting_gamma.to_le_bytes() => bytes[154; 2]);
         put!(self.magnetometer_channel_1_offset.to_le_bytes() => bytes[156; 2]);
         put!(self.magnetometer_channel_2_offset.to_le_bytes() => bytes[158; 2]);
         put!(self.magnetometer_channel_3_offset.to_le_bytes() => bytes[160; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s11.to_le_bytes() => bytes[162; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s22.to_le_bytes() => bytes[164; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s33.to_le_bytes() => bytes[166; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s12.to_le_bytes() => bytes[168; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s13.to_le_bytes() => bytes[170; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s21.to_le_bytes() => bytes[172; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s23.to_le_bytes() => bytes[174; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s31.to_le_bytes() => bytes[176; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s32.to_le_bytes() => bytes[178; 2]);
-        put!(self.redundant_magnetometer_mounting_transform_alpha_angle.to_le_bytes() => bytes[180; 2]);
-        put!(self.redundant_magnetometer_mounting_transform_beta_angle.to_le_bytes() => bytes[182; 2]);
-        put!(self.redundant_magnetometer_mounting_transform_gamma_angle.to_le_bytes() => bytes[184; 2]);
-        put!(self.redundant_magnetometer_channel_1_offset.to_le_bytes() => bytes[186; 2]);
-        put!(self.redundant_magnetometer_channel_2_offset.to_le_bytes() => bytes[188; 2]);
-        put!(self.redundant_magnetometer_channel_3_offset.to_le_bytes() => bytes[190; 2]);
-        put!(self.redundant_magnetometer_sensitivity_matrix_s11.to_le_bytes() => bytes[192; 2]);
-        put!(self.redundant_magnetometer_sensitivity_matrix_s22.to_le_bytes() => bytes[194; 2]);
-        put!(self.redundant_magnetometer_sensitivity_matrix_s33.to_le_bytes() => bytes[196; 2]);
-        put!(self.redundant_magnetometer_sensitivity_matrix_s12.to_le_bytes() => bytes[198; 2]);
-        put!(self.redundant_magnetometer_sensitivity_matrix_s13.to_le_bytes() => bytes[200; 2]);
-        put!(self.redundant_magnetometer_sensitivity_matrix_s21.to_le_bytes() => bytes[202; 2]);
-        put!(self.redundant_magnetometer_sensitivity_matrix_s23.to_le_bytes() => bytes[204; 2]);
-        put!(self.redundant_magnetometer_sensitivity_matrix_s31.to_le_bytes() => bytes[206; 2]);
-        put!(self.redundant_magnetometer_sensitivity_matrix_s32.to_le_bytes() => bytes[208; 2]);
-        put!(self.star_tracker_mounting_transform_alpha_angle.to_le_bytes() => bytes[210; 2]);
-        put!(self.star_tracker_mounting_transform_beta_angle.to_le_bytes() => bytes[212; 2]);
-        put!(self.star_tracker_mounting_transform_gamma_angle.to_le_bytes() => bytes[214; 2]);
+        put!(self.magnetometer_sensitivity_s11.to_le_bytes() => bytes[162; 2]);
+        put!(self.magnetometer_sensitivity_s22.to_le_bytes() => bytes[164; 2]);
+        put!(self.magnetometer_sensitivity_s33.to_le_bytes() => bytes[166; 2]);
+        put!(self.magnetometer_sensitivity_s12.to_le_bytes() => bytes[168; 2]);
+        put!(self.magnetometer_sensitivity_s13.to_le_bytes() => bytes[170; 2]);
+        put!(self.magnetometer_sensitivity_s21.to_le_bytes() => bytes[172; 2]);
+        put!(self.magnetometer_sensitivity_s23.to_le_bytes() => bytes[174; 2]);
+        put!(self.magnetometer_sensitivity_s31.to_le_bytes() => bytes[176; 2]);
+        put!(self.magnetometer_sensitivity_s32.to_le_bytes() => bytes[178; 2]);
+        put!(self.redundant_mag_mounting_alpha.to_le_bytes() => bytes[180; 2]);
+        put!(self.redundant_mag_mounting_beta.to_le_bytes() => bytes[182; 2]);
+        put!(self.redundant_mag_mounting_gamma.to_le_bytes() => bytes[184; 2]);
+        put!(self.redundant_mag_channel_1_offset.to_le_bytes() => bytes[186; 2]);
+        put!(self.redundant_mag_channel_2_offset.to_le_bytes() => bytes[188; 2]);
+        put!(self.redundant_mag_channel_3_offset.to_le_bytes() => bytes[190; 2]);
+        put!(self.redundant_mag_sensitivity_s11.to_le_bytes() => bytes[192; 2]);
+        put!(self.redundant_mag_sensitivity_s22.to_le_bytes() => bytes[194; 2]);
+        put!(self.redundant_mag_sensitivity_s33.to_le_bytes() => bytes[196; 2]);
+        put!(self.redundant_mag_sensitivity_s12.to_le_bytes() => bytes[198; 2]);
+        put!(self.redundant_mag_sensitivity_s13.to_le_bytes() => bytes[200; 2]);
+        put!(self.redundant_mag_sensitivity_s21.to_le_bytes() => bytes[202; 2]);
+        put!(self.redundant_mag_sensitivity_s23.to_le_bytes() => bytes[204; 2]);
+        put!(self.redundant_mag_sensitivity_s31.to_le_bytes() => bytes[206; 2]);
+        put!(self.redundant_mag_sensitivity_s32.to_le_bytes() => bytes[208; 2]);
+        put!(self.star_tracker_mounting_alpha.to_le_bytes() => bytes[210; 2]);
+        put!(self.star_tracker_mounting_beta.to_le_bytes() => bytes[212; 2]);
+        put!(self.star_tracker_mounting_gamma.to_le_bytes() => bytes[214; 2]);
         put!(self.star_tracker_exposure_time.to_le_bytes() => bytes[216; 2]);
         put!(self.star_tracker_analog_gain.to_le_bytes() => bytes[218; 2]);
         bytes[220] = self.star_tracker_detection_threshold;
@@ -1400,8 +1400,8 @@ impl AdcsConfiguration {
 
     /// Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn cam1_sensor_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        f64::from(self.cam1_sensor_mounting_transform_alpha_angle) / 100.0
+    pub fn cam1_mounting_alpha_deg(&self) -> f64 {
+        f64::from(self.cam1_mounting_alpha) / 100.0
     }
 
     /// Sets Cam1 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -1410,19 +1410,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_cam1_sensor_mounting_transform_alpha_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.cam1_sensor_mounting_transform_alpha_angle =
-            CAM1_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
+    pub fn set_cam1_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.cam1_mounting_alpha = CAM1_MOUNTING_ALPHA.raw(value)?;
         Ok(())
     }
 
     /// Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn cam1_sensor_mounting_transform_beta_angle_deg(&self) -> f64 {
-        f64::from(self.cam1_sensor_mounting_transform_beta_angle) / 100.0
+    pub fn cam1_mounting_beta_deg(&self) -> f64 {
+        f64::from(self.cam1_mounting_beta) / 100.0
     }
 
     /// Sets Cam1 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -1431,19 +1427,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_cam1_sensor_mounting_transform_beta_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.cam1_sensor_mounting_transform_beta_angle =
-            CAM1_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
+    pub fn set_cam1_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.cam1_mounting_beta = CAM1_MOUNTING_BETA.raw(value)?;
         Ok(())
     }
 
     /// Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn cam1_sensor_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        f64::from(self.cam1_sensor_mounting_transform_gamma_angle) / 100.0
+    pub fn cam1_mounting_gamma_deg(&self) -> f64 {
+        f64::from(self.cam1_mounting_gamma) / 100.0
     }
 
     /// Sets Cam1 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -1452,12 +1444,8 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_cam1_sensor_mounting_transform_gamma_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.cam1_sensor_mounting_transform_gamma_angle =
-            CAM1_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
+    pub fn set_cam1_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.cam1_mounting_gamma = CAM1_MOUNTING_GAMMA.raw(value)?;
         Ok(())
     }
 
@@ -1495,8 +1483,8 @@ impl AdcsConfiguration {
 
     /// Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn cam2_sensor_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        f64::from(self.cam2_sensor_mounting_transform_alpha_angle) / 100.0
+    pub fn cam2_mounting_alpha_deg(&self) -> f64 {
+        f64::from(self.cam2_mounting_alpha) / 100.0
     }
 
     /// Sets Cam2 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -1505,19 +1493,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_cam2_sensor_mounting_transform_alpha_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.cam2_sensor_mounting_transform_alpha_angle =
-            CAM2_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
+    pub fn set_cam2_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.cam2_mounting_alpha = CAM2_MOUNTING_ALPHA.raw(value)?;
         Ok(())
     }
 
     /// Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn cam2_sensor_mounting_transform_beta_angle_deg(&self) -> f64 {
-        f64::from(self.cam2_sensor_mounting_transform_beta_angle) / 100.0
+    pub fn cam2_mounting_beta_deg(&self) -> f64 {
+        f64::from(self.cam2_mounting_beta) / 100.0
     }
 
     /// Sets Cam2 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -1526,19 +1510,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_cam2_sensor_mounting_transform_beta_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.cam2_sensor_mounting_transform_beta_angle =
-            CAM2_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
+    pub fn set_cam2_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.cam2_mounting_beta = CAM2_MOUNTING_BETA.raw(value)?;
         Ok(())
     }
 
     /// Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn cam2_sensor_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        f64::from(self.cam2_sensor_mounting_transform_gamma_angle) / 100.0
+    pub fn cam2_mounting_gamma_deg(&self) -> f64 {
+        f64::from(self.cam2_mounting_gamma) / 100.0
     }
 
     /// Sets Cam2 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -1547,12 +1527,8 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_cam2_sensor_mounting_transform_gamma_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.cam2_sensor_mounting_transform_gamma_angle =
-            CAM2_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
+    pub fn set_cam2_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.cam2_mounting_gamma = CAM2_MOUNTING_GAMMA.raw(value)?;
         Ok(())
     }
 
@@ -1590,8 +1566,8 @@ impl AdcsConfiguration {
 
     /// Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn magnetometer_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        f64::from(self.magnetometer_mounting_transform_alpha_angle) / 100.0
+    pub fn magnetometer_mounting_alpha_deg(&self) -> f64 {
+        f64::from(self.magnetometer_mounting_alpha) / 100.0
     }
 
     /// Sets Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -1600,19 +1576,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_mounting_transform_alpha_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_mounting_transform_alpha_angle =
-            MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
+    pub fn set_magnetometer_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.magnetometer_mounting_alpha = MAGNETOMETER_MOUNTING_ALPHA.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn magnetometer_mounting_transform_beta_angle_deg(&self) -> f64 {
-        f64::from(self.magnetometer_mounting_transform_beta_angle) / 100.0
+    pub fn magnetometer_mounting_beta_deg(&self) -> f64 {
+        f64::from(self.magnetometer_mounting_beta) / 100.0
     }
 
     /// Sets Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -1621,19 +1593,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_mounting_transform_beta_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_mounting_transform_beta_angle =
-            MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
+    pub fn set_magnetometer_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.magnetometer_mounting_beta = MAGNETOMETER_MOUNTING_BETA.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn magnetometer_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        f64::from(self.magnetometer_mounting_transform_gamma_angle) / 100.0
+    pub fn magnetometer_mounting_gamma_deg(&self) -> f64 {
+        f64::from(self.magnetometer_mounting_gamma) / 100.0
     }
 
     /// Sets Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -1642,12 +1610,8 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_mounting_transform_gamma_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_mounting_transform_gamma_angle =
-            MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
+    pub fn set_magnetometer_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.magnetometer_mounting_gamma = MAGNETOMETER_MOUNTING_GAMMA.raw(value)?;
         Ok(())
     }
 
@@ -1704,8 +1668,8 @@ impl AdcsConfiguration {
 
     /// Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s11_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s11) / 1_000.0
+    pub fn magnetometer_sensitivity_s11_physical(&self) -> f64 {
+        f64::from(self.magnetometer_sensitivity_s11) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw value,
@@ -1714,18 +1678,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s11_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s11 = MAGNETOMETER_SENSITIVITY_MATRIX_S11.raw(value)?;
+    pub fn set_magnetometer_sensitivity_s11_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s11 = MAGNETOMETER_SENSITIVITY_S11.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s22_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s22) / 1_000.0
+    pub fn magnetometer_sensitivity_s22_physical(&self) -> f64 {
+        f64::from(self.magnetometer_sensitivity_s22) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw value,
@@ -1734,18 +1695,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s22_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s22 = MAGNETOMETER_SENSITIVITY_MATRIX_S22.raw(value)?;
+    pub fn set_magnetometer_sensitivity_s22_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s22 = MAGNETOMETER_SENSITIVITY_S22.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s33_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s33) / 1_000.0
+    pub fn magnetometer_sensitivity_s33_physical(&self) -> f64 {
+        f64::from(self.magnetometer_sensitivity_s33) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw value,
@@ -1754,18 +1712,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s33_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s33 = MAGNETOMETER_SENSITIVITY_MATRIX_S33.raw(value)?;
+    pub fn set_magnetometer_sensitivity_s33_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s33 = MAGNETOMETER_SENSITIVITY_S33.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s12_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s12) / 1_000.0
+    pub fn magnetometer_sensitivity_s12_physical(&self) -> f64 {
+        f64::from(self.magnetometer_sensitivity_s12) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw value,
@@ -1774,18 +1729,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s12_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s12 = MAGNETOMETER_SENSITIVITY_MATRIX_S12.raw(value)?;
+    pub fn set_magnetometer_sensitivity_s12_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s12 = MAGNETOMETER_SENSITIVITY_S12.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s13_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s13) / 1_000.0
+    pub fn magnetometer_sensitivity_s13_physical(&self) -> f64 {
+        f64::from(self.magnetometer_sensitivity_s13) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw value,
@@ -1794,18 +1746,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s13_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s13 = MAGNETOMETER_SENSITIVITY_MATRIX_S13.raw(value)?;
+    pub fn set_magnetometer_sensitivity_s13_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s13 = MAGNETOMETER_SENSITIVITY_S13.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s21_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s21) / 1_000.0
+    pub fn magnetometer_sensitivity_s21_physical(&self) -> f64 {
+        f64::from(self.magnetometer_sensitivity_s21) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw value,
@@ -1814,18 +1763,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s21_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s21 = MAGNETOMETER_SENSITIVITY_MATRIX_S21.raw(value)?;
+    pub fn set_magnetometer_sensitivity_s21_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s21 = MAGNETOMETER_SENSITIVITY_S21.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s23_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s23) / 1_000.0
+    pub fn magnetometer_sensitivity_s23_physical(&self) -> f64 {
+        f64::from(self.magnetometer_sensitivity_s23) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw value,
@@ -1834,18 +1780,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s23_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s23 = MAGNETOMETER_SENSITIVITY_MATRIX_S23.raw(value)?;
+    pub fn set_magnetometer_sensitivity_s23_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s23 = MAGNETOMETER_SENSITIVITY_S23.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s31_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s31) / 1_000.0
+    pub fn magnetometer_sensitivity_s31_physical(&self) -> f64 {
+        f64::from(self.magnetometer_sensitivity_s31) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw value,
@@ -1854,18 +1797,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s31_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s31 = MAGNETOMETER_SENSITIVITY_MATRIX_S31.raw(value)?;
+    pub fn set_magnetometer_sensitivity_s31_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s31 = MAGNETOMETER_SENSITIVITY_S31.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s32_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s32) / 1_000.0
+    pub fn magnetometer_sensitivity_s32_physical(&self) -> f64 {
+        f64::from(self.magnetometer_sensitivity_s32) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw value,
@@ -1874,18 +1814,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s32_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s32 = MAGNETOMETER_SENSITIVITY_MATRIX_S32.raw(value)?;
+    pub fn set_magnetometer_sensitivity_s32_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.magnetometer_sensitivity_s32 = MAGNETOMETER_SENSITIVITY_S32.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn redundant_magnetometer_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_mounting_transform_alpha_angle) / 100.0
+    pub fn redundant_mag_mounting_alpha_deg(&self) -> f64 {
+        f64::from(self.redundant_mag_mounting_alpha) / 100.0
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value,
@@ -1894,19 +1831,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_mounting_transform_alpha_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_mounting_transform_alpha_angle =
-            REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
+    pub fn set_redundant_mag_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_mounting_alpha = REDUNDANT_MAG_MOUNTING_ALPHA.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn redundant_magnetometer_mounting_transform_beta_angle_deg(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_mounting_transform_beta_angle) / 100.0
+    pub fn redundant_mag_mounting_beta_deg(&self) -> f64 {
+        f64::from(self.redundant_mag_mounting_beta) / 100.0
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value,
@@ -1915,19 +1848,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_mounting_transform_beta_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_mounting_transform_beta_angle =
-            REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
+    pub fn set_redundant_mag_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_mounting_beta = REDUNDANT_MAG_MOUNTING_BETA.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn redundant_magnetometer_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_mounting_transform_gamma_angle) / 100.0
+    pub fn redundant_mag_mounting_gamma_deg(&self) -> f64 {
+        f64::from(self.redundant_mag_mounting_gamma) / 100.0
     }
 
     /// Sets Redundant Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value,
@@ -1936,19 +1865,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_mounting_transform_gamma_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_mounting_transform_gamma_angle =
-            REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
+    pub fn set_redundant_mag_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_mounting_gamma = REDUNDANT_MAG_MOUNTING_GAMMA.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn redundant_magnetometer_channel_1_offset_physical(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_channel_1_offset) / 1_000.0
+    pub fn redundant_mag_channel_1_offset_physical(&self) -> f64 {
+        f64::from(self.redundant_mag_channel_1_offset) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value,
@@ -1957,19 +1882,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_channel_1_offset_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_channel_1_offset =
-            REDUNDANT_MAGNETOMETER_CHANNEL_1_OFFSET.raw(value)?;
+    pub fn set_redundant_mag_channel_1_offset_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_channel_1_offset = REDUNDANT_MAG_CHANNEL_1_OFFSET.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn redundant_magnetometer_channel_2_offset_physical(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_channel_2_offset) / 1_000.0
+    pub fn redundant_mag_channel_2_offset_physical(&self) -> f64 {
+        f64::from(self.redundant_mag_channel_2_offset) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value,
@@ -1978,19 +1899,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_channel_2_offset_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_channel_2_offset =
-            REDUNDANT_MAGNETOMETER_CHANNEL_2_OFFSET.raw(value)?;
+    pub fn set_redundant_mag_channel_2_offset_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_channel_2_offset = REDUNDANT_MAG_CHANNEL_2_OFFSET.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn redundant_magnetometer_channel_3_offset_physical(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_channel_3_offset) / 1_000.0
+    pub fn redundant_mag_channel_3_offset_physical(&self) -> f64 {
+        f64::from(self.redundant_mag_channel_3_offset) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value,
@@ -1999,19 +1916,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_channel_3_offset_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_channel_3_offset =
-            REDUNDANT_MAGNETOMETER_CHANNEL_3_OFFSET.raw(value)?;
+    pub fn set_redundant_mag_channel_3_offset_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_channel_3_offset = REDUNDANT_MAG_CHANNEL_3_OFFSET.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn redundant_magnetometer_sensitivity_matrix_s11_physical(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_sensitivity_matrix_s11) / 1_000.0
+    pub fn redundant_mag_sensitivity_s11_physical(&self) -> f64 {
+        f64::from(self.redundant_mag_sensitivity_s11) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw
@@ -2020,19 +1933,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_sensitivity_matrix_s11_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_sensitivity_matrix_s11 =
-            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S11.raw(value)?;
+    pub fn set_redundant_mag_sensitivity_s11_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s11 = REDUNDANT_MAG_SENSITIVITY_S11.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn redundant_magnetometer_sensitivity_matrix_s22_physical(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_sensitivity_matrix_s22) / 1_000.0
+    pub fn redundant_mag_sensitivity_s22_physical(&self) -> f64 {
+        f64::from(self.redundant_mag_sensitivity_s22) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw
@@ -2041,19 +1950,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_sensitivity_matrix_s22_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_sensitivity_matrix_s22 =
-            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S22.raw(value)?;
+    pub fn set_redundant_mag_sensitivity_s22_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s22 = REDUNDANT_MAG_SENSITIVITY_S22.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn redundant_magnetometer_sensitivity_matrix_s33_physical(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_sensitivity_matrix_s33) / 1_000.0
+    pub fn redundant_mag_sensitivity_s33_physical(&self) -> f64 {
+        f64::from(self.redundant_mag_sensitivity_s33) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw
@@ -2062,19 +1967,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_sensitivity_matrix_s33_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_sensitivity_matrix_s33 =
-            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S33.raw(value)?;
+    pub fn set_redundant_mag_sensitivity_s33_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s33 = REDUNDANT_MAG_SENSITIVITY_S33.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn redundant_magnetometer_sensitivity_matrix_s12_physical(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_sensitivity_matrix_s12) / 1_000.0
+    pub fn redundant_mag_sensitivity_s12_physical(&self) -> f64 {
+        f64::from(self.redundant_mag_sensitivity_s12) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw
@@ -2083,19 +1984,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_sensitivity_matrix_s12_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_sensitivity_matrix_s12 =
-            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S12.raw(value)?;
+    pub fn set_redundant_mag_sensitivity_s12_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s12 = REDUNDANT_MAG_SENSITIVITY_S12.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn redundant_magnetometer_sensitivity_matrix_s13_physical(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_sensitivity_matrix_s13) / 1_000.0
+    pub fn redundant_mag_sensitivity_s13_physical(&self) -> f64 {
+        f64::from(self.redundant_mag_sensitivity_s13) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw
@@ -2104,19 +2001,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_sensitivity_matrix_s13_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_sensitivity_matrix_s13 =
-            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S13.raw(value)?;
+    pub fn set_redundant_mag_sensitivity_s13_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s13 = REDUNDANT_MAG_SENSITIVITY_S13.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn redundant_magnetometer_sensitivity_matrix_s21_physical(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_sensitivity_matrix_s21) / 1_000.0
+    pub fn redundant_mag_sensitivity_s21_physical(&self) -> f64 {
+        f64::from(self.redundant_mag_sensitivity_s21) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw
@@ -2125,19 +2018,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_sensitivity_matrix_s21_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_sensitivity_matrix_s21 =
-            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S21.raw(value)?;
+    pub fn set_redundant_mag_sensitivity_s21_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s21 = REDUNDANT_MAG_SENSITIVITY_S21.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn redundant_magnetometer_sensitivity_matrix_s23_physical(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_sensitivity_matrix_s23) / 1_000.0
+    pub fn redundant_mag_sensitivity_s23_physical(&self) -> f64 {
+        f64::from(self.redundant_mag_sensitivity_s23) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw
@@ -2146,19 +2035,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_sensitivity_matrix_s23_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_sensitivity_matrix_s23 =
-            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S23.raw(value)?;
+    pub fn set_redundant_mag_sensitivity_s23_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s23 = REDUNDANT_MAG_SENSITIVITY_S23.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn redundant_magnetometer_sensitivity_matrix_s31_physical(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_sensitivity_matrix_s31) / 1_000.0
+    pub fn redundant_mag_sensitivity_s31_physical(&self) -> f64 {
+        f64::from(self.redundant_mag_sensitivity_s31) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw
@@ -2167,19 +2052,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_sensitivity_matrix_s31_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_sensitivity_matrix_s31 =
-            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S31.raw(value)?;
+    pub fn set_redundant_mag_sensitivity_s31_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s31 = REDUNDANT_MAG_SENSITIVITY_S31.raw(value)?;
         Ok(())
     }
 
     /// Redundant Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn redundant_magnetometer_sensitivity_matrix_s32_physical(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_sensitivity_matrix_s32) / 1_000.0
+    pub fn redundant_mag_sensitivity_s32_physical(&self) -> f64 {
+        f64::from(self.redundant_mag_sensitivity_s32) / 1_000.0
     }
 
     /// Sets Redundant Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw
@@ -2188,19 +2069,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_sensitivity_matrix_s32_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.redundant_magnetometer_sensitivity_matrix_s32 =
-            REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S32.raw(value)?;
+    pub fn set_redundant_mag_sensitivity_s32_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_sensitivity_s32 = REDUNDANT_MAG_SENSITIVITY_S32.raw(value)?;
         Ok(())
     }
 
     /// StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn star_tracker_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        f64::from(self.star_tracker_mounting_transform_alpha_angle) / 100.0
+    pub fn star_tracker_mounting_alpha_deg(&self) -> f64 {
+        f64::from(self.star_tracker_mounting_alpha) / 100.0
     }
 
     /// Sets StarTracker Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -2209,19 +2086,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_star_tracker_mounting_transform_alpha_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.star_tracker_mounting_transform_alpha_angle =
-            STAR_TRACKER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
+    pub fn set_star_tracker_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.star_tracker_mounting_alpha = STAR_TRACKER_MOUNTING_ALPHA.raw(value)?;
         Ok(())
     }
 
     /// StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn star_tracker_mounting_transform_beta_angle_deg(&self) -> f64 {
-        f64::from(self.star_tracker_mounting_transform_beta_angle) / 100.0
+    pub fn star_tracker_mounting_beta_deg(&self) -> f64 {
+        f64::from(self.star_tracker_mounting_beta) / 100.0
     }
 
     /// Sets StarTracker Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -2230,19 +2103,15 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_star_tracker_mounting_transform_beta_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.star_tracker_mounting_transform_beta_angle =
-            STAR_TRACKER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
+    pub fn set_star_tracker_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.star_tracker_mounting_beta = STAR_TRACKER_MOUNTING_BETA.raw(value)?;
         Ok(())
     }
 
     /// StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn star_tracker_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        f64::from(self.star_tracker_mounting_transform_gamma_angle) / 100.0
+    pub fn star_tracker_mounting_gamma_deg(&self) -> f64 {
+        f64::from(self.star_tracker_mounting_gamma) / 100.0
     }
 
     /// Sets StarTracker Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -2251,12 +2120,8 @@ impl AdcsConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_star_tracker_mounting_transform_gamma_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.star_tracker_mounting_transform_gamma_angle =
-            STAR_TRACKER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
+    pub fn set_star_tracker_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.star_tracker_mounting_gamma = STAR_TRACKER_MOUNTING_GAMMA.raw(value)?;
         Ok(())
     }
 
@@ -2588,17 +2453,17 @@ impl Default for AdcsConfiguration {
             css9_relative_scale: 0,
             css10_relative_scale: 0,
             css_threshold: 0,
-            cam1_sensor_mounting_transform_alpha_angle: 0,
-            cam1_sensor_mounting_transform_beta_angle: 0,
-            cam1_sensor_mounting_transform_gamma_angle: 0,
+            cam1_mounting_alpha: 0,
+            cam1_mounting_beta: 0,
+            cam1_mounting_gamma: 0,
             cam1_detection_threshold: 0,
             cam1_sensor_auto_adjust_mode: false,
             cam1_sensor_exposure_time: 0,
             cam1_boresight_x: 0,
             cam1_boresight_y: 0,
-            cam2_sensor_mounting_transform_alpha_angle: 0,
-            cam2_sensor_mounting_transform_beta_angle: 0,
-            cam2_sensor_mounting_transform_gamma_angle: 0,
+            cam2_mounting_alpha: 0,
+            cam2_mounting_beta: 0,
+            cam2_mounting_gamma: 0,
             cam2_detection_threshold: 0,
             cam2_sensor_auto_adjust_mode: false,
             cam2_sensor_exposure_time: 0,
@@ -2648,39 +2513,39 @@ impl Default for AdcsConfiguration {
             cam_2_maximum_x_of_area_5: 0,
             cam_2_minimum_y_of_area_5: 0,
             cam_2_maximum_y_of_area_5: 0,
-            magnetometer_mounting_transform_alpha_angle: 0,
-            magnetometer_mounting_transform_beta_angle: 0,
-            magnetometer_mounting_transform_gamma_angle: 0,
+            magnetometer_mounting_alpha: 0,
+            magnetometer_mounting_beta: 0,
+            magnetometer_mounting_gamma: 0,
             magnetometer_channel_1_offset: 0,
             magnetometer_channel_2_offset: 0,
             magnetometer_channel_3_offset: 0,
-            magnetometer_sensitivity_matrix_s11: 0,
-            magnetometer_sensitivity_matrix_s22: 0,
-            magnetometer_sensitivity_matrix_s33: 0,
-            magnetometer_sensitivity_matrix_s12: 0,
-            magnetometer_sensitivity_matrix_s13: 0,
-            magnetometer_sensitivity_matrix_s21: 0,
-            magnetometer_sensitivity_matrix_s23: 0,
-            magnetometer_sensitivity_matrix_s31: 0,
-            magnetometer_sensitivity_matrix_s32: 0,
-            redundant_magnetometer_mounting_transform_alpha_angle: 0,
-            redundant_magnetometer_mounting_transform_beta_angle: 0,
-            redundant_magnetometer_mounting_transform_gamma_angle: 0,
-            redundant_magnetometer_channel_1_offset: 0,
-            redundant_magnetometer_channel_2_offset: 0,
-            redundant_magnetometer_channel_3_offset: 0,
-            redundant_magnetometer_sensitivity_matrix_s11: 0,
-            redundant_magnetometer_sensitivity_matrix_s22: 0,
-            redundant_magnetometer_sensitivity_matrix_s33: 0,
-            redundant_magnetometer_sensitivity_matrix_s12: 0,
-            redundant_magnetometer_sensitivity_matrix_s13: 0,
-            redundant_magnetometer_sensitivity_matrix_s21: 0,
-            redundant_magnetometer_sensitivity_matrix_s23: 0,
-            redundant_magnetometer_sensitivity_matrix_s31: 0,
-            redundant_magnetometer_sensitivity_matrix_s32: 0,
-            star_tracker_mounting_transform_alpha_angle: 0,
-            star_tracker_mounting_transform_beta_angle: 0,
-            star_tracker_mounting_transform_gamma_angle: 0,
+            magnetometer_sensitivity_s11: 0,
+            magnetometer_sensitivity_s22: 0,
+            magnetometer_sensitivity_s33: 0,
+            magnetometer_sensitivity_s12: 0,
+            magnetometer_sensitivity_s13: 0,
+            magnetometer_sensitivity_s21: 0,
+            magnetometer_sensitivity_s23: 0,
+            magnetometer_sensitivity_s31: 0,
+            magnetometer_sensitivity_s32: 0,
+            redundant_mag_mounting_alpha: 0,
+            redundant_mag_mounting_beta: 0,
+            redundant_mag_mounting_gamma: 0,
+            redundant_mag_channel_1_offset: 0,
+            redundant_mag_channel_2_offset: 0,
+            redundant_mag_channel_3_offset: 0,
+            redundant_mag_sensitivity_s11: 0,
+            redundant_mag_sensitivity_s22: 0,
+            redundant_mag_sensitivity_s33: 0,
+            redundant_mag_sensitivity_s12: 0,
+            redundant_mag_sensitivity_s13: 0,
+            redundant_mag_sensitivity_s21: 0,
+            redundant_mag_sensitivity_s23: 0,
+            redundant_mag_sensitivity_s31: 0,
+            redundant_mag_sensitivity_s32: 0,
+            star_tracker_mounting_alpha: 0,
+            star_tracker_mounting_beta: 0,
+            star_tracker_mounting_gamma: 0,
             star_tracker_exposure_time: 0,
             star_tracker_analog_gain: 0,
             star_tracker_detection_threshold: 0,
@@ -2886,7 +2751,7 @@ const CSS10_RELATIVE_SCALE: Scale = Scale {
     divisor: 100,
 };
 
-const CAM1_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
+const CAM1_MOUNTING_ALPHA: Scale = Scale {
     field: "Cam1 Sensor Mounting Transform Alpha Angle",
     min: -32_768,
     max: 32_767,
@@ -2895,7 +2760,7 @@ const CAM1_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const CAM1_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
+const CAM1_MOUNTING_BETA: Scale = Scale {
     field: "Cam1 Sensor Mounting Transform Beta Angle",
     min: -32_768,
     max: 32_767,
@@ -2904,7 +2769,7 @@ const CAM1_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const CAM1_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE: Scale = Scale {
+const CAM1_MOUNTING_GAMMA: Scale = Scale {
     field: "Cam1 Sensor Mounting Transform Gamma Angle",
     min: -32_768,
     max: 32_767,
@@ -2931,7 +2796,7 @@ const CAM1_BORESIGHT_Y: Scale = Scale {
     divisor: 100,
 };
 
-const CAM2_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
+const CAM2_MOUNTING_ALPHA: Scale = Scale {
     field: "Cam2 Sensor Mounting Transform Alpha Angle",
     min: -32_768,
     max: 32_767,
@@ -2940,7 +2805,7 @@ const CAM2_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const CAM2_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
+const CAM2_MOUNTING_BETA: Scale = Scale {
     field: "Cam2 Sensor Mounting Transform Beta Angle",
     min: -32_768,
     max: 32_767,
@@ -2949,7 +2814,7 @@ const CAM2_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const CAM2_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE: Scale = Scale {
+const CAM2_MOUNTING_GAMMA: Scale = Scale {
     field: "Cam2 Sensor Mounting Transform Gamma Angle",
     min: -32_768,
     max: 32_767,
@@ -2976,7 +2841,7 @@ const CAM2_BORESIGHT_Y: Scale = Scale {
     divisor: 100,
 };
 
-const MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
+const MAGNETOMETER_MOUNTING_ALPHA: Scale = Scale {
     field: "Magnetometer Mounting Transform Alpha Angle",
     min: -32_768,
     max: 32_767,
@@ -2985,7 +2850,7 @@ const MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
+const MAGNETOMETER_MOUNTING_BETA: Scale = Scale {
     field: "Magnetometer Mounting Transform Beta Angle",
     min: -32_768,
     max: 32_767,
@@ -2994,7 +2859,7 @@ const MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE: Scale = Scale {
+const MAGNETOMETER_MOUNTING_GAMMA: Scale = Scale {
     field: "Magnetometer Mounting Transform Gamma Angle",
     min: -32_768,
     max: 32_767,
@@ -3030,7 +2895,7 @@ const MAGNETOMETER_CHANNEL_3_OFFSET: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S11: Scale = Scale {
+const MAGNETOMETER_SENSITIVITY_S11: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S11",
     min: -32_768,
     max: 32_767,
@@ -3039,7 +2904,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S11: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S22: Scale = Scale {
+const MAGNETOMETER_SENSITIVITY_S22: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S22",
     min: -32_768,
     max: 32_767,
@@ -3048,7 +2913,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S22: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S33: Scale = Scale {
+const MAGNETOMETER_SENSITIVITY_S33: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S33",
     min: -32_768,
     max: 32_767,
@@ -3057,7 +2922,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S33: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S12: Scale = Scale {
+const MAGNETOMETER_SENSITIVITY_S12: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S12",
     min: -32_768,
     max: 32_767,
@@ -3066,7 +2931,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S12: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S13: Scale = Scale {
+const MAGNETOMETER_SENSITIVITY_S13: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S13",
     min: -32_768,
     max: 32_767,
@@ -3075,7 +2940,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S13: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S21: Scale = Scale {
+const MAGNETOMETER_SENSITIVITY_S21: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S21",
     min: -32_768,
     max: 32_767,
@@ -3084,7 +2949,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S21: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S23: Scale = Scale {
+const MAGNETOMETER_SENSITIVITY_S23: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S23",
     min: -32_768,
     max: 32_767,
@@ -3093,7 +2958,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S23: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S31: Scale = Scale {
+const MAGNETOMETER_SENSITIVITY_S31: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S31",
     min: -32_768,
     max: 32_767,
@@ -3102,7 +2967,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S31: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S32: Scale = Scale {
+const MAGNETOMETER_SENSITIVITY_S32: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S32",
     min: -32_768,
     max: 32_767,
@@ -3111,7 +2976,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S32: Scale = Scale {
     divisor: 1_000,
 };
 
-const REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
+const REDUNDANT_MAG_MOUNTING_ALPHA: Scale = Scale {
     field: "Redundant Magnetometer Mounting Transform Alpha Angle",
     min: -32_768,
     max: 32_767,
@@ -3120,7 +2985,7 @@ const REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
+const REDUNDANT_MAG_MOUNTING_BETA: Scale = Scale {
     field: "Redundant Magnetometer Mounting Transform Beta Angle",
     min: -32_768,
     max: 32_767,
@@ -3129,7 +2994,7 @@ const REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE: Scale = Scale {
+const REDUNDANT_MAG_MOUNTING_GAMMA: Scale = Scale {
     field: "Redundant Magnetometer Mounting Transform Gamma Angle",
     min: -32_768,
     max: 32_767,
@@ -3138,7 +3003,7 @@ const REDUNDANT_MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const REDUNDANT_MAGNETOMETER_CHANNEL_1_OFFSET: Scale = Scale {
+const REDUNDANT_MAG_CHANNEL_1_OFFSET: Scale = Scale {
     field: "Redundant Magnetometer Channel 1 Offset",
     min: -32_768,
     max: 32_767,
@@ -3147,7 +3012,7 @@ const REDUNDANT_MAGNETOMETER_CHANNEL_1_OFFSET: Scale = Scale {
     divisor: 1_000,
 };
 
-const REDUNDANT_MAGNETOMETER_CHANNEL_2_OFFSET: Scale = Scale {
+const REDUNDANT_MAG_CHANNEL_2_OFFSET: Scale = Scale {
     field: "Redundant Magnetometer Channel 2 Offset",
     min: -32_768,
     max: 32_767,
@@ -3156,7 +3021,7 @@ const REDUNDANT_MAGNETOMETER_CHANNEL_2_OFFSET: Scale = Scale {
     divisor: 1_000,
 };
 
-const REDUNDANT_MAGNETOMETER_CHANNEL_3_OFFSET: Scale = Scale {
+const REDUNDANT_MAG_CHANNEL_3_OFFSET: Scale = Scale {
     field: "Redundant Magnetometer Channel 3 Offset",
     min: -32_768,
     max: 32_767,
@@ -3165,7 +3030,7 @@ const REDUNDANT_MAGNETOMETER_CHANNEL_3_OFFSET: Scale = Scale {
     divisor: 1_000,
 };
 
-const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S11: Scale = Scale {
+const REDUNDANT_MAG_SENSITIVITY_S11: Scale = Scale {
     field: "Redundant Magnetometer Sensitivity Matrix S11",
     min: -32_768,
     max: 32_767,
@@ -3174,7 +3039,7 @@ const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S11: Scale = Scale {
     divisor: 1_000,
 };
 
-const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S22: Scale = Scale {
+const REDUNDANT_MAG_SENSITIVITY_S22: Scale = Scale {
     field: "Redundant Magnetometer Sensitivity Matrix S22",
     min: -32_768,
     max: 32_767,
@@ -3183,7 +3048,7 @@ const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S22: Scale = Scale {
     divisor: 1_000,
 };
 
-const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S33: Scale = Scale {
+const REDUNDANT_MAG_SENSITIVITY_S33: Scale = Scale {
     field: "Redundant Magnetometer Sensitivity Matrix S33",
     min: -32_768,
     max: 32_767,
@@ -3192,7 +3057,7 @@ const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S33: Scale = Scale {
     divisor: 1_000,
 };
 
-const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S12: Scale = Scale {
+const REDUNDANT_MAG_SENSITIVITY_S12: Scale = Scale {
     field: "Redundant Magnetometer Sensitivity Matrix S12",
     min: -32_768,
     max: 32_767,
@@ -3201,7 +3066,7 @@ const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S12: Scale = Scale {
     divisor: 1_000,
 };
 
-const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S13: Scale = Scale {
+const REDUNDANT_MAG_SENSITIVITY_S13: Scale = Scale {
     field: "Redundant Magnetometer Sensitivity Matrix S13",
     min: -32_768,
     max: 32_767,
@@ -3210,7 +3075,7 @@ const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S13: Scale = Scale {
     divisor: 1_000,
 };
 
-const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S21: Scale = Scale {
+const REDUNDANT_MAG_SENSITIVITY_S21: Scale = Scale {
     field: "Redundant Magnetometer Sensitivity Matrix S21",
     min: -32_768,
     max: 32_767,
@@ -3219,7 +3084,7 @@ const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S21: Scale = Scale {
     divisor: 1_000,
 };
 
-const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S23: Scale = Scale {
+const REDUNDANT_MAG_SENSITIVITY_S23: Scale = Scale {
     field: "Redundant Magnetometer Sensitivity Matrix S23",
     min: -32_768,
     max: 32_767,
@@ -3228,7 +3093,7 @@ const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S23: Scale = Scale {
     divisor: 1_000,
 };
 
-const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S31: Scale = Scale {
+const REDUNDANT_MAG_SENSITIVITY_S31: Scale = Scale {
     field: "Redundant Magnetometer Sensitivity Matrix S31",
     min: -32_768,
     max: 32_767,
@@ -3237,7 +3102,7 @@ const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S31: Scale = Scale {
     divisor: 1_000,
 };
 
-const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S32: Scale = Scale {
+const REDUNDANT_MAG_SENSITIVITY_S32: Scale = Scale {
     field: "Redundant Magnetometer Sensitivity Matrix S32",
     min: -32_768,
     max: 32_767,
@@ -3246,7 +3111,7 @@ const REDUNDANT_MAGNETOMETER_SENSITIVITY_MATRIX_S32: Scale = Scale {
     divisor: 1_000,
 };
 
-const STAR_TRACKER_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
+const STAR_TRACKER_MOUNTING_ALPHA: Scale = Scale {
     field: "StarTracker Mounting Transform Alpha Angle",
     min: -32_768,
     max: 32_767,
@@ -3255,7 +3120,7 @@ const STAR_TRACKER_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const STAR_TRACKER_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
+const STAR_TRACKER_MOUNTING_BETA: Scale = Scale {
     field: "StarTracker Mounting Transform Beta Angle",
     min: -32_768,
     max: 32_767,
@@ -3264,7 +3129,7 @@ const STAR_TRACKER_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const STAR_TRACKER_MOUNTING_TRANSFORM_GAMMA_ANGLE: Scale = Scale {
+const STAR_TRACKER_MOUNTING_GAMMA: Scale = Scale {
     field: "StarTracker Mounting Transform Gamma Angle",
     min: -32_768,
     max: 32_767,

@@ -31,7 +31,7 @@ pub struct AdcsTemperatures {
     ///
     /// Note ACP-086 (certain): ADCS Temperatures: the redundant magnetometer is left out of the
     /// description.
-    pub redundant_magnetometer_temperature: i16,
+    pub redundant_mag_temperature: i16,
 }
 
 impl AdcsTemperatures {
@@ -62,7 +62,7 @@ impl AdcsTemperatures {
         Self {
             mcu_temperature: i16::from_le_bytes(take!(bytes[0; 2])),
             magnetometer_temperature: i16::from_le_bytes(take!(bytes[2; 2])),
-            redundant_magnetometer_temperature: i16::from_le_bytes(take!(bytes[4; 2])),
+            redundant_mag_temperature: i16::from_le_bytes(take!(bytes[4; 2])),
         }
     }
 
@@ -73,7 +73,7 @@ impl AdcsTemperatures {
         let mut bytes = [0; 6];
         put!(self.mcu_temperature.to_le_bytes() => bytes[0; 2]);
         put!(self.magnetometer_temperature.to_le_bytes() => bytes[2; 2]);
-        put!(self.redundant_magnetometer_temperature.to_le_bytes() => bytes[4; 2]);
+        put!(self.redundant_mag_temperature.to_le_bytes() => bytes[4; 2]);
         bytes
     }
 
@@ -95,8 +95,8 @@ impl AdcsTemperatures {
 
     /// Redundant Magnetometer Temperature in C: -3276.8 to 3276.7.
     #[must_use]
-    pub fn redundant_magnetometer_temperature_c(&self) -> f64 {
-        f64::from(self.redundant_magnetometer_temperature) / 10.0
+    pub fn redundant_mag_temperature_c(&self) -> f64 {
+        f64::from(self.redundant_mag_temperature) / 10.0
     }
 
     /// Sets Redundant Magnetometer Temperature in C, to the nearest raw value, ties to even.
@@ -104,8 +104,8 @@ impl AdcsTemperatures {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_redundant_magnetometer_temperature_c(&mut self, value: f64) -> Result<(), Error> {
-        self.redundant_magnetometer_temperature = REDUNDANT_MAGNETOMETER_TEMPERATURE.raw(value)?;
+    pub fn set_redundant_mag_temperature_c(&mut self, value: f64) -> Result<(), Error> {
+        self.redundant_mag_temperature = REDUNDANT_MAG_TEMPERATURE.raw(value)?;
         Ok(())
     }
 }
@@ -119,7 +119,7 @@ const MAGNETOMETER_TEMPERATURE: Scale = Scale {
     divisor: 10,
 };
 
-const REDUNDANT_MAGNETOMETER_TEMPERATURE: Scale = Scale {
+const REDUNDANT_MAG_TEMPERATURE: Scale = Scale {
     field: "Redundant Magnetometer Temperature",
     min: -32_768,
     max: 32_767,

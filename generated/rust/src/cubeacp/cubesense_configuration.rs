@@ -16,17 +16,17 @@ pub struct CubesenseConfiguration {
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
-    pub cam1_sensor_mounting_transform_alpha_angle: i16,
+    pub cam1_mounting_alpha: i16,
     /// Cam1 Sensor Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
-    pub cam1_sensor_mounting_transform_beta_angle: i16,
+    pub cam1_mounting_beta: i16,
     /// Cam1 Sensor Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
-    pub cam1_sensor_mounting_transform_gamma_angle: i16,
+    pub cam1_mounting_gamma: i16,
     /// Cam1 detection threshold: bits 48 to 55, raw 0 to 255.
     ///
     /// Note ACP-150 (certain): Cam1 detection threshold has no description in one table.
@@ -53,17 +53,17 @@ pub struct CubesenseConfiguration {
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
-    pub cam2_sensor_mounting_transform_alpha_angle: i16,
+    pub cam2_mounting_alpha: i16,
     /// Cam2 Sensor Mounting Transform Beta Angle: bits 128 to 143, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
-    pub cam2_sensor_mounting_transform_beta_angle: i16,
+    pub cam2_mounting_beta: i16,
     /// Cam2 Sensor Mounting Transform Gamma Angle: bits 144 to 159, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
-    pub cam2_sensor_mounting_transform_gamma_angle: i16,
+    pub cam2_mounting_gamma: i16,
     /// Cam2 detection threshold: bits 160 to 167, raw 0 to 255.
     pub cam2_detection_threshold: u8,
     /// Cam2 sensor auto adjust mode: bit 168.
@@ -296,17 +296,17 @@ impl CubesenseConfiguration {
     #[must_use]
     pub fn from_array(bytes: &[u8; 112]) -> Self {
         Self {
-            cam1_sensor_mounting_transform_alpha_angle: i16::from_le_bytes(take!(bytes[0; 2])),
-            cam1_sensor_mounting_transform_beta_angle: i16::from_le_bytes(take!(bytes[2; 2])),
-            cam1_sensor_mounting_transform_gamma_angle: i16::from_le_bytes(take!(bytes[4; 2])),
+            cam1_mounting_alpha: i16::from_le_bytes(take!(bytes[0; 2])),
+            cam1_mounting_beta: i16::from_le_bytes(take!(bytes[2; 2])),
+            cam1_mounting_gamma: i16::from_le_bytes(take!(bytes[4; 2])),
             cam1_detection_threshold: bytes[6],
             cam1_sensor_auto_adjust_mode: bytes[7] & 0x01 != 0,
             cam1_sensor_exposure_time: u16::from_le_bytes(take!(bytes[8; 2])),
             cam1_boresight_x: u16::from_le_bytes(take!(bytes[10; 2])),
             cam1_boresight_y: u16::from_le_bytes(take!(bytes[12; 2])),
-            cam2_sensor_mounting_transform_alpha_angle: i16::from_le_bytes(take!(bytes[14; 2])),
-            cam2_sensor_mounting_transform_beta_angle: i16::from_le_bytes(take!(bytes[16; 2])),
-            cam2_sensor_mounting_transform_gamma_angle: i16::from_le_bytes(take!(bytes[18; 2])),
+            cam2_mounting_alpha: i16::from_le_bytes(take!(bytes[14; 2])),
+            cam2_mounting_beta: i16::from_le_bytes(take!(bytes[16; 2])),
+            cam2_mounting_gamma: i16::from_le_bytes(take!(bytes[18; 2])),
             cam2_detection_threshold: bytes[20],
             cam2_sensor_auto_adjust_mode: bytes[21] & 0x01 != 0,
             cam2_sensor_exposure_time: u16::from_le_bytes(take!(bytes[22; 2])),
@@ -364,17 +364,17 @@ impl CubesenseConfiguration {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; 112] {
         let mut bytes = [0; 112];
-        put!(self.cam1_sensor_mounting_transform_alpha_angle.to_le_bytes() => bytes[0; 2]);
-        put!(self.cam1_sensor_mounting_transform_beta_angle.to_le_bytes() => bytes[2; 2]);
-        put!(self.cam1_sensor_mounting_transform_gamma_angle.to_le_bytes() => bytes[4; 2]);
+        put!(self.cam1_mounting_alpha.to_le_bytes() => bytes[0; 2]);
+        put!(self.cam1_mounting_beta.to_le_bytes() => bytes[2; 2]);
+        put!(self.cam1_mounting_gamma.to_le_bytes() => bytes[4; 2]);
         bytes[6] = self.cam1_detection_threshold;
         bytes[7] |= u8::from(self.cam1_sensor_auto_adjust_mode);
         put!(self.cam1_sensor_exposure_time.to_le_bytes() => bytes[8; 2]);
         put!(self.cam1_boresight_x.to_le_bytes() => bytes[10; 2]);
         put!(self.cam1_boresight_y.to_le_bytes() => bytes[12; 2]);
-        put!(self.cam2_sensor_mounting_transform_alpha_angle.to_le_bytes() => bytes[14; 2]);
-        put!(self.cam2_sensor_mounting_transform_beta_angle.to_le_bytes() => bytes[16; 2]);
-        put!(self.cam2_sensor_mounting_transform_gamma_angle.to_le_bytes() => bytes[18; 2]);
+        put!(self.cam2_mounting_alpha.to_le_bytes() => bytes[14; 2]);
+        put!(self.cam2_mounting_beta.to_le_bytes() => bytes[16; 2]);
+        put!(self.cam2_mounting_gamma.to_le_bytes() => bytes[18; 2]);
         bytes[20] = self.cam2_detection_threshold;
         bytes[21] |= u8::from(self.cam2_sensor_auto_adjust_mode);
         put!(self.cam2_sensor_exposure_time.to_le_bytes() => bytes[22; 2]);
@@ -429,8 +429,8 @@ impl CubesenseConfiguration {
 
     /// Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn cam1_sensor_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        f64::from(self.cam1_sensor_mounting_transform_alpha_angle) / 100.0
+    pub fn cam1_mounting_alpha_deg(&self) -> f64 {
+        f64::from(self.cam1_mounting_alpha) / 100.0
     }
 
     /// Sets Cam1 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -439,19 +439,15 @@ impl CubesenseConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_cam1_sensor_mounting_transform_alpha_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.cam1_sensor_mounting_transform_alpha_angle =
-            CAM1_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
+    pub fn set_cam1_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.cam1_mounting_alpha = CAM1_MOUNTING_ALPHA.raw(value)?;
         Ok(())
     }
 
     /// Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn cam1_sensor_mounting_transform_beta_angle_deg(&self) -> f64 {
-        f64::from(self.cam1_sensor_mounting_transform_beta_angle) / 100.0
+    pub fn cam1_mounting_beta_deg(&self) -> f64 {
+        f64::from(self.cam1_mounting_beta) / 100.0
     }
 
     /// Sets Cam1 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -460,19 +456,15 @@ impl CubesenseConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_cam1_sensor_mounting_transform_beta_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.cam1_sensor_mounting_transform_beta_angle =
-            CAM1_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
+    pub fn set_cam1_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.cam1_mounting_beta = CAM1_MOUNTING_BETA.raw(value)?;
         Ok(())
     }
 
     /// Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn cam1_sensor_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        f64::from(self.cam1_sensor_mounting_transform_gamma_angle) / 100.0
+    pub fn cam1_mounting_gamma_deg(&self) -> f64 {
+        f64::from(self.cam1_mounting_gamma) / 100.0
     }
 
     /// Sets Cam1 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -481,12 +473,8 @@ impl CubesenseConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_cam1_sensor_mounting_transform_gamma_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.cam1_sensor_mounting_transform_gamma_angle =
-            CAM1_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
+    pub fn set_cam1_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.cam1_mounting_gamma = CAM1_MOUNTING_GAMMA.raw(value)?;
         Ok(())
     }
 
@@ -524,8 +512,8 @@ impl CubesenseConfiguration {
 
     /// Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn cam2_sensor_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        f64::from(self.cam2_sensor_mounting_transform_alpha_angle) / 100.0
+    pub fn cam2_mounting_alpha_deg(&self) -> f64 {
+        f64::from(self.cam2_mounting_alpha) / 100.0
     }
 
     /// Sets Cam2 Sensor Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -534,19 +522,15 @@ impl CubesenseConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_cam2_sensor_mounting_transform_alpha_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.cam2_sensor_mounting_transform_alpha_angle =
-            CAM2_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
+    pub fn set_cam2_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.cam2_mounting_alpha = CAM2_MOUNTING_ALPHA.raw(value)?;
         Ok(())
     }
 
     /// Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn cam2_sensor_mounting_transform_beta_angle_deg(&self) -> f64 {
-        f64::from(self.cam2_sensor_mounting_transform_beta_angle) / 100.0
+    pub fn cam2_mounting_beta_deg(&self) -> f64 {
+        f64::from(self.cam2_mounting_beta) / 100.0
     }
 
     /// Sets Cam2 Sensor Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -555,19 +539,15 @@ impl CubesenseConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_cam2_sensor_mounting_transform_beta_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.cam2_sensor_mounting_transform_beta_angle =
-            CAM2_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
+    pub fn set_cam2_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.cam2_mounting_beta = CAM2_MOUNTING_BETA.raw(value)?;
         Ok(())
     }
 
     /// Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn cam2_sensor_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        f64::from(self.cam2_sensor_mounting_transform_gamma_angle) / 100.0
+    pub fn cam2_mounting_gamma_deg(&self) -> f64 {
+        f64::from(self.cam2_mounting_gamma) / 100.0
     }
 
     /// Sets Cam2 Sensor Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -576,12 +556,8 @@ impl CubesenseConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_cam2_sensor_mounting_transform_gamma_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.cam2_sensor_mounting_transform_gamma_angle =
-            CAM2_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
+    pub fn set_cam2_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.cam2_mounting_gamma = CAM2_MOUNTING_GAMMA.raw(value)?;
         Ok(())
     }
 
@@ -618,7 +594,7 @@ impl CubesenseConfiguration {
     }
 }
 
-const CAM1_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
+const CAM1_MOUNTING_ALPHA: Scale = Scale {
     field: "Cam1 Sensor Mounting Transform Alpha Angle",
     min: -32_768,
     max: 32_767,
@@ -627,7 +603,7 @@ const CAM1_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const CAM1_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
+const CAM1_MOUNTING_BETA: Scale = Scale {
     field: "Cam1 Sensor Mounting Transform Beta Angle",
     min: -32_768,
     max: 32_767,
@@ -636,7 +612,7 @@ const CAM1_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const CAM1_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE: Scale = Scale {
+const CAM1_MOUNTING_GAMMA: Scale = Scale {
     field: "Cam1 Sensor Mounting Transform Gamma Angle",
     min: -32_768,
     max: 32_767,
@@ -663,7 +639,7 @@ const CAM1_BORESIGHT_Y: Scale = Scale {
     divisor: 100,
 };
 
-const CAM2_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
+const CAM2_MOUNTING_ALPHA: Scale = Scale {
     field: "Cam2 Sensor Mounting Transform Alpha Angle",
     min: -32_768,
     max: 32_767,
@@ -672,7 +648,7 @@ const CAM2_SENSOR_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const CAM2_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
+const CAM2_MOUNTING_BETA: Scale = Scale {
     field: "Cam2 Sensor Mounting Transform Beta Angle",
     min: -32_768,
     max: 32_767,
@@ -681,7 +657,7 @@ const CAM2_SENSOR_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const CAM2_SENSOR_MOUNTING_TRANSFORM_GAMMA_ANGLE: Scale = Scale {
+const CAM2_MOUNTING_GAMMA: Scale = Scale {
     field: "Cam2 Sensor Mounting Transform Gamma Angle",
     min: -32_768,
     max: 32_767,

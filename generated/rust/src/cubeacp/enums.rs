@@ -284,9 +284,9 @@ pub enum EstimModeSelect {
     /// Note ACP-029 (certain): Estimation modes have other names in settings.
     MagnetometerRateFilter,
     /// Magnetometer rate filter with pitch estimation (3).
-    MagnetometerRateFilterWithPitchEstimation,
+    MagnetometerRateFilterWithPitch,
     /// Magnetometer and Fine-sun TRIAD algorithm (4).
-    MagnetometerAndFineSunTriadAlgorithm,
+    MagnetometerAndFineSunTriad,
     /// Full-state EKF (5).
     FullStateEkf,
     /// MEMS gyro EKF (6).
@@ -306,8 +306,8 @@ impl EstimModeSelect {
             Self::NoAttitudeEstimation => 0,
             Self::MemsRateSensing => 1,
             Self::MagnetometerRateFilter => 2,
-            Self::MagnetometerRateFilterWithPitchEstimation => 3,
-            Self::MagnetometerAndFineSunTriadAlgorithm => 4,
+            Self::MagnetometerRateFilterWithPitch => 3,
+            Self::MagnetometerAndFineSunTriad => 4,
             Self::FullStateEkf => 5,
             Self::MemsGyroEkf => 6,
             Self::UserCodedEstimationMode => 7,
@@ -322,12 +322,10 @@ impl EstimModeSelect {
             Self::NoAttitudeEstimation => "No attitude estimation",
             Self::MemsRateSensing => "MEMS rate sensing",
             Self::MagnetometerRateFilter => "Magnetometer rate filter",
-            Self::MagnetometerRateFilterWithPitchEstimation => {
+            Self::MagnetometerRateFilterWithPitch => {
                 "Magnetometer rate filter with pitch estimation"
             }
-            Self::MagnetometerAndFineSunTriadAlgorithm => {
-                "Magnetometer and Fine-sun TRIAD algorithm"
-            }
+            Self::MagnetometerAndFineSunTriad => "Magnetometer and Fine-sun TRIAD algorithm",
             Self::FullStateEkf => "Full-state EKF",
             Self::MemsGyroEkf => "MEMS gyro EKF",
             Self::UserCodedEstimationMode => "User Coded Estimation Mode",
@@ -352,8 +350,8 @@ impl From<u8> for EstimModeSelect {
             0 => Self::NoAttitudeEstimation,
             1 => Self::MemsRateSensing,
             2 => Self::MagnetometerRateFilter,
-            3 => Self::MagnetometerRateFilterWithPitchEstimation,
-            4 => Self::MagnetometerAndFineSunTriadAlgorithm,
+            3 => Self::MagnetometerRateFilterWithPitch,
+            4 => Self::MagnetometerAndFineSunTriad,
             5 => Self::FullStateEkf,
             6 => Self::MemsGyroEkf,
             7 => Self::UserCodedEstimationMode,
@@ -395,9 +393,9 @@ pub enum GpsSolutionStatus {
     /// Variance exceeds limits (7).
     VarianceExceedsLimits,
     /// Large residuals make position unreliable (8).
-    LargeResidualsMakePositionUnreliable,
+    LargeResiduals,
     /// Calculating comparison to user provided (9).
-    CalculatingComparisonToUserProvided,
+    ComparingToUserProvided,
     /// The fixed position is invalid (10).
     TheFixedPositionIsInvalid,
     /// Position type is unauthorized (11).
@@ -420,8 +418,8 @@ impl GpsSolutionStatus {
             Self::NotYetConvergedFromColdStart => 5,
             Self::HeightOrVelocityLimitsExceeded => 6,
             Self::VarianceExceedsLimits => 7,
-            Self::LargeResidualsMakePositionUnreliable => 8,
-            Self::CalculatingComparisonToUserProvided => 9,
+            Self::LargeResiduals => 8,
+            Self::ComparingToUserProvided => 9,
             Self::TheFixedPositionIsInvalid => 10,
             Self::PositionTypeIsUnauthorized => 11,
             Self::Unknown(raw) => raw,
@@ -440,10 +438,8 @@ impl GpsSolutionStatus {
             Self::NotYetConvergedFromColdStart => "Not yet converged from cold start",
             Self::HeightOrVelocityLimitsExceeded => "Height or velocity limits exceeded",
             Self::VarianceExceedsLimits => "Variance exceeds limits",
-            Self::LargeResidualsMakePositionUnreliable => {
-                "Large residuals make position unreliable"
-            }
-            Self::CalculatingComparisonToUserProvided => "Calculating comparison to user provided",
+            Self::LargeResiduals => "Large residuals make position unreliable",
+            Self::ComparingToUserProvided => "Calculating comparison to user provided",
             Self::TheFixedPositionIsInvalid => "The fixed position is invalid",
             Self::PositionTypeIsUnauthorized => "Position type is unauthorized",
             Self::Unknown(_) => return None,
@@ -472,8 +468,8 @@ impl From<u8> for GpsSolutionStatus {
             5 => Self::NotYetConvergedFromColdStart,
             6 => Self::HeightOrVelocityLimitsExceeded,
             7 => Self::VarianceExceedsLimits,
-            8 => Self::LargeResidualsMakePositionUnreliable,
-            9 => Self::CalculatingComparisonToUserProvided,
+            8 => Self::LargeResiduals,
+            9 => Self::ComparingToUserProvided,
             10 => Self::TheFixedPositionIsInvalid,
             11 => Self::PositionTypeIsUnauthorized,
             _ => Self::Unknown(raw),

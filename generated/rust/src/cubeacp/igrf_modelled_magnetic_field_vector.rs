@@ -15,13 +15,13 @@ use crate::support::{put, take, Error, Scale};
 pub struct IgrfModelledMagneticFieldVector {
     /// IGRF Modelled Magnetic Field X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`,
     /// -327.68 to 327.67 uT.
-    pub igrf_modelled_magnetic_field_x: i16,
+    pub field_x: i16,
     /// IGRF Modelled Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
     /// -327.68 to 327.67 uT.
-    pub igrf_modelled_magnetic_field_y: i16,
+    pub field_y: i16,
     /// IGRF Modelled Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
     /// -327.68 to 327.67 uT.
-    pub igrf_modelled_magnetic_field_z: i16,
+    pub field_z: i16,
 }
 
 impl IgrfModelledMagneticFieldVector {
@@ -50,9 +50,9 @@ impl IgrfModelledMagneticFieldVector {
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
         Self {
-            igrf_modelled_magnetic_field_x: i16::from_le_bytes(take!(bytes[0; 2])),
-            igrf_modelled_magnetic_field_y: i16::from_le_bytes(take!(bytes[2; 2])),
-            igrf_modelled_magnetic_field_z: i16::from_le_bytes(take!(bytes[4; 2])),
+            field_x: i16::from_le_bytes(take!(bytes[0; 2])),
+            field_y: i16::from_le_bytes(take!(bytes[2; 2])),
+            field_z: i16::from_le_bytes(take!(bytes[4; 2])),
         }
     }
 
@@ -61,16 +61,16 @@ impl IgrfModelledMagneticFieldVector {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; 6] {
         let mut bytes = [0; 6];
-        put!(self.igrf_modelled_magnetic_field_x.to_le_bytes() => bytes[0; 2]);
-        put!(self.igrf_modelled_magnetic_field_y.to_le_bytes() => bytes[2; 2]);
-        put!(self.igrf_modelled_magnetic_field_z.to_le_bytes() => bytes[4; 2]);
+        put!(self.field_x.to_le_bytes() => bytes[0; 2]);
+        put!(self.field_y.to_le_bytes() => bytes[2; 2]);
+        put!(self.field_z.to_le_bytes() => bytes[4; 2]);
         bytes
     }
 
     /// IGRF Modelled Magnetic Field X in uT: -327.68 to 327.67.
     #[must_use]
-    pub fn igrf_modelled_magnetic_field_x_ut(&self) -> f64 {
-        f64::from(self.igrf_modelled_magnetic_field_x) / 100.0
+    pub fn field_x_ut(&self) -> f64 {
+        f64::from(self.field_x) / 100.0
     }
 
     /// Sets IGRF Modelled Magnetic Field X in uT, to the nearest raw value, ties to even.
@@ -78,15 +78,15 @@ impl IgrfModelledMagneticFieldVector {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_igrf_modelled_magnetic_field_x_ut(&mut self, value: f64) -> Result<(), Error> {
-        self.igrf_modelled_magnetic_field_x = IGRF_MODELLED_MAGNETIC_FIELD_X.raw(value)?;
+    pub fn set_field_x_ut(&mut self, value: f64) -> Result<(), Error> {
+        self.field_x = FIELD_X.raw(value)?;
         Ok(())
     }
 
     /// IGRF Modelled Magnetic Field Y in uT: -327.68 to 327.67.
     #[must_use]
-    pub fn igrf_modelled_magnetic_field_y_ut(&self) -> f64 {
-        f64::from(self.igrf_modelled_magnetic_field_y) / 100.0
+    pub fn field_y_ut(&self) -> f64 {
+        f64::from(self.field_y) / 100.0
     }
 
     /// Sets IGRF Modelled Magnetic Field Y in uT, to the nearest raw value, ties to even.
@@ -94,15 +94,15 @@ impl IgrfModelledMagneticFieldVector {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_igrf_modelled_magnetic_field_y_ut(&mut self, value: f64) -> Result<(), Error> {
-        self.igrf_modelled_magnetic_field_y = IGRF_MODELLED_MAGNETIC_FIELD_Y.raw(value)?;
+    pub fn set_field_y_ut(&mut self, value: f64) -> Result<(), Error> {
+        self.field_y = FIELD_Y.raw(value)?;
         Ok(())
     }
 
     /// IGRF Modelled Magnetic Field Z in uT: -327.68 to 327.67.
     #[must_use]
-    pub fn igrf_modelled_magnetic_field_z_ut(&self) -> f64 {
-        f64::from(self.igrf_modelled_magnetic_field_z) / 100.0
+    pub fn field_z_ut(&self) -> f64 {
+        f64::from(self.field_z) / 100.0
     }
 
     /// Sets IGRF Modelled Magnetic Field Z in uT, to the nearest raw value, ties to even.
@@ -110,13 +110,13 @@ impl IgrfModelledMagneticFieldVector {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_igrf_modelled_magnetic_field_z_ut(&mut self, value: f64) -> Result<(), Error> {
-        self.igrf_modelled_magnetic_field_z = IGRF_MODELLED_MAGNETIC_FIELD_Z.raw(value)?;
+    pub fn set_field_z_ut(&mut self, value: f64) -> Result<(), Error> {
+        self.field_z = FIELD_Z.raw(value)?;
         Ok(())
     }
 }
 
-const IGRF_MODELLED_MAGNETIC_FIELD_X: Scale = Scale {
+const FIELD_X: Scale = Scale {
     field: "IGRF Modelled Magnetic Field X",
     min: -32_768,
     max: 32_767,
@@ -125,7 +125,7 @@ const IGRF_MODELLED_MAGNETIC_FIELD_X: Scale = Scale {
     divisor: 100,
 };
 
-const IGRF_MODELLED_MAGNETIC_FIELD_Y: Scale = Scale {
+const FIELD_Y: Scale = Scale {
     field: "IGRF Modelled Magnetic Field Y",
     min: -32_768,
     max: 32_767,
@@ -134,7 +134,7 @@ const IGRF_MODELLED_MAGNETIC_FIELD_Y: Scale = Scale {
     divisor: 100,
 };
 
-const IGRF_MODELLED_MAGNETIC_FIELD_Z: Scale = Scale {
+const FIELD_Z: Scale = Scale {
     field: "IGRF Modelled Magnetic Field Z",
     min: -32_768,
     max: 32_767,

@@ -18,17 +18,17 @@ pub struct InertialPointingReferenceVector {
     /// 3.2767.
     ///
     /// Note ACP-188 (open): Inertial reference: unit vector without a frame.
-    pub inertial_reference_x: i16,
+    pub reference_x: i16,
     /// Inertial Reference Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
     /// Note ACP-188 (open): Inertial reference: unit vector without a frame.
-    pub inertial_reference_y: i16,
+    pub reference_y: i16,
     /// Inertial Reference Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to
     /// 3.2767.
     ///
     /// Note ACP-188 (open): Inertial reference: unit vector without a frame.
-    pub inertial_reference_z: i16,
+    pub reference_z: i16,
 }
 
 impl InertialPointingReferenceVector {
@@ -59,9 +59,9 @@ impl InertialPointingReferenceVector {
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
         Self {
-            inertial_reference_x: i16::from_le_bytes(take!(bytes[0; 2])),
-            inertial_reference_y: i16::from_le_bytes(take!(bytes[2; 2])),
-            inertial_reference_z: i16::from_le_bytes(take!(bytes[4; 2])),
+            reference_x: i16::from_le_bytes(take!(bytes[0; 2])),
+            reference_y: i16::from_le_bytes(take!(bytes[2; 2])),
+            reference_z: i16::from_le_bytes(take!(bytes[4; 2])),
         }
     }
 
@@ -70,16 +70,16 @@ impl InertialPointingReferenceVector {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; 6] {
         let mut bytes = [0; 6];
-        put!(self.inertial_reference_x.to_le_bytes() => bytes[0; 2]);
-        put!(self.inertial_reference_y.to_le_bytes() => bytes[2; 2]);
-        put!(self.inertial_reference_z.to_le_bytes() => bytes[4; 2]);
+        put!(self.reference_x.to_le_bytes() => bytes[0; 2]);
+        put!(self.reference_y.to_le_bytes() => bytes[2; 2]);
+        put!(self.reference_z.to_le_bytes() => bytes[4; 2]);
         bytes
     }
 
     /// Inertial Reference X, as a physical value: -3.2768 to 3.2767.
     #[must_use]
-    pub fn inertial_reference_x_physical(&self) -> f64 {
-        f64::from(self.inertial_reference_x) / 10_000.0
+    pub fn reference_x_physical(&self) -> f64 {
+        f64::from(self.reference_x) / 10_000.0
     }
 
     /// Sets Inertial Reference X, as a physical value, to the nearest raw value, ties to even.
@@ -87,15 +87,15 @@ impl InertialPointingReferenceVector {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_inertial_reference_x_physical(&mut self, value: f64) -> Result<(), Error> {
-        self.inertial_reference_x = INERTIAL_REFERENCE_X.raw(value)?;
+    pub fn set_reference_x_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.reference_x = REFERENCE_X.raw(value)?;
         Ok(())
     }
 
     /// Inertial Reference Y, as a physical value: -3.2768 to 3.2767.
     #[must_use]
-    pub fn inertial_reference_y_physical(&self) -> f64 {
-        f64::from(self.inertial_reference_y) / 10_000.0
+    pub fn reference_y_physical(&self) -> f64 {
+        f64::from(self.reference_y) / 10_000.0
     }
 
     /// Sets Inertial Reference Y, as a physical value, to the nearest raw value, ties to even.
@@ -103,15 +103,15 @@ impl InertialPointingReferenceVector {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_inertial_reference_y_physical(&mut self, value: f64) -> Result<(), Error> {
-        self.inertial_reference_y = INERTIAL_REFERENCE_Y.raw(value)?;
+    pub fn set_reference_y_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.reference_y = REFERENCE_Y.raw(value)?;
         Ok(())
     }
 
     /// Inertial Reference Z, as a physical value: -3.2768 to 3.2767.
     #[must_use]
-    pub fn inertial_reference_z_physical(&self) -> f64 {
-        f64::from(self.inertial_reference_z) / 10_000.0
+    pub fn reference_z_physical(&self) -> f64 {
+        f64::from(self.reference_z) / 10_000.0
     }
 
     /// Sets Inertial Reference Z, as a physical value, to the nearest raw value, ties to even.
@@ -119,13 +119,13 @@ impl InertialPointingReferenceVector {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_inertial_reference_z_physical(&mut self, value: f64) -> Result<(), Error> {
-        self.inertial_reference_z = INERTIAL_REFERENCE_Z.raw(value)?;
+    pub fn set_reference_z_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.reference_z = REFERENCE_Z.raw(value)?;
         Ok(())
     }
 }
 
-const INERTIAL_REFERENCE_X: Scale = Scale {
+const REFERENCE_X: Scale = Scale {
     field: "Inertial Reference X",
     min: -32_768,
     max: 32_767,
@@ -134,7 +134,7 @@ const INERTIAL_REFERENCE_X: Scale = Scale {
     divisor: 10_000,
 };
 
-const INERTIAL_REFERENCE_Y: Scale = Scale {
+const REFERENCE_Y: Scale = Scale {
     field: "Inertial Reference Y",
     min: -32_768,
     max: 32_767,
@@ -143,7 +143,7 @@ const INERTIAL_REFERENCE_Y: Scale = Scale {
     divisor: 10_000,
 };
 
-const INERTIAL_REFERENCE_Z: Scale = Scale {
+const REFERENCE_Z: Scale = Scale {
     field: "Inertial Reference Z",
     min: -32_768,
     max: 32_767,

@@ -16,59 +16,59 @@ pub struct MagnetometerConfiguration {
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
-    pub magnetometer_mounting_transform_alpha_angle: i16,
+    pub mounting_alpha: i16,
     /// Magnetometer Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
-    pub magnetometer_mounting_transform_beta_angle: i16,
+    pub mounting_beta: i16,
     /// Magnetometer Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
-    pub magnetometer_mounting_transform_gamma_angle: i16,
+    pub mounting_gamma: i16,
     /// Magnetometer Channel 1 Offset: bits 48 to 63, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
     /// Note ACP-155 (open): Magnetometer offsets have no unit.
-    pub magnetometer_channel_1_offset: i16,
+    pub channel_1_offset: i16,
     /// Magnetometer Channel 2 Offset: bits 64 to 79, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
     /// Note ACP-155 (open): Magnetometer offsets have no unit.
-    pub magnetometer_channel_2_offset: i16,
+    pub channel_2_offset: i16,
     /// Magnetometer Channel 3 Offset: bits 80 to 95, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
     /// Note ACP-155 (open): Magnetometer offsets have no unit.
-    pub magnetometer_channel_3_offset: i16,
+    pub channel_3_offset: i16,
     /// Magnetometer Sensitivity Matrix S11: bits 96 to 111, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s11: i16,
+    pub sensitivity_s11: i16,
     /// Magnetometer Sensitivity Matrix S22: bits 112 to 127, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s22: i16,
+    pub sensitivity_s22: i16,
     /// Magnetometer Sensitivity Matrix S33: bits 128 to 143, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s33: i16,
+    pub sensitivity_s33: i16,
     /// Magnetometer Sensitivity Matrix S12: bits 144 to 159, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s12: i16,
+    pub sensitivity_s12: i16,
     /// Magnetometer Sensitivity Matrix S13: bits 160 to 175, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s13: i16,
+    pub sensitivity_s13: i16,
     /// Magnetometer Sensitivity Matrix S21: bits 176 to 191, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s21: i16,
+    pub sensitivity_s21: i16,
     /// Magnetometer Sensitivity Matrix S23: bits 192 to 207, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s23: i16,
+    pub sensitivity_s23: i16,
     /// Magnetometer Sensitivity Matrix S31: bits 208 to 223, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s31: i16,
+    pub sensitivity_s31: i16,
     /// Magnetometer Sensitivity Matrix S32: bits 224 to 239, raw -32768 to 32767; physical
     /// `raw*0.001`, -32.768 to 32.767.
-    pub magnetometer_sensitivity_matrix_s32: i16,
+    pub sensitivity_s32: i16,
 }
 
 impl MagnetometerConfiguration {
@@ -99,21 +99,21 @@ impl MagnetometerConfiguration {
     #[must_use]
     pub fn from_array(bytes: &[u8; 30]) -> Self {
         Self {
-            magnetometer_mounting_transform_alpha_angle: i16::from_le_bytes(take!(bytes[0; 2])),
-            magnetometer_mounting_transform_beta_angle: i16::from_le_bytes(take!(bytes[2; 2])),
-            magnetometer_mounting_transform_gamma_angle: i16::from_le_bytes(take!(bytes[4; 2])),
-            magnetometer_channel_1_offset: i16::from_le_bytes(take!(bytes[6; 2])),
-            magnetometer_channel_2_offset: i16::from_le_bytes(take!(bytes[8; 2])),
-            magnetometer_channel_3_offset: i16::from_le_bytes(take!(bytes[10; 2])),
-            magnetometer_sensitivity_matrix_s11: i16::from_le_bytes(take!(bytes[12; 2])),
-            magnetometer_sensitivity_matrix_s22: i16::from_le_bytes(take!(bytes[14; 2])),
-            magnetometer_sensitivity_matrix_s33: i16::from_le_bytes(take!(bytes[16; 2])),
-            magnetometer_sensitivity_matrix_s12: i16::from_le_bytes(take!(bytes[18; 2])),
-            magnetometer_sensitivity_matrix_s13: i16::from_le_bytes(take!(bytes[20; 2])),
-            magnetometer_sensitivity_matrix_s21: i16::from_le_bytes(take!(bytes[22; 2])),
-            magnetometer_sensitivity_matrix_s23: i16::from_le_bytes(take!(bytes[24; 2])),
-            magnetometer_sensitivity_matrix_s31: i16::from_le_bytes(take!(bytes[26; 2])),
-            magnetometer_sensitivity_matrix_s32: i16::from_le_bytes(take!(bytes[28; 2])),
+            mounting_alpha: i16::from_le_bytes(take!(bytes[0; 2])),
+            mounting_beta: i16::from_le_bytes(take!(bytes[2; 2])),
+            mounting_gamma: i16::from_le_bytes(take!(bytes[4; 2])),
+            channel_1_offset: i16::from_le_bytes(take!(bytes[6; 2])),
+            channel_2_offset: i16::from_le_bytes(take!(bytes[8; 2])),
+            channel_3_offset: i16::from_le_bytes(take!(bytes[10; 2])),
+            sensitivity_s11: i16::from_le_bytes(take!(bytes[12; 2])),
+            sensitivity_s22: i16::from_le_bytes(take!(bytes[14; 2])),
+            sensitivity_s33: i16::from_le_bytes(take!(bytes[16; 2])),
+            sensitivity_s12: i16::from_le_bytes(take!(bytes[18; 2])),
+            sensitivity_s13: i16::from_le_bytes(take!(bytes[20; 2])),
+            sensitivity_s21: i16::from_le_bytes(take!(bytes[22; 2])),
+            sensitivity_s23: i16::from_le_bytes(take!(bytes[24; 2])),
+            sensitivity_s31: i16::from_le_bytes(take!(bytes[26; 2])),
+            sensitivity_s32: i16::from_le_bytes(take!(bytes[28; 2])),
         }
     }
 
@@ -122,28 +122,28 @@ impl MagnetometerConfiguration {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; 30] {
         let mut bytes = [0; 30];
-        put!(self.magnetometer_mounting_transform_alpha_angle.to_le_bytes() => bytes[0; 2]);
-        put!(self.magnetometer_mounting_transform_beta_angle.to_le_bytes() => bytes[2; 2]);
-        put!(self.magnetometer_mounting_transform_gamma_angle.to_le_bytes() => bytes[4; 2]);
-        put!(self.magnetometer_channel_1_offset.to_le_bytes() => bytes[6; 2]);
-        put!(self.magnetometer_channel_2_offset.to_le_bytes() => bytes[8; 2]);
-        put!(self.magnetometer_channel_3_offset.to_le_bytes() => bytes[10; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s11.to_le_bytes() => bytes[12; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s22.to_le_bytes() => bytes[14; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s33.to_le_bytes() => bytes[16; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s12.to_le_bytes() => bytes[18; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s13.to_le_bytes() => bytes[20; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s21.to_le_bytes() => bytes[22; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s23.to_le_bytes() => bytes[24; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s31.to_le_bytes() => bytes[26; 2]);
-        put!(self.magnetometer_sensitivity_matrix_s32.to_le_bytes() => bytes[28; 2]);
+        put!(self.mounting_alpha.to_le_bytes() => bytes[0; 2]);
+        put!(self.mounting_beta.to_le_bytes() => bytes[2; 2]);
+        put!(self.mounting_gamma.to_le_bytes() => bytes[4; 2]);
+        put!(self.channel_1_offset.to_le_bytes() => bytes[6; 2]);
+        put!(self.channel_2_offset.to_le_bytes() => bytes[8; 2]);
+        put!(self.channel_3_offset.to_le_bytes() => bytes[10; 2]);
+        put!(self.sensitivity_s11.to_le_bytes() => bytes[12; 2]);
+        put!(self.sensitivity_s22.to_le_bytes() => bytes[14; 2]);
+        put!(self.sensitivity_s33.to_le_bytes() => bytes[16; 2]);
+        put!(self.sensitivity_s12.to_le_bytes() => bytes[18; 2]);
+        put!(self.sensitivity_s13.to_le_bytes() => bytes[20; 2]);
+        put!(self.sensitivity_s21.to_le_bytes() => bytes[22; 2]);
+        put!(self.sensitivity_s23.to_le_bytes() => bytes[24; 2]);
+        put!(self.sensitivity_s31.to_le_bytes() => bytes[26; 2]);
+        put!(self.sensitivity_s32.to_le_bytes() => bytes[28; 2]);
         bytes
     }
 
     /// Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn magnetometer_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        f64::from(self.magnetometer_mounting_transform_alpha_angle) / 100.0
+    pub fn mounting_alpha_deg(&self) -> f64 {
+        f64::from(self.mounting_alpha) / 100.0
     }
 
     /// Sets Magnetometer Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -152,19 +152,15 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_mounting_transform_alpha_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_mounting_transform_alpha_angle =
-            MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
+    pub fn set_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.mounting_alpha = MOUNTING_ALPHA.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn magnetometer_mounting_transform_beta_angle_deg(&self) -> f64 {
-        f64::from(self.magnetometer_mounting_transform_beta_angle) / 100.0
+    pub fn mounting_beta_deg(&self) -> f64 {
+        f64::from(self.mounting_beta) / 100.0
     }
 
     /// Sets Magnetometer Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -173,19 +169,15 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_mounting_transform_beta_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_mounting_transform_beta_angle =
-            MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
+    pub fn set_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.mounting_beta = MOUNTING_BETA.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn magnetometer_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        f64::from(self.magnetometer_mounting_transform_gamma_angle) / 100.0
+    pub fn mounting_gamma_deg(&self) -> f64 {
+        f64::from(self.mounting_gamma) / 100.0
     }
 
     /// Sets Magnetometer Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -194,19 +186,15 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_mounting_transform_gamma_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_mounting_transform_gamma_angle =
-            MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
+    pub fn set_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.mounting_gamma = MOUNTING_GAMMA.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_channel_1_offset_physical(&self) -> f64 {
-        f64::from(self.magnetometer_channel_1_offset) / 1_000.0
+    pub fn channel_1_offset_physical(&self) -> f64 {
+        f64::from(self.channel_1_offset) / 1_000.0
     }
 
     /// Sets Magnetometer Channel 1 Offset, as a physical value, to the nearest raw value, ties to
@@ -215,15 +203,15 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_channel_1_offset_physical(&mut self, value: f64) -> Result<(), Error> {
-        self.magnetometer_channel_1_offset = MAGNETOMETER_CHANNEL_1_OFFSET.raw(value)?;
+    pub fn set_channel_1_offset_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.channel_1_offset = CHANNEL_1_OFFSET.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_channel_2_offset_physical(&self) -> f64 {
-        f64::from(self.magnetometer_channel_2_offset) / 1_000.0
+    pub fn channel_2_offset_physical(&self) -> f64 {
+        f64::from(self.channel_2_offset) / 1_000.0
     }
 
     /// Sets Magnetometer Channel 2 Offset, as a physical value, to the nearest raw value, ties to
@@ -232,15 +220,15 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_channel_2_offset_physical(&mut self, value: f64) -> Result<(), Error> {
-        self.magnetometer_channel_2_offset = MAGNETOMETER_CHANNEL_2_OFFSET.raw(value)?;
+    pub fn set_channel_2_offset_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.channel_2_offset = CHANNEL_2_OFFSET.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_channel_3_offset_physical(&self) -> f64 {
-        f64::from(self.magnetometer_channel_3_offset) / 1_000.0
+    pub fn channel_3_offset_physical(&self) -> f64 {
+        f64::from(self.channel_3_offset) / 1_000.0
     }
 
     /// Sets Magnetometer Channel 3 Offset, as a physical value, to the nearest raw value, ties to
@@ -249,15 +237,15 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_channel_3_offset_physical(&mut self, value: f64) -> Result<(), Error> {
-        self.magnetometer_channel_3_offset = MAGNETOMETER_CHANNEL_3_OFFSET.raw(value)?;
+    pub fn set_channel_3_offset_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.channel_3_offset = CHANNEL_3_OFFSET.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s11_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s11) / 1_000.0
+    pub fn sensitivity_s11_physical(&self) -> f64 {
+        f64::from(self.sensitivity_s11) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S11, as a physical value, to the nearest raw value,
@@ -266,18 +254,15 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s11_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s11 = MAGNETOMETER_SENSITIVITY_MATRIX_S11.raw(value)?;
+    pub fn set_sensitivity_s11_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.sensitivity_s11 = SENSITIVITY_S11.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s22_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s22) / 1_000.0
+    pub fn sensitivity_s22_physical(&self) -> f64 {
+        f64::from(self.sensitivity_s22) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S22, as a physical value, to the nearest raw value,
@@ -286,18 +271,15 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s22_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s22 = MAGNETOMETER_SENSITIVITY_MATRIX_S22.raw(value)?;
+    pub fn set_sensitivity_s22_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.sensitivity_s22 = SENSITIVITY_S22.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s33_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s33) / 1_000.0
+    pub fn sensitivity_s33_physical(&self) -> f64 {
+        f64::from(self.sensitivity_s33) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S33, as a physical value, to the nearest raw value,
@@ -306,18 +288,15 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s33_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s33 = MAGNETOMETER_SENSITIVITY_MATRIX_S33.raw(value)?;
+    pub fn set_sensitivity_s33_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.sensitivity_s33 = SENSITIVITY_S33.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s12_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s12) / 1_000.0
+    pub fn sensitivity_s12_physical(&self) -> f64 {
+        f64::from(self.sensitivity_s12) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S12, as a physical value, to the nearest raw value,
@@ -326,18 +305,15 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s12_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s12 = MAGNETOMETER_SENSITIVITY_MATRIX_S12.raw(value)?;
+    pub fn set_sensitivity_s12_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.sensitivity_s12 = SENSITIVITY_S12.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s13_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s13) / 1_000.0
+    pub fn sensitivity_s13_physical(&self) -> f64 {
+        f64::from(self.sensitivity_s13) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S13, as a physical value, to the nearest raw value,
@@ -346,18 +322,15 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s13_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s13 = MAGNETOMETER_SENSITIVITY_MATRIX_S13.raw(value)?;
+    pub fn set_sensitivity_s13_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.sensitivity_s13 = SENSITIVITY_S13.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s21_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s21) / 1_000.0
+    pub fn sensitivity_s21_physical(&self) -> f64 {
+        f64::from(self.sensitivity_s21) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S21, as a physical value, to the nearest raw value,
@@ -366,18 +339,15 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s21_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s21 = MAGNETOMETER_SENSITIVITY_MATRIX_S21.raw(value)?;
+    pub fn set_sensitivity_s21_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.sensitivity_s21 = SENSITIVITY_S21.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s23_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s23) / 1_000.0
+    pub fn sensitivity_s23_physical(&self) -> f64 {
+        f64::from(self.sensitivity_s23) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S23, as a physical value, to the nearest raw value,
@@ -386,18 +356,15 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s23_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s23 = MAGNETOMETER_SENSITIVITY_MATRIX_S23.raw(value)?;
+    pub fn set_sensitivity_s23_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.sensitivity_s23 = SENSITIVITY_S23.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s31_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s31) / 1_000.0
+    pub fn sensitivity_s31_physical(&self) -> f64 {
+        f64::from(self.sensitivity_s31) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S31, as a physical value, to the nearest raw value,
@@ -406,18 +373,15 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s31_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s31 = MAGNETOMETER_SENSITIVITY_MATRIX_S31.raw(value)?;
+    pub fn set_sensitivity_s31_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.sensitivity_s31 = SENSITIVITY_S31.raw(value)?;
         Ok(())
     }
 
     /// Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn magnetometer_sensitivity_matrix_s32_physical(&self) -> f64 {
-        f64::from(self.magnetometer_sensitivity_matrix_s32) / 1_000.0
+    pub fn sensitivity_s32_physical(&self) -> f64 {
+        f64::from(self.sensitivity_s32) / 1_000.0
     }
 
     /// Sets Magnetometer Sensitivity Matrix S32, as a physical value, to the nearest raw value,
@@ -426,16 +390,13 @@ impl MagnetometerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_magnetometer_sensitivity_matrix_s32_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.magnetometer_sensitivity_matrix_s32 = MAGNETOMETER_SENSITIVITY_MATRIX_S32.raw(value)?;
+    pub fn set_sensitivity_s32_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.sensitivity_s32 = SENSITIVITY_S32.raw(value)?;
         Ok(())
     }
 }
 
-const MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
+const MOUNTING_ALPHA: Scale = Scale {
     field: "Magnetometer Mounting Transform Alpha Angle",
     min: -32_768,
     max: 32_767,
@@ -444,7 +405,7 @@ const MAGNETOMETER_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
+const MOUNTING_BETA: Scale = Scale {
     field: "Magnetometer Mounting Transform Beta Angle",
     min: -32_768,
     max: 32_767,
@@ -453,7 +414,7 @@ const MAGNETOMETER_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE: Scale = Scale {
+const MOUNTING_GAMMA: Scale = Scale {
     field: "Magnetometer Mounting Transform Gamma Angle",
     min: -32_768,
     max: 32_767,
@@ -462,7 +423,7 @@ const MAGNETOMETER_MOUNTING_TRANSFORM_GAMMA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const MAGNETOMETER_CHANNEL_1_OFFSET: Scale = Scale {
+const CHANNEL_1_OFFSET: Scale = Scale {
     field: "Magnetometer Channel 1 Offset",
     min: -32_768,
     max: 32_767,
@@ -471,7 +432,7 @@ const MAGNETOMETER_CHANNEL_1_OFFSET: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_CHANNEL_2_OFFSET: Scale = Scale {
+const CHANNEL_2_OFFSET: Scale = Scale {
     field: "Magnetometer Channel 2 Offset",
     min: -32_768,
     max: 32_767,
@@ -480,7 +441,7 @@ const MAGNETOMETER_CHANNEL_2_OFFSET: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_CHANNEL_3_OFFSET: Scale = Scale {
+const CHANNEL_3_OFFSET: Scale = Scale {
     field: "Magnetometer Channel 3 Offset",
     min: -32_768,
     max: 32_767,
@@ -489,7 +450,7 @@ const MAGNETOMETER_CHANNEL_3_OFFSET: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S11: Scale = Scale {
+const SENSITIVITY_S11: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S11",
     min: -32_768,
     max: 32_767,
@@ -498,7 +459,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S11: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S22: Scale = Scale {
+const SENSITIVITY_S22: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S22",
     min: -32_768,
     max: 32_767,
@@ -507,7 +468,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S22: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S33: Scale = Scale {
+const SENSITIVITY_S33: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S33",
     min: -32_768,
     max: 32_767,
@@ -516,7 +477,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S33: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S12: Scale = Scale {
+const SENSITIVITY_S12: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S12",
     min: -32_768,
     max: 32_767,
@@ -525,7 +486,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S12: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S13: Scale = Scale {
+const SENSITIVITY_S13: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S13",
     min: -32_768,
     max: 32_767,
@@ -534,7 +495,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S13: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S21: Scale = Scale {
+const SENSITIVITY_S21: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S21",
     min: -32_768,
     max: 32_767,
@@ -543,7 +504,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S21: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S23: Scale = Scale {
+const SENSITIVITY_S23: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S23",
     min: -32_768,
     max: 32_767,
@@ -552,7 +513,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S23: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S31: Scale = Scale {
+const SENSITIVITY_S31: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S31",
     min: -32_768,
     max: 32_767,
@@ -561,7 +522,7 @@ const MAGNETOMETER_SENSITIVITY_MATRIX_S31: Scale = Scale {
     divisor: 1_000,
 };
 
-const MAGNETOMETER_SENSITIVITY_MATRIX_S32: Scale = Scale {
+const SENSITIVITY_S32: Scale = Scale {
     field: "Magnetometer Sensitivity Matrix S32",
     min: -32_768,
     max: 32_767,

@@ -15,17 +15,17 @@ pub struct QuaternionCovariance {
     /// -32.768 to 32.767.
     ///
     /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
-    pub quaternion_covariance_q1_rms: i16,
+    pub q1_rms: i16,
     /// Quaternion Covariance - Q2 RMS: bits 16 to 31, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
     /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
-    pub quaternion_covariance_q2_rms: i16,
+    pub q2_rms: i16,
     /// Quaternion Covariance - Q3 RMS: bits 32 to 47, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
     ///
     /// Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
-    pub quaternion_covariance_q3_rms: i16,
+    pub q3_rms: i16,
 }
 
 impl QuaternionCovariance {
@@ -54,9 +54,9 @@ impl QuaternionCovariance {
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
         Self {
-            quaternion_covariance_q1_rms: i16::from_le_bytes(take!(bytes[0; 2])),
-            quaternion_covariance_q2_rms: i16::from_le_bytes(take!(bytes[2; 2])),
-            quaternion_covariance_q3_rms: i16::from_le_bytes(take!(bytes[4; 2])),
+            q1_rms: i16::from_le_bytes(take!(bytes[0; 2])),
+            q2_rms: i16::from_le_bytes(take!(bytes[2; 2])),
+            q3_rms: i16::from_le_bytes(take!(bytes[4; 2])),
         }
     }
 
@@ -65,16 +65,16 @@ impl QuaternionCovariance {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; 6] {
         let mut bytes = [0; 6];
-        put!(self.quaternion_covariance_q1_rms.to_le_bytes() => bytes[0; 2]);
-        put!(self.quaternion_covariance_q2_rms.to_le_bytes() => bytes[2; 2]);
-        put!(self.quaternion_covariance_q3_rms.to_le_bytes() => bytes[4; 2]);
+        put!(self.q1_rms.to_le_bytes() => bytes[0; 2]);
+        put!(self.q2_rms.to_le_bytes() => bytes[2; 2]);
+        put!(self.q3_rms.to_le_bytes() => bytes[4; 2]);
         bytes
     }
 
     /// Quaternion Covariance - Q1 RMS, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn quaternion_covariance_q1_rms_physical(&self) -> f64 {
-        f64::from(self.quaternion_covariance_q1_rms) / 1_000.0
+    pub fn q1_rms_physical(&self) -> f64 {
+        f64::from(self.q1_rms) / 1_000.0
     }
 
     /// Sets Quaternion Covariance - Q1 RMS, as a physical value, to the nearest raw value, ties to
@@ -83,15 +83,15 @@ impl QuaternionCovariance {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_quaternion_covariance_q1_rms_physical(&mut self, value: f64) -> Result<(), Error> {
-        self.quaternion_covariance_q1_rms = QUATERNION_COVARIANCE_Q1_RMS.raw(value)?;
+    pub fn set_q1_rms_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.q1_rms = Q1_RMS.raw(value)?;
         Ok(())
     }
 
     /// Quaternion Covariance - Q2 RMS, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn quaternion_covariance_q2_rms_physical(&self) -> f64 {
-        f64::from(self.quaternion_covariance_q2_rms) / 1_000.0
+    pub fn q2_rms_physical(&self) -> f64 {
+        f64::from(self.q2_rms) / 1_000.0
     }
 
     /// Sets Quaternion Covariance - Q2 RMS, as a physical value, to the nearest raw value, ties to
@@ -100,15 +100,15 @@ impl QuaternionCovariance {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_quaternion_covariance_q2_rms_physical(&mut self, value: f64) -> Result<(), Error> {
-        self.quaternion_covariance_q2_rms = QUATERNION_COVARIANCE_Q2_RMS.raw(value)?;
+    pub fn set_q2_rms_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.q2_rms = Q2_RMS.raw(value)?;
         Ok(())
     }
 
     /// Quaternion Covariance - Q3 RMS, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn quaternion_covariance_q3_rms_physical(&self) -> f64 {
-        f64::from(self.quaternion_covariance_q3_rms) / 1_000.0
+    pub fn q3_rms_physical(&self) -> f64 {
+        f64::from(self.q3_rms) / 1_000.0
     }
 
     /// Sets Quaternion Covariance - Q3 RMS, as a physical value, to the nearest raw value, ties to
@@ -117,13 +117,13 @@ impl QuaternionCovariance {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_quaternion_covariance_q3_rms_physical(&mut self, value: f64) -> Result<(), Error> {
-        self.quaternion_covariance_q3_rms = QUATERNION_COVARIANCE_Q3_RMS.raw(value)?;
+    pub fn set_q3_rms_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.q3_rms = Q3_RMS.raw(value)?;
         Ok(())
     }
 }
 
-const QUATERNION_COVARIANCE_Q1_RMS: Scale = Scale {
+const Q1_RMS: Scale = Scale {
     field: "Quaternion Covariance - Q1 RMS",
     min: -32_768,
     max: 32_767,
@@ -132,7 +132,7 @@ const QUATERNION_COVARIANCE_Q1_RMS: Scale = Scale {
     divisor: 1_000,
 };
 
-const QUATERNION_COVARIANCE_Q2_RMS: Scale = Scale {
+const Q2_RMS: Scale = Scale {
     field: "Quaternion Covariance - Q2 RMS",
     min: -32_768,
     max: 32_767,
@@ -141,7 +141,7 @@ const QUATERNION_COVARIANCE_Q2_RMS: Scale = Scale {
     divisor: 1_000,
 };
 
-const QUATERNION_COVARIANCE_Q3_RMS: Scale = Scale {
+const Q3_RMS: Scale = Scale {
     field: "Quaternion Covariance - Q3 RMS",
     min: -32_768,
     max: 32_767,

@@ -34,7 +34,7 @@ pub struct SetDetumblingControlParameters {
     /// Must be below 0 deg/s.
     ///
     /// Note ACP-162 (certain): Limits of a sign in words only.
-    pub reference_spin_rate: i16,
+    pub spin_rate: i16,
     /// Fast BDot Detumbling Gain: bits 80 to 111, 32-bit float.
     ///
     /// Kdf.
@@ -53,7 +53,7 @@ impl SetDetumblingControlParameters {
     /// Id of the telemetry that gets it.
     pub const GET_ID: u8 = 208;
     /// Reference spin rate in deg/s: must be below this.
-    pub const REFERENCE_SPIN_RATE_DEG_PER_S_BELOW: f64 = 0.0;
+    pub const SPIN_RATE_DEG_PER_S_BELOW: f64 = 0.0;
 
     /// Decodes exactly [`Self::LENGTH`] bytes.
     ///
@@ -75,7 +75,7 @@ impl SetDetumblingControlParameters {
         Self {
             detumbling_spin_gain: f32::from_le_bytes(take!(bytes[0; 4])),
             detumbling_damping_gain: f32::from_le_bytes(take!(bytes[4; 4])),
-            reference_spin_rate: i16::from_le_bytes(take!(bytes[8; 2])),
+            spin_rate: i16::from_le_bytes(take!(bytes[8; 2])),
             fast_bdot_detumbling_gain: f32::from_le_bytes(take!(bytes[10; 4])),
         }
     }
@@ -87,15 +87,15 @@ impl SetDetumblingControlParameters {
         let mut bytes = [0; 14];
         put!(self.detumbling_spin_gain.to_le_bytes() => bytes[0; 4]);
         put!(self.detumbling_damping_gain.to_le_bytes() => bytes[4; 4]);
-        put!(self.reference_spin_rate.to_le_bytes() => bytes[8; 2]);
+        put!(self.spin_rate.to_le_bytes() => bytes[8; 2]);
         put!(self.fast_bdot_detumbling_gain.to_le_bytes() => bytes[10; 4]);
         bytes
     }
 
     /// Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s.
     #[must_use]
-    pub fn reference_spin_rate_deg_per_s(&self) -> f64 {
-        f64::from(self.reference_spin_rate) / 1_000.0
+    pub fn spin_rate_deg_per_s(&self) -> f64 {
+        f64::from(self.spin_rate) / 1_000.0
     }
 
     /// Sets Reference spin rate in deg/s, to the nearest raw value, ties to even.
@@ -103,13 +103,13 @@ impl SetDetumblingControlParameters {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_reference_spin_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
-        self.reference_spin_rate = REFERENCE_SPIN_RATE.raw(value)?;
+    pub fn set_spin_rate_deg_per_s(&mut self, value: f64) -> Result<(), Error> {
+        self.spin_rate = SPIN_RATE.raw(value)?;
         Ok(())
     }
 }
 
-const REFERENCE_SPIN_RATE: Scale = Scale {
+const SPIN_RATE: Scale = Scale {
     field: "Reference spin rate",
     min: -32_768,
     max: 32_767,

@@ -19,21 +19,21 @@ pub struct SetMagnetorquerOutput {
     /// Note ACP-030 (certain): Formulas are written in two directions.
     ///
     /// Note ACP-031 (likely): Duty cycle: unit and range are not given.
-    pub commanded_x_magnetorquer_duty_cycle: i16,
+    pub x_duty_cycle: i16,
     /// Commanded Y Magnetorquer duty cycle: bits 16 to 31, raw -32768 to 32767; physical `raw =
     /// value*1000.0`, -32.768 to 32.767.
     ///
     /// Note ACP-030 (certain): Formulas are written in two directions.
     ///
     /// Note ACP-031 (likely): Duty cycle: unit and range are not given.
-    pub commanded_y_magnetorquer_duty_cycle: i16,
+    pub y_duty_cycle: i16,
     /// Commanded Z Magnetorquer duty cycle: bits 32 to 47, raw -32768 to 32767; physical `raw =
     /// value*1000.0`, -32.768 to 32.767.
     ///
     /// Note ACP-030 (certain): Formulas are written in two directions.
     ///
     /// Note ACP-031 (likely): Duty cycle: unit and range are not given.
-    pub commanded_z_magnetorquer_duty_cycle: i16,
+    pub z_duty_cycle: i16,
 }
 
 impl SetMagnetorquerOutput {
@@ -62,9 +62,9 @@ impl SetMagnetorquerOutput {
     #[must_use]
     pub fn from_array(bytes: &[u8; 6]) -> Self {
         Self {
-            commanded_x_magnetorquer_duty_cycle: i16::from_le_bytes(take!(bytes[0; 2])),
-            commanded_y_magnetorquer_duty_cycle: i16::from_le_bytes(take!(bytes[2; 2])),
-            commanded_z_magnetorquer_duty_cycle: i16::from_le_bytes(take!(bytes[4; 2])),
+            x_duty_cycle: i16::from_le_bytes(take!(bytes[0; 2])),
+            y_duty_cycle: i16::from_le_bytes(take!(bytes[2; 2])),
+            z_duty_cycle: i16::from_le_bytes(take!(bytes[4; 2])),
         }
     }
 
@@ -73,16 +73,16 @@ impl SetMagnetorquerOutput {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; 6] {
         let mut bytes = [0; 6];
-        put!(self.commanded_x_magnetorquer_duty_cycle.to_le_bytes() => bytes[0; 2]);
-        put!(self.commanded_y_magnetorquer_duty_cycle.to_le_bytes() => bytes[2; 2]);
-        put!(self.commanded_z_magnetorquer_duty_cycle.to_le_bytes() => bytes[4; 2]);
+        put!(self.x_duty_cycle.to_le_bytes() => bytes[0; 2]);
+        put!(self.y_duty_cycle.to_le_bytes() => bytes[2; 2]);
+        put!(self.z_duty_cycle.to_le_bytes() => bytes[4; 2]);
         bytes
     }
 
     /// Commanded X Magnetorquer duty cycle, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn commanded_x_magnetorquer_duty_cycle_physical(&self) -> f64 {
-        f64::from(self.commanded_x_magnetorquer_duty_cycle) / 1_000.0
+    pub fn x_duty_cycle_physical(&self) -> f64 {
+        f64::from(self.x_duty_cycle) / 1_000.0
     }
 
     /// Sets Commanded X Magnetorquer duty cycle, as a physical value, to the nearest raw value,
@@ -91,18 +91,15 @@ impl SetMagnetorquerOutput {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_commanded_x_magnetorquer_duty_cycle_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.commanded_x_magnetorquer_duty_cycle = COMMANDED_X_MAGNETORQUER_DUTY_CYCLE.raw(value)?;
+    pub fn set_x_duty_cycle_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.x_duty_cycle = X_DUTY_CYCLE.raw(value)?;
         Ok(())
     }
 
     /// Commanded Y Magnetorquer duty cycle, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn commanded_y_magnetorquer_duty_cycle_physical(&self) -> f64 {
-        f64::from(self.commanded_y_magnetorquer_duty_cycle) / 1_000.0
+    pub fn y_duty_cycle_physical(&self) -> f64 {
+        f64::from(self.y_duty_cycle) / 1_000.0
     }
 
     /// Sets Commanded Y Magnetorquer duty cycle, as a physical value, to the nearest raw value,
@@ -111,18 +108,15 @@ impl SetMagnetorquerOutput {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_commanded_y_magnetorquer_duty_cycle_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.commanded_y_magnetorquer_duty_cycle = COMMANDED_Y_MAGNETORQUER_DUTY_CYCLE.raw(value)?;
+    pub fn set_y_duty_cycle_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.y_duty_cycle = Y_DUTY_CYCLE.raw(value)?;
         Ok(())
     }
 
     /// Commanded Z Magnetorquer duty cycle, as a physical value: -32.768 to 32.767.
     #[must_use]
-    pub fn commanded_z_magnetorquer_duty_cycle_physical(&self) -> f64 {
-        f64::from(self.commanded_z_magnetorquer_duty_cycle) / 1_000.0
+    pub fn z_duty_cycle_physical(&self) -> f64 {
+        f64::from(self.z_duty_cycle) / 1_000.0
     }
 
     /// Sets Commanded Z Magnetorquer duty cycle, as a physical value, to the nearest raw value,
@@ -131,16 +125,13 @@ impl SetMagnetorquerOutput {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_commanded_z_magnetorquer_duty_cycle_physical(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.commanded_z_magnetorquer_duty_cycle = COMMANDED_Z_MAGNETORQUER_DUTY_CYCLE.raw(value)?;
+    pub fn set_z_duty_cycle_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.z_duty_cycle = Z_DUTY_CYCLE.raw(value)?;
         Ok(())
     }
 }
 
-const COMMANDED_X_MAGNETORQUER_DUTY_CYCLE: Scale = Scale {
+const X_DUTY_CYCLE: Scale = Scale {
     field: "Commanded X Magnetorquer duty cycle",
     min: -32_768,
     max: 32_767,
@@ -149,7 +140,7 @@ const COMMANDED_X_MAGNETORQUER_DUTY_CYCLE: Scale = Scale {
     divisor: 1_000,
 };
 
-const COMMANDED_Y_MAGNETORQUER_DUTY_CYCLE: Scale = Scale {
+const Y_DUTY_CYCLE: Scale = Scale {
     field: "Commanded Y Magnetorquer duty cycle",
     min: -32_768,
     max: 32_767,
@@ -158,7 +149,7 @@ const COMMANDED_Y_MAGNETORQUER_DUTY_CYCLE: Scale = Scale {
     divisor: 1_000,
 };
 
-const COMMANDED_Z_MAGNETORQUER_DUTY_CYCLE: Scale = Scale {
+const Z_DUTY_CYCLE: Scale = Scale {
     field: "Commanded Z Magnetorquer duty cycle",
     min: -32_768,
     max: 32_767,

@@ -20,17 +20,17 @@ pub struct SetStarTrackerConfiguration {
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
-    pub star_tracker_mounting_transform_alpha_angle: i16,
+    pub mounting_alpha: i16,
     /// StarTracker Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
-    pub star_tracker_mounting_transform_beta_angle: i16,
+    pub mounting_beta: i16,
     /// StarTracker Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
     ///
     /// Note ACP-157 (open): Mounting angles: order of rotation.
-    pub star_tracker_mounting_transform_gamma_angle: i16,
+    pub mounting_gamma: i16,
     /// StarTracker exposure time: bits 48 to 63, raw 0 to 65535.
     ///
     /// Register value.
@@ -76,7 +76,7 @@ pub struct SetStarTrackerConfiguration {
     /// Of the star identification.
     ///
     /// Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
-    pub star_tracker_error_margin: u8,
+    pub error_margin: u8,
     /// Star Tracker Delay Time: bits 144 to 159, raw 0 to 65535, in ms.
     ///
     /// Erratum ACP-140 (certain): milliseconds is ms.
@@ -120,11 +120,11 @@ pub struct SetStarTrackerConfiguration {
     /// Note ACP-143 (open): Margins and search width have no unit.
     ///
     /// Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star tracking.
-    pub star_tracking_margin: u8,
+    pub tracking_margin: u8,
     /// Star Validation Margin: bits 400 to 407, raw 0 to 255; physical `raw/100.0`, 0 to 2.55.
     ///
     /// Note ACP-143 (open): Margins and search width have no unit.
-    pub star_validation_margin: u8,
+    pub validation_margin: u8,
     /// Star Tracking Module Enable: bit 408.
     pub star_tracking_module_enable: bool,
     /// Star Tracking Location Prediction Enable: bit 409.
@@ -134,7 +134,7 @@ pub struct SetStarTrackerConfiguration {
     /// Star Tracking Search Width: bits 416 to 423, raw 0 to 255; physical `raw/5.0`, 0 to 51.
     ///
     /// Note ACP-143 (open): Margins and search width have no unit.
-    pub star_tracking_search_width: u8,
+    pub search_width: u8,
 }
 
 impl SetStarTrackerConfiguration {
@@ -165,9 +165,9 @@ impl SetStarTrackerConfiguration {
     #[must_use]
     pub fn from_array(bytes: &[u8; 53]) -> Self {
         Self {
-            star_tracker_mounting_transform_alpha_angle: i16::from_le_bytes(take!(bytes[0; 2])),
-            star_tracker_mounting_transform_beta_angle: i16::from_le_bytes(take!(bytes[2; 2])),
-            star_tracker_mounting_transform_gamma_angle: i16::from_le_bytes(take!(bytes[4; 2])),
+            mounting_alpha: i16::from_le_bytes(take!(bytes[0; 2])),
+            mounting_beta: i16::from_le_bytes(take!(bytes[2; 2])),
+            mounting_gamma: i16::from_le_bytes(take!(bytes[4; 2])),
             star_tracker_exposure_time: u16::from_le_bytes(take!(bytes[6; 2])),
             star_tracker_analog_gain: u16::from_le_bytes(take!(bytes[8; 2])),
             star_tracker_detection_threshold: bytes[10],
@@ -176,7 +176,7 @@ impl SetStarTrackerConfiguration {
             detection_timeout_duration: u16::from_le_bytes(take!(bytes[13; 2])),
             maximum_star_pixel: bytes[15],
             minimum_star_pixel: bytes[16],
-            star_tracker_error_margin: bytes[17],
+            error_margin: bytes[17],
             star_tracker_delay_time: u16::from_le_bytes(take!(bytes[18; 2])),
             star_tracker_centroid_x: f32::from_le_bytes(take!(bytes[20; 4])),
             star_tracker_centroid_y: f32::from_le_bytes(take!(bytes[24; 4])),
@@ -186,11 +186,11 @@ impl SetStarTrackerConfiguration {
             p1_tangential_distortion_coefficient: f32::from_le_bytes(take!(bytes[40; 4])),
             p2_tangential_distortion_coefficient: f32::from_le_bytes(take!(bytes[44; 4])),
             star_tracking_window_width: bytes[48],
-            star_tracking_margin: bytes[49],
-            star_validation_margin: bytes[50],
+            tracking_margin: bytes[49],
+            validation_margin: bytes[50],
             star_tracking_module_enable: bytes[51] & 0x01 != 0,
             star_tracking_location_prediction_enable: bytes[51] & 0x02 != 0,
-            star_tracking_search_width: bytes[52],
+            search_width: bytes[52],
         }
     }
 
@@ -199,9 +199,9 @@ impl SetStarTrackerConfiguration {
     #[must_use]
     pub fn to_bytes(&self) -> [u8; 53] {
         let mut bytes = [0; 53];
-        put!(self.star_tracker_mounting_transform_alpha_angle.to_le_bytes() => bytes[0; 2]);
-        put!(self.star_tracker_mounting_transform_beta_angle.to_le_bytes() => bytes[2; 2]);
-        put!(self.star_tracker_mounting_transform_gamma_angle.to_le_bytes() => bytes[4; 2]);
+        put!(self.mounting_alpha.to_le_bytes() => bytes[0; 2]);
+        put!(self.mounting_beta.to_le_bytes() => bytes[2; 2]);
+        put!(self.mounting_gamma.to_le_bytes() => bytes[4; 2]);
         put!(self.star_tracker_exposure_time.to_le_bytes() => bytes[6; 2]);
         put!(self.star_tracker_analog_gain.to_le_bytes() => bytes[8; 2]);
         bytes[10] = self.star_tracker_detection_threshold;
@@ -210,7 +210,7 @@ impl SetStarTrackerConfiguration {
         put!(self.detection_timeout_duration.to_le_bytes() => bytes[13; 2]);
         bytes[15] = self.maximum_star_pixel;
         bytes[16] = self.minimum_star_pixel;
-        bytes[17] = self.star_tracker_error_margin;
+        bytes[17] = self.error_margin;
         put!(self.star_tracker_delay_time.to_le_bytes() => bytes[18; 2]);
         put!(self.star_tracker_centroid_x.to_le_bytes() => bytes[20; 4]);
         put!(self.star_tracker_centroid_y.to_le_bytes() => bytes[24; 4]);
@@ -220,18 +220,18 @@ impl SetStarTrackerConfiguration {
         put!(self.p1_tangential_distortion_coefficient.to_le_bytes() => bytes[40; 4]);
         put!(self.p2_tangential_distortion_coefficient.to_le_bytes() => bytes[44; 4]);
         bytes[48] = self.star_tracking_window_width;
-        bytes[49] = self.star_tracking_margin;
-        bytes[50] = self.star_validation_margin;
+        bytes[49] = self.tracking_margin;
+        bytes[50] = self.validation_margin;
         bytes[51] |= u8::from(self.star_tracking_module_enable);
         bytes[51] |= u8::from(self.star_tracking_location_prediction_enable) << 1;
-        bytes[52] = self.star_tracking_search_width;
+        bytes[52] = self.search_width;
         bytes
     }
 
     /// StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn star_tracker_mounting_transform_alpha_angle_deg(&self) -> f64 {
-        f64::from(self.star_tracker_mounting_transform_alpha_angle) / 100.0
+    pub fn mounting_alpha_deg(&self) -> f64 {
+        f64::from(self.mounting_alpha) / 100.0
     }
 
     /// Sets StarTracker Mounting Transform Alpha Angle in deg, to the nearest raw value, ties to
@@ -240,19 +240,15 @@ impl SetStarTrackerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_star_tracker_mounting_transform_alpha_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.star_tracker_mounting_transform_alpha_angle =
-            STAR_TRACKER_MOUNTING_TRANSFORM_ALPHA_ANGLE.raw(value)?;
+    pub fn set_mounting_alpha_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.mounting_alpha = MOUNTING_ALPHA.raw(value)?;
         Ok(())
     }
 
     /// StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn star_tracker_mounting_transform_beta_angle_deg(&self) -> f64 {
-        f64::from(self.star_tracker_mounting_transform_beta_angle) / 100.0
+    pub fn mounting_beta_deg(&self) -> f64 {
+        f64::from(self.mounting_beta) / 100.0
     }
 
     /// Sets StarTracker Mounting Transform Beta Angle in deg, to the nearest raw value, ties to
@@ -261,19 +257,15 @@ impl SetStarTrackerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_star_tracker_mounting_transform_beta_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.star_tracker_mounting_transform_beta_angle =
-            STAR_TRACKER_MOUNTING_TRANSFORM_BETA_ANGLE.raw(value)?;
+    pub fn set_mounting_beta_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.mounting_beta = MOUNTING_BETA.raw(value)?;
         Ok(())
     }
 
     /// StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
     #[must_use]
-    pub fn star_tracker_mounting_transform_gamma_angle_deg(&self) -> f64 {
-        f64::from(self.star_tracker_mounting_transform_gamma_angle) / 100.0
+    pub fn mounting_gamma_deg(&self) -> f64 {
+        f64::from(self.mounting_gamma) / 100.0
     }
 
     /// Sets StarTracker Mounting Transform Gamma Angle in deg, to the nearest raw value, ties to
@@ -282,19 +274,15 @@ impl SetStarTrackerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_star_tracker_mounting_transform_gamma_angle_deg(
-        &mut self,
-        value: f64,
-    ) -> Result<(), Error> {
-        self.star_tracker_mounting_transform_gamma_angle =
-            STAR_TRACKER_MOUNTING_TRANSFORM_GAMMA_ANGLE.raw(value)?;
+    pub fn set_mounting_gamma_deg(&mut self, value: f64) -> Result<(), Error> {
+        self.mounting_gamma = MOUNTING_GAMMA.raw(value)?;
         Ok(())
     }
 
     /// Star Tracker Error Margin in %: 0 to 2.55.
     #[must_use]
-    pub fn star_tracker_error_margin_percent(&self) -> f64 {
-        f64::from(self.star_tracker_error_margin) / 100.0
+    pub fn error_margin_percent(&self) -> f64 {
+        f64::from(self.error_margin) / 100.0
     }
 
     /// Sets Star Tracker Error Margin in %, to the nearest raw value, ties to even.
@@ -302,15 +290,15 @@ impl SetStarTrackerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_star_tracker_error_margin_percent(&mut self, value: f64) -> Result<(), Error> {
-        self.star_tracker_error_margin = STAR_TRACKER_ERROR_MARGIN.raw(value)?;
+    pub fn set_error_margin_percent(&mut self, value: f64) -> Result<(), Error> {
+        self.error_margin = ERROR_MARGIN.raw(value)?;
         Ok(())
     }
 
     /// Star Tracking Margin, as a physical value: 0 to 2.55.
     #[must_use]
-    pub fn star_tracking_margin_physical(&self) -> f64 {
-        f64::from(self.star_tracking_margin) / 100.0
+    pub fn tracking_margin_physical(&self) -> f64 {
+        f64::from(self.tracking_margin) / 100.0
     }
 
     /// Sets Star Tracking Margin, as a physical value, to the nearest raw value, ties to even.
@@ -318,15 +306,15 @@ impl SetStarTrackerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_star_tracking_margin_physical(&mut self, value: f64) -> Result<(), Error> {
-        self.star_tracking_margin = STAR_TRACKING_MARGIN.raw(value)?;
+    pub fn set_tracking_margin_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.tracking_margin = TRACKING_MARGIN.raw(value)?;
         Ok(())
     }
 
     /// Star Validation Margin, as a physical value: 0 to 2.55.
     #[must_use]
-    pub fn star_validation_margin_physical(&self) -> f64 {
-        f64::from(self.star_validation_margin) / 100.0
+    pub fn validation_margin_physical(&self) -> f64 {
+        f64::from(self.validation_margin) / 100.0
     }
 
     /// Sets Star Validation Margin, as a physical value, to the nearest raw value, ties to even.
@@ -334,15 +322,15 @@ impl SetStarTrackerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_star_validation_margin_physical(&mut self, value: f64) -> Result<(), Error> {
-        self.star_validation_margin = STAR_VALIDATION_MARGIN.raw(value)?;
+    pub fn set_validation_margin_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.validation_margin = VALIDATION_MARGIN.raw(value)?;
         Ok(())
     }
 
     /// Star Tracking Search Width, as a physical value: 0 to 51.
     #[must_use]
-    pub fn star_tracking_search_width_physical(&self) -> f64 {
-        f64::from(self.star_tracking_search_width) / 5.0
+    pub fn search_width_physical(&self) -> f64 {
+        f64::from(self.search_width) / 5.0
     }
 
     /// Sets Star Tracking Search Width, as a physical value, to the nearest raw value, ties to
@@ -351,13 +339,13 @@ impl SetStarTrackerConfiguration {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite; the message is left as it was.
-    pub fn set_star_tracking_search_width_physical(&mut self, value: f64) -> Result<(), Error> {
-        self.star_tracking_search_width = STAR_TRACKING_SEARCH_WIDTH.raw(value)?;
+    pub fn set_search_width_physical(&mut self, value: f64) -> Result<(), Error> {
+        self.search_width = SEARCH_WIDTH.raw(value)?;
         Ok(())
     }
 }
 
-const STAR_TRACKER_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
+const MOUNTING_ALPHA: Scale = Scale {
     field: "StarTracker Mounting Transform Alpha Angle",
     min: -32_768,
     max: 32_767,
@@ -366,7 +354,7 @@ const STAR_TRACKER_MOUNTING_TRANSFORM_ALPHA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const STAR_TRACKER_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
+const MOUNTING_BETA: Scale = Scale {
     field: "StarTracker Mounting Transform Beta Angle",
     min: -32_768,
     max: 32_767,
@@ -375,7 +363,7 @@ const STAR_TRACKER_MOUNTING_TRANSFORM_BETA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const STAR_TRACKER_MOUNTING_TRANSFORM_GAMMA_ANGLE: Scale = Scale {
+const MOUNTING_GAMMA: Scale = Scale {
     field: "StarTracker Mounting Transform Gamma Angle",
     min: -32_768,
     max: 32_767,
@@ -384,7 +372,7 @@ const STAR_TRACKER_MOUNTING_TRANSFORM_GAMMA_ANGLE: Scale = Scale {
     divisor: 100,
 };
 
-const STAR_TRACKER_ERROR_MARGIN: Scale = Scale {
+const ERROR_MARGIN: Scale = Scale {
     field: "Star Tracker Error Margin",
     min: 0,
     max: 255,
@@ -393,7 +381,7 @@ const STAR_TRACKER_ERROR_MARGIN: Scale = Scale {
     divisor: 100,
 };
 
-const STAR_TRACKING_MARGIN: Scale = Scale {
+const TRACKING_MARGIN: Scale = Scale {
     field: "Star Tracking Margin",
     min: 0,
     max: 255,
@@ -402,7 +390,7 @@ const STAR_TRACKING_MARGIN: Scale = Scale {
     divisor: 100,
 };
 
-const STAR_VALIDATION_MARGIN: Scale = Scale {
+const VALIDATION_MARGIN: Scale = Scale {
     field: "Star Validation Margin",
     min: 0,
     max: 255,
@@ -411,7 +399,7 @@ const STAR_VALIDATION_MARGIN: Scale = Scale {
     divisor: 100,
 };
 
-const STAR_TRACKING_SEARCH_WIDTH: Scale = Scale {
+const SEARCH_WIDTH: Scale = Scale {
     field: "Star Tracking Search Width",
     min: 0,
     max: 255,

@@ -100,17 +100,17 @@ class AdcsConfiguration(_base.Message):
         "css9_relative_scale",
         "css10_relative_scale",
         "css_threshold",
-        "cam1_sensor_mounting_transform_alpha_angle",
-        "cam1_sensor_mounting_transform_beta_angle",
-        "cam1_sensor_mounting_transform_gamma_angle",
+        "cam1_mounting_alpha",
+        "cam1_mounting_beta",
+        "cam1_mounting_gamma",
         "cam1_detection_threshold",
         "cam1_sensor_auto_adjust_mode",
         "cam1_sensor_exposure_time",
         "cam1_boresight_x",
         "cam1_boresight_y",
-        "cam2_sensor_mounting_transform_alpha_angle",
-        "cam2_sensor_mounting_transform_beta_angle",
-        "cam2_sensor_mounting_transform_gamma_angle",
+        "cam2_mounting_alpha",
+        "cam2_mounting_beta",
+        "cam2_mounting_gamma",
         "cam2_detection_threshold",
         "cam2_sensor_auto_adjust_mode",
         "cam2_sensor_exposure_time",
@@ -160,39 +160,39 @@ class AdcsConfiguration(_base.Message):
         "cam_2_maximum_x_of_area_5",
         "cam_2_minimum_y_of_area_5",
         "cam_2_maximum_y_of_area_5",
-        "magnetometer_mounting_transform_alpha_angle",
-        "magnetometer_mounting_transform_beta_angle",
-        "magnetometer_mounting_transform_gamma_angle",
+        "magnetometer_mounting_alpha",
+        "magnetometer_mounting_beta",
+        "magnetometer_mounting_gamma",
         "magnetometer_channel_1_offset",
         "magnetometer_channel_2_offset",
         "magnetometer_channel_3_offset",
-        "magnetometer_sensitivity_matrix_s11",
-        "magnetometer_sensitivity_matrix_s22",
-        "magnetometer_sensitivity_matrix_s33",
-        "magnetometer_sensitivity_matrix_s12",
-        "magnetometer_sensitivity_matrix_s13",
-        "magnetometer_sensitivity_matrix_s21",
-        "magnetometer_sensitivity_matrix_s23",
-        "magnetometer_sensitivity_matrix_s31",
-        "magnetometer_sensitivity_matrix_s32",
-        "redundant_magnetometer_mounting_transform_alpha_angle",
-        "redundant_magnetometer_mounting_transform_beta_angle",
-        "redundant_magnetometer_mounting_transform_gamma_angle",
-        "redundant_magnetometer_channel_1_offset",
-        "redundant_magnetometer_channel_2_offset",
-        "redundant_magnetometer_channel_3_offset",
-        "redundant_magnetometer_sensitivity_matrix_s11",
-        "redundant_magnetometer_sensitivity_matrix_s22",
-        "redundant_magnetometer_sensitivity_matrix_s33",
-        "redundant_magnetometer_sensitivity_matrix_s12",
-        "redundant_magnetometer_sensitivity_matrix_s13",
-        "redundant_magnetometer_sensitivity_matrix_s21",
-        "redundant_magnetometer_sensitivity_matrix_s23",
-        "redundant_magnetometer_sensitivity_matrix_s31",
-        "redundant_magnetometer_sensitivity_matrix_s32",
-        "star_tracker_mounting_transform_alpha_angle",
-        "star_tracker_mounting_transform_beta_angle",
-        "star_tracker_mounting_transform_gamma_angle",
+        "magnetometer_sensitivity_s11",
+        "magnetometer_sensitivity_s22",
+        "magnetometer_sensitivity_s33",
+        "magnetometer_sensitivity_s12",
+        "magnetometer_sensitivity_s13",
+        "magnetometer_sensitivity_s21",
+        "magnetometer_sensitivity_s23",
+        "magnetometer_sensitivity_s31",
+        "magnetometer_sensitivity_s32",
+        "redundant_mag_mounting_alpha",
+        "redundant_mag_mounting_beta",
+        "redundant_mag_mounting_gamma",
+        "redundant_mag_channel_1_offset",
+        "redundant_mag_channel_2_offset",
+        "redundant_mag_channel_3_offset",
+        "redundant_mag_sensitivity_s11",
+        "redundant_mag_sensitivity_s22",
+        "redundant_mag_sensitivity_s33",
+        "redundant_mag_sensitivity_s12",
+        "redundant_mag_sensitivity_s13",
+        "redundant_mag_sensitivity_s21",
+        "redundant_mag_sensitivity_s23",
+        "redundant_mag_sensitivity_s31",
+        "redundant_mag_sensitivity_s32",
+        "star_tracker_mounting_alpha",
+        "star_tracker_mounting_beta",
+        "star_tracker_mounting_gamma",
         "star_tracker_exposure_time",
         "star_tracker_analog_gain",
         "star_tracker_detection_threshold",
@@ -571,33 +571,33 @@ class AdcsConfiguration(_base.Message):
         ),
         _base.FieldInfo("css_threshold", "CSS Threshold", 296, 8, "uint"),
         _base.FieldInfo(
-            "cam1_sensor_mounting_transform_alpha_angle",
+            "cam1_mounting_alpha",
             "Cam1 Sensor Mounting Transform Alpha Angle",
             304,
             16,
             "int",
             unit="deg",
-            physical="cam1_sensor_mounting_transform_alpha_angle_deg",
+            physical="cam1_mounting_alpha_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "cam1_sensor_mounting_transform_beta_angle",
+            "cam1_mounting_beta",
             "Cam1 Sensor Mounting Transform Beta Angle",
             320,
             16,
             "int",
             unit="deg",
-            physical="cam1_sensor_mounting_transform_beta_angle_deg",
+            physical="cam1_mounting_beta_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "cam1_sensor_mounting_transform_gamma_angle",
+            "cam1_mounting_gamma",
             "Cam1 Sensor Mounting Transform Gamma Angle",
             336,
             16,
             "int",
             unit="deg",
-            physical="cam1_sensor_mounting_transform_gamma_angle_deg",
+            physical="cam1_mounting_gamma_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
@@ -642,33 +642,33 @@ class AdcsConfiguration(_base.Message):
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "cam2_sensor_mounting_transform_alpha_angle",
+            "cam2_mounting_alpha",
             "Cam2 Sensor Mounting Transform Alpha Angle",
             416,
             16,
             "int",
             unit="deg",
-            physical="cam2_sensor_mounting_transform_alpha_angle_deg",
+            physical="cam2_mounting_alpha_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "cam2_sensor_mounting_transform_beta_angle",
+            "cam2_mounting_beta",
             "Cam2 Sensor Mounting Transform Beta Angle",
             432,
             16,
             "int",
             unit="deg",
-            physical="cam2_sensor_mounting_transform_beta_angle_deg",
+            physical="cam2_mounting_beta_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "cam2_sensor_mounting_transform_gamma_angle",
+            "cam2_mounting_gamma",
             "Cam2 Sensor Mounting Transform Gamma Angle",
             448,
             16,
             "int",
             unit="deg",
-            physical="cam2_sensor_mounting_transform_gamma_angle_deg",
+            physical="cam2_mounting_gamma_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
@@ -1018,33 +1018,33 @@ class AdcsConfiguration(_base.Message):
             "uint",
         ),
         _base.FieldInfo(
-            "magnetometer_mounting_transform_alpha_angle",
+            "magnetometer_mounting_alpha",
             "Magnetometer Mounting Transform Alpha Angle",
             1200,
             16,
             "int",
             unit="deg",
-            physical="magnetometer_mounting_transform_alpha_angle_deg",
+            physical="magnetometer_mounting_alpha_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "magnetometer_mounting_transform_beta_angle",
+            "magnetometer_mounting_beta",
             "Magnetometer Mounting Transform Beta Angle",
             1216,
             16,
             "int",
             unit="deg",
-            physical="magnetometer_mounting_transform_beta_angle_deg",
+            physical="magnetometer_mounting_beta_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "magnetometer_mounting_transform_gamma_angle",
+            "magnetometer_mounting_gamma",
             "Magnetometer Mounting Transform Gamma Angle",
             1232,
             16,
             "int",
             unit="deg",
-            physical="magnetometer_mounting_transform_gamma_angle_deg",
+            physical="magnetometer_mounting_gamma_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
@@ -1075,252 +1075,252 @@ class AdcsConfiguration(_base.Message):
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s11",
+            "magnetometer_sensitivity_s11",
             "Magnetometer Sensitivity Matrix S11",
             1296,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s11_physical",
+            physical="magnetometer_sensitivity_s11_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s22",
+            "magnetometer_sensitivity_s22",
             "Magnetometer Sensitivity Matrix S22",
             1312,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s22_physical",
+            physical="magnetometer_sensitivity_s22_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s33",
+            "magnetometer_sensitivity_s33",
             "Magnetometer Sensitivity Matrix S33",
             1328,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s33_physical",
+            physical="magnetometer_sensitivity_s33_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s12",
+            "magnetometer_sensitivity_s12",
             "Magnetometer Sensitivity Matrix S12",
             1344,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s12_physical",
+            physical="magnetometer_sensitivity_s12_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s13",
+            "magnetometer_sensitivity_s13",
             "Magnetometer Sensitivity Matrix S13",
             1360,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s13_physical",
+            physical="magnetometer_sensitivity_s13_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s21",
+            "magnetometer_sensitivity_s21",
             "Magnetometer Sensitivity Matrix S21",
             1376,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s21_physical",
+            physical="magnetometer_sensitivity_s21_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s23",
+            "magnetometer_sensitivity_s23",
             "Magnetometer Sensitivity Matrix S23",
             1392,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s23_physical",
+            physical="magnetometer_sensitivity_s23_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s31",
+            "magnetometer_sensitivity_s31",
             "Magnetometer Sensitivity Matrix S31",
             1408,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s31_physical",
+            physical="magnetometer_sensitivity_s31_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s32",
+            "magnetometer_sensitivity_s32",
             "Magnetometer Sensitivity Matrix S32",
             1424,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s32_physical",
+            physical="magnetometer_sensitivity_s32_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_mounting_transform_alpha_angle",
+            "redundant_mag_mounting_alpha",
             "Redundant Magnetometer Mounting Transform Alpha Angle",
             1440,
             16,
             "int",
             unit="deg",
-            physical="redundant_magnetometer_mounting_transform_alpha_angle_deg",
+            physical="redundant_mag_mounting_alpha_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_mounting_transform_beta_angle",
+            "redundant_mag_mounting_beta",
             "Redundant Magnetometer Mounting Transform Beta Angle",
             1456,
             16,
             "int",
             unit="deg",
-            physical="redundant_magnetometer_mounting_transform_beta_angle_deg",
+            physical="redundant_mag_mounting_beta_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_mounting_transform_gamma_angle",
+            "redundant_mag_mounting_gamma",
             "Redundant Magnetometer Mounting Transform Gamma Angle",
             1472,
             16,
             "int",
             unit="deg",
-            physical="redundant_magnetometer_mounting_transform_gamma_angle_deg",
+            physical="redundant_mag_mounting_gamma_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_channel_1_offset",
+            "redundant_mag_channel_1_offset",
             "Redundant Magnetometer Channel 1 Offset",
             1488,
             16,
             "int",
-            physical="redundant_magnetometer_channel_1_offset_physical",
+            physical="redundant_mag_channel_1_offset_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_channel_2_offset",
+            "redundant_mag_channel_2_offset",
             "Redundant Magnetometer Channel 2 Offset",
             1504,
             16,
             "int",
-            physical="redundant_magnetometer_channel_2_offset_physical",
+            physical="redundant_mag_channel_2_offset_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_channel_3_offset",
+            "redundant_mag_channel_3_offset",
             "Redundant Magnetometer Channel 3 Offset",
             1520,
             16,
             "int",
-            physical="redundant_magnetometer_channel_3_offset_physical",
+            physical="redundant_mag_channel_3_offset_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_sensitivity_matrix_s11",
+            "redundant_mag_sensitivity_s11",
             "Redundant Magnetometer Sensitivity Matrix S11",
             1536,
             16,
             "int",
-            physical="redundant_magnetometer_sensitivity_matrix_s11_physical",
+            physical="redundant_mag_sensitivity_s11_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_sensitivity_matrix_s22",
+            "redundant_mag_sensitivity_s22",
             "Redundant Magnetometer Sensitivity Matrix S22",
             1552,
             16,
             "int",
-            physical="redundant_magnetometer_sensitivity_matrix_s22_physical",
+            physical="redundant_mag_sensitivity_s22_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_sensitivity_matrix_s33",
+            "redundant_mag_sensitivity_s33",
             "Redundant Magnetometer Sensitivity Matrix S33",
             1568,
             16,
             "int",
-            physical="redundant_magnetometer_sensitivity_matrix_s33_physical",
+            physical="redundant_mag_sensitivity_s33_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_sensitivity_matrix_s12",
+            "redundant_mag_sensitivity_s12",
             "Redundant Magnetometer Sensitivity Matrix S12",
             1584,
             16,
             "int",
-            physical="redundant_magnetometer_sensitivity_matrix_s12_physical",
+            physical="redundant_mag_sensitivity_s12_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_sensitivity_matrix_s13",
+            "redundant_mag_sensitivity_s13",
             "Redundant Magnetometer Sensitivity Matrix S13",
             1600,
             16,
             "int",
-            physical="redundant_magnetometer_sensitivity_matrix_s13_physical",
+            physical="redundant_mag_sensitivity_s13_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_sensitivity_matrix_s21",
+            "redundant_mag_sensitivity_s21",
             "Redundant Magnetometer Sensitivity Matrix S21",
             1616,
             16,
             "int",
-            physical="redundant_magnetometer_sensitivity_matrix_s21_physical",
+            physical="redundant_mag_sensitivity_s21_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_sensitivity_matrix_s23",
+            "redundant_mag_sensitivity_s23",
             "Redundant Magnetometer Sensitivity Matrix S23",
             1632,
             16,
             "int",
-            physical="redundant_magnetometer_sensitivity_matrix_s23_physical",
+            physical="redundant_mag_sensitivity_s23_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_sensitivity_matrix_s31",
+            "redundant_mag_sensitivity_s31",
             "Redundant Magnetometer Sensitivity Matrix S31",
             1648,
             16,
             "int",
-            physical="redundant_magnetometer_sensitivity_matrix_s31_physical",
+            physical="redundant_mag_sensitivity_s31_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_sensitivity_matrix_s32",
+            "redundant_mag_sensitivity_s32",
             "Redundant Magnetometer Sensitivity Matrix S32",
             1664,
             16,
             "int",
-            physical="redundant_magnetometer_sensitivity_matrix_s32_physical",
+            physical="redundant_mag_sensitivity_s32_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "star_tracker_mounting_transform_alpha_angle",
+            "star_tracker_mounting_alpha",
             "StarTracker Mounting Transform Alpha Angle",
             1680,
             16,
             "int",
             unit="deg",
-            physical="star_tracker_mounting_transform_alpha_angle_deg",
+            physical="star_tracker_mounting_alpha_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "star_tracker_mounting_transform_beta_angle",
+            "star_tracker_mounting_beta",
             "StarTracker Mounting Transform Beta Angle",
             1696,
             16,
             "int",
             unit="deg",
-            physical="star_tracker_mounting_transform_beta_angle_deg",
+            physical="star_tracker_mounting_beta_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "star_tracker_mounting_transform_gamma_angle",
+            "star_tracker_mounting_gamma",
             "StarTracker Mounting Transform Gamma Angle",
             1712,
             16,
             "int",
             unit="deg",
-            physical="star_tracker_mounting_transform_gamma_angle_deg",
+            physical="star_tracker_mounting_gamma_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
@@ -2003,15 +2003,15 @@ class AdcsConfiguration(_base.Message):
 
     Note ACP-133 (open): CSS threshold has no description.
     """
-    cam1_sensor_mounting_transform_alpha_angle: int
+    cam1_mounting_alpha: int
     """Cam1 Sensor Mounting Transform Alpha Angle: bits 304 to 319, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    cam1_sensor_mounting_transform_beta_angle: int
+    cam1_mounting_beta: int
     """Cam1 Sensor Mounting Transform Beta Angle: bits 320 to 335, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    cam1_sensor_mounting_transform_gamma_angle: int
+    cam1_mounting_gamma: int
     """Cam1 Sensor Mounting Transform Gamma Angle: bits 336 to 351, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
     """
@@ -2036,15 +2036,15 @@ class AdcsConfiguration(_base.Message):
 
     Where the boresight meets the image.
     """
-    cam2_sensor_mounting_transform_alpha_angle: int
+    cam2_mounting_alpha: int
     """Cam2 Sensor Mounting Transform Alpha Angle: bits 416 to 431, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    cam2_sensor_mounting_transform_beta_angle: int
+    cam2_mounting_beta: int
     """Cam2 Sensor Mounting Transform Beta Angle: bits 432 to 447, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    cam2_sensor_mounting_transform_gamma_angle: int
+    cam2_mounting_gamma: int
     """Cam2 Sensor Mounting Transform Gamma Angle: bits 448 to 463, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
     """
@@ -2171,15 +2171,15 @@ class AdcsConfiguration(_base.Message):
     """Cam 2 Minimum Y of area 5: bits 1168 to 1183, raw 0 to 65535."""
     cam_2_maximum_y_of_area_5: int
     """Cam 2 Maximum Y of area 5: bits 1184 to 1199, raw 0 to 65535."""
-    magnetometer_mounting_transform_alpha_angle: int
+    magnetometer_mounting_alpha: int
     """Magnetometer Mounting Transform Alpha Angle: bits 1200 to 1215, raw -32768 to
     32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    magnetometer_mounting_transform_beta_angle: int
+    magnetometer_mounting_beta: int
     """Magnetometer Mounting Transform Beta Angle: bits 1216 to 1231, raw -32768 to
     32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    magnetometer_mounting_transform_gamma_angle: int
+    magnetometer_mounting_gamma: int
     """Magnetometer Mounting Transform Gamma Angle: bits 1232 to 1247, raw -32768 to
     32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
@@ -2195,111 +2195,111 @@ class AdcsConfiguration(_base.Message):
     """Magnetometer Channel 3 Offset: bits 1280 to 1295, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s11: int
+    magnetometer_sensitivity_s11: int
     """Magnetometer Sensitivity Matrix S11: bits 1296 to 1311, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s22: int
+    magnetometer_sensitivity_s22: int
     """Magnetometer Sensitivity Matrix S22: bits 1312 to 1327, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s33: int
+    magnetometer_sensitivity_s33: int
     """Magnetometer Sensitivity Matrix S33: bits 1328 to 1343, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s12: int
+    magnetometer_sensitivity_s12: int
     """Magnetometer Sensitivity Matrix S12: bits 1344 to 1359, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s13: int
+    magnetometer_sensitivity_s13: int
     """Magnetometer Sensitivity Matrix S13: bits 1360 to 1375, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s21: int
+    magnetometer_sensitivity_s21: int
     """Magnetometer Sensitivity Matrix S21: bits 1376 to 1391, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s23: int
+    magnetometer_sensitivity_s23: int
     """Magnetometer Sensitivity Matrix S23: bits 1392 to 1407, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s31: int
+    magnetometer_sensitivity_s31: int
     """Magnetometer Sensitivity Matrix S31: bits 1408 to 1423, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s32: int
+    magnetometer_sensitivity_s32: int
     """Magnetometer Sensitivity Matrix S32: bits 1424 to 1439, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_magnetometer_mounting_transform_alpha_angle: int
+    redundant_mag_mounting_alpha: int
     """Redundant Magnetometer Mounting Transform Alpha Angle: bits 1440 to 1455, raw
     -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    redundant_magnetometer_mounting_transform_beta_angle: int
+    redundant_mag_mounting_beta: int
     """Redundant Magnetometer Mounting Transform Beta Angle: bits 1456 to 1471, raw
     -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    redundant_magnetometer_mounting_transform_gamma_angle: int
+    redundant_mag_mounting_gamma: int
     """Redundant Magnetometer Mounting Transform Gamma Angle: bits 1472 to 1487, raw
     -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    redundant_magnetometer_channel_1_offset: int
+    redundant_mag_channel_1_offset: int
     """Redundant Magnetometer Channel 1 Offset: bits 1488 to 1503, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_magnetometer_channel_2_offset: int
+    redundant_mag_channel_2_offset: int
     """Redundant Magnetometer Channel 2 Offset: bits 1504 to 1519, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_magnetometer_channel_3_offset: int
+    redundant_mag_channel_3_offset: int
     """Redundant Magnetometer Channel 3 Offset: bits 1520 to 1535, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_magnetometer_sensitivity_matrix_s11: int
+    redundant_mag_sensitivity_s11: int
     """Redundant Magnetometer Sensitivity Matrix S11: bits 1536 to 1551, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_magnetometer_sensitivity_matrix_s22: int
+    redundant_mag_sensitivity_s22: int
     """Redundant Magnetometer Sensitivity Matrix S22: bits 1552 to 1567, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_magnetometer_sensitivity_matrix_s33: int
+    redundant_mag_sensitivity_s33: int
     """Redundant Magnetometer Sensitivity Matrix S33: bits 1568 to 1583, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_magnetometer_sensitivity_matrix_s12: int
+    redundant_mag_sensitivity_s12: int
     """Redundant Magnetometer Sensitivity Matrix S12: bits 1584 to 1599, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_magnetometer_sensitivity_matrix_s13: int
+    redundant_mag_sensitivity_s13: int
     """Redundant Magnetometer Sensitivity Matrix S13: bits 1600 to 1615, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_magnetometer_sensitivity_matrix_s21: int
+    redundant_mag_sensitivity_s21: int
     """Redundant Magnetometer Sensitivity Matrix S21: bits 1616 to 1631, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_magnetometer_sensitivity_matrix_s23: int
+    redundant_mag_sensitivity_s23: int
     """Redundant Magnetometer Sensitivity Matrix S23: bits 1632 to 1647, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_magnetometer_sensitivity_matrix_s31: int
+    redundant_mag_sensitivity_s31: int
     """Redundant Magnetometer Sensitivity Matrix S31: bits 1648 to 1663, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    redundant_magnetometer_sensitivity_matrix_s32: int
+    redundant_mag_sensitivity_s32: int
     """Redundant Magnetometer Sensitivity Matrix S32: bits 1664 to 1679, raw -32768 to
     32767; physical `raw*0.001`, -32.768 to 32.767.
     """
-    star_tracker_mounting_transform_alpha_angle: int
+    star_tracker_mounting_alpha: int
     """StarTracker Mounting Transform Alpha Angle: bits 1680 to 1695, raw -32768 to
     32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    star_tracker_mounting_transform_beta_angle: int
+    star_tracker_mounting_beta: int
     """StarTracker Mounting Transform Beta Angle: bits 1696 to 1711, raw -32768 to
     32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
-    star_tracker_mounting_transform_gamma_angle: int
+    star_tracker_mounting_gamma: int
     """StarTracker Mounting Transform Gamma Angle: bits 1712 to 1727, raw -32768 to
     32767; physical `raw*0.01`, -327.68 to 327.67 deg.
     """
@@ -2772,17 +2772,17 @@ class AdcsConfiguration(_base.Message):
         css9_relative_scale: int = 0,
         css10_relative_scale: int = 0,
         css_threshold: int = 0,
-        cam1_sensor_mounting_transform_alpha_angle: int = 0,
-        cam1_sensor_mounting_transform_beta_angle: int = 0,
-        cam1_sensor_mounting_transform_gamma_angle: int = 0,
+        cam1_mounting_alpha: int = 0,
+        cam1_mounting_beta: int = 0,
+        cam1_mounting_gamma: int = 0,
         cam1_detection_threshold: int = 0,
         cam1_sensor_auto_adjust_mode: bool = False,
         cam1_sensor_exposure_time: int = 0,
         cam1_boresight_x: int = 0,
         cam1_boresight_y: int = 0,
-        cam2_sensor_mounting_transform_alpha_angle: int = 0,
-        cam2_sensor_mounting_transform_beta_angle: int = 0,
-        cam2_sensor_mounting_transform_gamma_angle: int = 0,
+        cam2_mounting_alpha: int = 0,
+        cam2_mounting_beta: int = 0,
+        cam2_mounting_gamma: int = 0,
         cam2_detection_threshold: int = 0,
         cam2_sensor_auto_adjust_mode: bool = False,
         cam2_sensor_exposure_time: int = 0,
@@ -2832,39 +2832,39 @@ class AdcsConfiguration(_base.Message):
         cam_2_maximum_x_of_area_5: int = 0,
         cam_2_minimum_y_of_area_5: int = 0,
         cam_2_maximum_y_of_area_5: int = 0,
-        magnetometer_mounting_transform_alpha_angle: int = 0,
-        magnetometer_mounting_transform_beta_angle: int = 0,
-        magnetometer_mounting_transform_gamma_angle: int = 0,
+        magnetometer_mounting_alpha: int = 0,
+        magnetometer_mounting_beta: int = 0,
+        magnetometer_mounting_gamma: int = 0,
         magnetometer_channel_1_offset: int = 0,
         magnetometer_channel_2_offset: int = 0,
         magnetometer_channel_3_offset: int = 0,
-        magnetometer_sensitivity_matrix_s11: int = 0,
-        magnetometer_sensitivity_matrix_s22: int = 0,
-        magnetometer_sensitivity_matrix_s33: int = 0,
-        magnetometer_sensitivity_matrix_s12: int = 0,
-        magnetometer_sensitivity_matrix_s13: int = 0,
-        magnetometer_sensitivity_matrix_s21: int = 0,
-        magnetometer_sensitivity_matrix_s23: int = 0,
-        magnetometer_sensitivity_matrix_s31: int = 0,
-        magnetometer_sensitivity_matrix_s32: int = 0,
-        redundant_magnetometer_mounting_transform_alpha_angle: int = 0,
-        redundant_magnetometer_mounting_transform_beta_angle: int = 0,
-        redundant_magnetometer_mounting_transform_gamma_angle: int = 0,
-        redundant_magnetometer_channel_1_offset: int = 0,
-        redundant_magnetometer_channel_2_offset: int = 0,
-        redundant_magnetometer_channel_3_offset: int = 0,
-        redundant_magnetometer_sensitivity_matrix_s11: int = 0,
-        redundant_magnetometer_sensitivity_matrix_s22: int = 0,
-        redundant_magnetometer_sensitivity_matrix_s33: int = 0,
-        redundant_magnetometer_sensitivity_matrix_s12: int = 0,
-        redundant_magnetometer_sensitivity_matrix_s13: int = 0,
-        redundant_magnetometer_sensitivity_matrix_s21: int = 0,
-        redundant_magnetometer_sensitivity_matrix_s23: int = 0,
-        redundant_magnetometer_sensitivity_matrix_s31: int = 0,
-        redundant_magnetometer_sensitivity_matrix_s32: int = 0,
-        star_tracker_mounting_transform_alpha_angle: int = 0,
-        star_tracker_mounting_transform_beta_angle: int = 0,
-        star_tracker_mounting_transform_gamma_angle: int = 0,
+        magnetometer_sensitivity_s11: int = 0,
+        magnetometer_sensitivity_s22: int = 0,
+        magnetometer_sensitivity_s33: int = 0,
+        magnetometer_sensitivity_s12: int = 0,
+        magnetometer_sensitivity_s13: int = 0,
+        magnetometer_sensitivity_s21: int = 0,
+        magnetometer_sensitivity_s23: int = 0,
+        magnetometer_sensitivity_s31: int = 0,
+        magnetometer_sensitivity_s32: int = 0,
+        redundant_mag_mounting_alpha: int = 0,
+        redundant_mag_mounting_beta: int = 0,
+        redundant_mag_mounting_gamma: int = 0,
+        redundant_mag_channel_1_offset: int = 0,
+        redundant_mag_channel_2_offset: int = 0,
+        redundant_mag_channel_3_offset: int = 0,
+        redundant_mag_sensitivity_s11: int = 0,
+        redundant_mag_sensitivity_s22: int = 0,
+        redundant_mag_sensitivity_s33: int = 0,
+        redundant_mag_sensitivity_s12: int = 0,
+        redundant_mag_sensitivity_s13: int = 0,
+        redundant_mag_sensitivity_s21: int = 0,
+        redundant_mag_sensitivity_s23: int = 0,
+        redundant_mag_sensitivity_s31: int = 0,
+        redundant_mag_sensitivity_s32: int = 0,
+        star_tracker_mounting_alpha: int = 0,
+        star_tracker_mounting_beta: int = 0,
+        star_tracker_mounting_gamma: int = 0,
         star_tracker_exposure_time: int = 0,
         star_tracker_analog_gain: int = 0,
         star_tracker_detection_threshold: int = 0,
@@ -2985,17 +2985,17 @@ class AdcsConfiguration(_base.Message):
         self.css9_relative_scale = css9_relative_scale
         self.css10_relative_scale = css10_relative_scale
         self.css_threshold = css_threshold
-        self.cam1_sensor_mounting_transform_alpha_angle = cam1_sensor_mounting_transform_alpha_angle
-        self.cam1_sensor_mounting_transform_beta_angle = cam1_sensor_mounting_transform_beta_angle
-        self.cam1_sensor_mounting_transform_gamma_angle = cam1_sensor_mounting_transform_gamma_angle
+        self.cam1_mounting_alpha = cam1_mounting_alpha
+        self.cam1_mounting_beta = cam1_mounting_beta
+        self.cam1_mounting_gamma = cam1_mounting_gamma
         self.cam1_detection_threshold = cam1_detection_threshold
         self.cam1_sensor_auto_adjust_mode = cam1_sensor_auto_adjust_mode
         self.cam1_sensor_exposure_time = cam1_sensor_exposure_time
         self.cam1_boresight_x = cam1_boresight_x
         self.cam1_boresight_y = cam1_boresight_y
-        self.cam2_sensor_mounting_transform_alpha_angle = cam2_sensor_mounting_transform_alpha_angle
-        self.cam2_sensor_mounting_transform_beta_angle = cam2_sensor_mounting_transform_beta_angle
-        self.cam2_sensor_mounting_transform_gamma_angle = cam2_sensor_mounting_transform_gamma_angle
+        self.cam2_mounting_alpha = cam2_mounting_alpha
+        self.cam2_mounting_beta = cam2_mounting_beta
+        self.cam2_mounting_gamma = cam2_mounting_gamma
         self.cam2_detection_threshold = cam2_detection_threshold
         self.cam2_sensor_auto_adjust_mode = cam2_sensor_auto_adjust_mode
         self.cam2_sensor_exposure_time = cam2_sensor_exposure_time
@@ -3045,39 +3045,39 @@ class AdcsConfiguration(_base.Message):
         self.cam_2_maximum_x_of_area_5 = cam_2_maximum_x_of_area_5
         self.cam_2_minimum_y_of_area_5 = cam_2_minimum_y_of_area_5
         self.cam_2_maximum_y_of_area_5 = cam_2_maximum_y_of_area_5
-        self.magnetometer_mounting_transform_alpha_angle = magnetometer_mounting_transform_alpha_angle
-        self.magnetometer_mounting_transform_beta_angle = magnetometer_mounting_transform_beta_angle
-        self.magnetometer_mounting_transform_gamma_angle = magnetometer_mounting_transform_gamma_angle
+        self.magnetometer_mounting_alpha = magnetometer_mounting_alpha
+        self.magnetometer_mounting_beta = magnetometer_mounting_beta
+        self.magnetometer_mounting_gamma = magnetometer_mounting_gamma
         self.magnetometer_channel_1_offset = magnetometer_channel_1_offset
         self.magnetometer_channel_2_offset = magnetometer_channel_2_offset
         self.magnetometer_channel_3_offset = magnetometer_channel_3_offset
-        self.magnetometer_sensitivity_matrix_s11 = magnetometer_sensitivity_matrix_s11
-        self.magnetometer_sensitivity_matrix_s22 = magnetometer_sensitivity_matrix_s22
-        self.magnetometer_sensitivity_matrix_s33 = magnetometer_sensitivity_matrix_s33
-        self.magnetometer_sensitivity_matrix_s12 = magnetometer_sensitivity_matrix_s12
-        self.magnetometer_sensitivity_matrix_s13 = magnetometer_sensitivity_matrix_s13
-        self.magnetometer_sensitivity_matrix_s21 = magnetometer_sensitivity_matrix_s21
-        self.magnetometer_sensitivity_matrix_s23 = magnetometer_sensitivity_matrix_s23
-        self.magnetometer_sensitivity_matrix_s31 = magnetometer_sensitivity_matrix_s31
-        self.magnetometer_sensitivity_matrix_s32 = magnetometer_sensitivity_matrix_s32
-        self.redundant_magnetometer_mounting_transform_alpha_angle = redundant_magnetometer_mounting_transform_alpha_angle
-        self.redundant_magnetometer_mounting_transform_beta_angle = redundant_magnetometer_mounting_transform_beta_angle
-        self.redundant_magnetometer_mounting_transform_gamma_angle = redundant_magnetometer_mounting_transform_gamma_angle
-        self.redundant_magnetometer_channel_1_offset = redundant_magnetometer_channel_1_offset
-        self.redundant_magnetometer_channel_2_offset = redundant_magnetometer_channel_2_offset
-        self.redundant_magnetometer_channel_3_offset = redundant_magnetometer_channel_3_offset
-        self.redundant_magnetometer_sensitivity_matrix_s11 = redundant_magnetometer_sensitivity_matrix_s11
-        self.redundant_magnetometer_sensitivity_matrix_s22 = redundant_magnetometer_sensitivity_matrix_s22
-        self.redundant_magnetometer_sensitivity_matrix_s33 = redundant_magnetometer_sensitivity_matrix_s33
-        self.redundant_magnetometer_sensitivity_matrix_s12 = redundant_magnetometer_sensitivity_matrix_s12
-        self.redundant_magnetometer_sensitivity_matrix_s13 = redundant_magnetometer_sensitivity_matrix_s13
-        self.redundant_magnetometer_sensitivity_matrix_s21 = redundant_magnetometer_sensitivity_matrix_s21
-        self.redundant_magnetometer_sensitivity_matrix_s23 = redundant_magnetometer_sensitivity_matrix_s23
-        self.redundant_magnetometer_sensitivity_matrix_s31 = redundant_magnetometer_sensitivity_matrix_s31
-        self.redundant_magnetometer_sensitivity_matrix_s32 = redundant_magnetometer_sensitivity_matrix_s32
-        self.star_tracker_mounting_transform_alpha_angle = star_tracker_mounting_transform_alpha_angle
-        self.star_tracker_mounting_transform_beta_angle = star_tracker_mounting_transform_beta_angle
-        self.star_tracker_mounting_transform_gamma_angle = star_tracker_mounting_transform_gamma_angle
+        self.magnetometer_sensitivity_s11 = magnetometer_sensitivity_s11
+        self.magnetometer_sensitivity_s22 = magnetometer_sensitivity_s22
+        self.magnetometer_sensitivity_s33 = magnetometer_sensitivity_s33
+        self.magnetometer_sensitivity_s12 = magnetometer_sensitivity_s12
+        self.magnetometer_sensitivity_s13 = magnetometer_sensitivity_s13
+        self.magnetometer_sensitivity_s21 = magnetometer_sensitivity_s21
+        self.magnetometer_sensitivity_s23 = magnetometer_sensitivity_s23
+        self.magnetometer_sensitivity_s31 = magnetometer_sensitivity_s31
+        self.magnetometer_sensitivity_s32 = magnetometer_sensitivity_s32
+        self.redundant_mag_mounting_alpha = redundant_mag_mounting_alpha
+        self.redundant_mag_mounting_beta = redundant_mag_mounting_beta
+        self.redundant_mag_mounting_gamma = redundant_mag_mounting_gamma
+        self.redundant_mag_channel_1_offset = redundant_mag_channel_1_offset
+        self.redundant_mag_channel_2_offset = redundant_mag_channel_2_offset
+        self.redundant_mag_channel_3_offset = redundant_mag_channel_3_offset
+        self.redundant_mag_sensitivity_s11 = redundant_mag_sensitivity_s11
+        self.redundant_mag_sensitivity_s22 = redundant_mag_sensitivity_s22
+        self.redundant_mag_sensitivity_s33 = redundant_mag_sensitivity_s33
+        self.redundant_mag_sensitivity_s12 = redundant_mag_sensitivity_s12
+        self.redundant_mag_sensitivity_s13 = redundant_mag_sensitivity_s13
+        self.redundant_mag_sensitivity_s21 = redundant_mag_sensitivity_s21
+        self.redundant_mag_sensitivity_s23 = redundant_mag_sensitivity_s23
+        self.redundant_mag_sensitivity_s31 = redundant_mag_sensitivity_s31
+        self.redundant_mag_sensitivity_s32 = redundant_mag_sensitivity_s32
+        self.star_tracker_mounting_alpha = star_tracker_mounting_alpha
+        self.star_tracker_mounting_beta = star_tracker_mounting_beta
+        self.star_tracker_mounting_gamma = star_tracker_mounting_gamma
         self.star_tracker_exposure_time = star_tracker_exposure_time
         self.star_tracker_analog_gain = star_tracker_analog_gain
         self.star_tracker_detection_threshold = star_tracker_detection_threshold
@@ -3202,17 +3202,17 @@ class AdcsConfiguration(_base.Message):
         css9_relative_scale_physical: float = 0.0,
         css10_relative_scale_physical: float = 0.0,
         css_threshold: int = 0,
-        cam1_sensor_mounting_transform_alpha_angle_deg: float = 0.0,
-        cam1_sensor_mounting_transform_beta_angle_deg: float = 0.0,
-        cam1_sensor_mounting_transform_gamma_angle_deg: float = 0.0,
+        cam1_mounting_alpha_deg: float = 0.0,
+        cam1_mounting_beta_deg: float = 0.0,
+        cam1_mounting_gamma_deg: float = 0.0,
         cam1_detection_threshold: int = 0,
         cam1_sensor_auto_adjust_mode: bool = False,
         cam1_sensor_exposure_time: int = 0,
         cam1_boresight_x_pixels: float = 0.0,
         cam1_boresight_y_pixels: float = 0.0,
-        cam2_sensor_mounting_transform_alpha_angle_deg: float = 0.0,
-        cam2_sensor_mounting_transform_beta_angle_deg: float = 0.0,
-        cam2_sensor_mounting_transform_gamma_angle_deg: float = 0.0,
+        cam2_mounting_alpha_deg: float = 0.0,
+        cam2_mounting_beta_deg: float = 0.0,
+        cam2_mounting_gamma_deg: float = 0.0,
         cam2_detection_threshold: int = 0,
         cam2_sensor_auto_adjust_mode: bool = False,
         cam2_sensor_exposure_time: int = 0,
@@ -3262,39 +3262,39 @@ class AdcsConfiguration(_base.Message):
         cam_2_maximum_x_of_area_5: int = 0,
         cam_2_minimum_y_of_area_5: int = 0,
         cam_2_maximum_y_of_area_5: int = 0,
-        magnetometer_mounting_transform_alpha_angle_deg: float = 0.0,
-        magnetometer_mounting_transform_beta_angle_deg: float = 0.0,
-        magnetometer_mounting_transform_gamma_angle_deg: float = 0.0,
+        magnetometer_mounting_alpha_deg: float = 0.0,
+        magnetometer_mounting_beta_deg: float = 0.0,
+        magnetometer_mounting_gamma_deg: float = 0.0,
         magnetometer_channel_1_offset_physical: float = 0.0,
         magnetometer_channel_2_offset_physical: float = 0.0,
         magnetometer_channel_3_offset_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s11_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s22_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s33_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s12_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s13_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s21_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s23_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s31_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s32_physical: float = 0.0,
-        redundant_magnetometer_mounting_transform_alpha_angle_deg: float = 0.0,
-        redundant_magnetometer_mounting_transform_beta_angle_deg: float = 0.0,
-        redundant_magnetometer_mounting_transform_gamma_angle_deg: float = 0.0,
-        redundant_magnetometer_channel_1_offset_physical: float = 0.0,
-        redundant_magnetometer_channel_2_offset_physical: float = 0.0,
-        redundant_magnetometer_channel_3_offset_physical: float = 0.0,
-        redundant_magnetometer_sensitivity_matrix_s11_physical: float = 0.0,
-        redundant_magnetometer_sensitivity_matrix_s22_physical: float = 0.0,
-        redundant_magnetometer_sensitivity_matrix_s33_physical: float = 0.0,
-        redundant_magnetometer_sensitivity_matrix_s12_physical: float = 0.0,
-        redundant_magnetometer_sensitivity_matrix_s13_physical: float = 0.0,
-        redundant_magnetometer_sensitivity_matrix_s21_physical: float = 0.0,
-        redundant_magnetometer_sensitivity_matrix_s23_physical: float = 0.0,
-        redundant_magnetometer_sensitivity_matrix_s31_physical: float = 0.0,
-        redundant_magnetometer_sensitivity_matrix_s32_physical: float = 0.0,
-        star_tracker_mounting_transform_alpha_angle_deg: float = 0.0,
-        star_tracker_mounting_transform_beta_angle_deg: float = 0.0,
-        star_tracker_mounting_transform_gamma_angle_deg: float = 0.0,
+        magnetometer_sensitivity_s11_physical: float = 0.0,
+        magnetometer_sensitivity_s22_physical: float = 0.0,
+        magnetometer_sensitivity_s33_physical: float = 0.0,
+        magnetometer_sensitivity_s12_physical: float = 0.0,
+        magnetometer_sensitivity_s13_physical: float = 0.0,
+        magnetometer_sensitivity_s21_physical: float = 0.0,
+        magnetometer_sensitivity_s23_physical: float = 0.0,
+        magnetometer_sensitivity_s31_physical: float = 0.0,
+        magnetometer_sensitivity_s32_physical: float = 0.0,
+        redundant_mag_mounting_alpha_deg: float = 0.0,
+        redundant_mag_mounting_beta_deg: float = 0.0,
+        redundant_mag_mounting_gamma_deg: float = 0.0,
+        redundant_mag_channel_1_offset_physical: float = 0.0,
+        redundant_mag_channel_2_offset_physical: float = 0.0,
+        redundant_mag_channel_3_offset_physical: float = 0.0,
+        redundant_mag_sensitivity_s11_physical: float = 0.0,
+        redundant_mag_sensitivity_s22_physical: float = 0.0,
+        redundant_mag_sensitivity_s33_physical: float = 0.0,
+        redundant_mag_sensitivity_s12_physical: float = 0.0,
+        redundant_mag_sensitivity_s13_physical: float = 0.0,
+        redundant_mag_sensitivity_s21_physical: float = 0.0,
+        redundant_mag_sensitivity_s23_physical: float = 0.0,
+        redundant_mag_sensitivity_s31_physical: float = 0.0,
+        redundant_mag_sensitivity_s32_physical: float = 0.0,
+        star_tracker_mounting_alpha_deg: float = 0.0,
+        star_tracker_mounting_beta_deg: float = 0.0,
+        star_tracker_mounting_gamma_deg: float = 0.0,
         star_tracker_exposure_time: int = 0,
         star_tracker_analog_gain: int = 0,
         star_tracker_detection_threshold: int = 0,
@@ -3417,17 +3417,17 @@ class AdcsConfiguration(_base.Message):
         self.css9_relative_scale_physical = css9_relative_scale_physical
         self.css10_relative_scale_physical = css10_relative_scale_physical
         self.css_threshold = css_threshold
-        self.cam1_sensor_mounting_transform_alpha_angle_deg = cam1_sensor_mounting_transform_alpha_angle_deg
-        self.cam1_sensor_mounting_transform_beta_angle_deg = cam1_sensor_mounting_transform_beta_angle_deg
-        self.cam1_sensor_mounting_transform_gamma_angle_deg = cam1_sensor_mounting_transform_gamma_angle_deg
+        self.cam1_mounting_alpha_deg = cam1_mounting_alpha_deg
+        self.cam1_mounting_beta_deg = cam1_mounting_beta_deg
+        self.cam1_mounting_gamma_deg = cam1_mounting_gamma_deg
         self.cam1_detection_threshold = cam1_detection_threshold
         self.cam1_sensor_auto_adjust_mode = cam1_sensor_auto_adjust_mode
         self.cam1_sensor_exposure_time = cam1_sensor_exposure_time
         self.cam1_boresight_x_pixels = cam1_boresight_x_pixels
         self.cam1_boresight_y_pixels = cam1_boresight_y_pixels
-        self.cam2_sensor_mounting_transform_alpha_angle_deg = cam2_sensor_mounting_transform_alpha_angle_deg
-        self.cam2_sensor_mounting_transform_beta_angle_deg = cam2_sensor_mounting_transform_beta_angle_deg
-        self.cam2_sensor_mounting_transform_gamma_angle_deg = cam2_sensor_mounting_transform_gamma_angle_deg
+        self.cam2_mounting_alpha_deg = cam2_mounting_alpha_deg
+        self.cam2_mounting_beta_deg = cam2_mounting_beta_deg
+        self.cam2_mounting_gamma_deg = cam2_mounting_gamma_deg
         self.cam2_detection_threshold = cam2_detection_threshold
         self.cam2_sensor_auto_adjust_mode = cam2_sensor_auto_adjust_mode
         self.cam2_sensor_exposure_time = cam2_sensor_exposure_time
@@ -3477,39 +3477,39 @@ class AdcsConfiguration(_base.Message):
         self.cam_2_maximum_x_of_area_5 = cam_2_maximum_x_of_area_5
         self.cam_2_minimum_y_of_area_5 = cam_2_minimum_y_of_area_5
         self.cam_2_maximum_y_of_area_5 = cam_2_maximum_y_of_area_5
-        self.magnetometer_mounting_transform_alpha_angle_deg = magnetometer_mounting_transform_alpha_angle_deg
-        self.magnetometer_mounting_transform_beta_angle_deg = magnetometer_mounting_transform_beta_angle_deg
-        self.magnetometer_mounting_transform_gamma_angle_deg = magnetometer_mounting_transform_gamma_angle_deg
+        self.magnetometer_mounting_alpha_deg = magnetometer_mounting_alpha_deg
+        self.magnetometer_mounting_beta_deg = magnetometer_mounting_beta_deg
+        self.magnetometer_mounting_gamma_deg = magnetometer_mounting_gamma_deg
         self.magnetometer_channel_1_offset_physical = magnetometer_channel_1_offset_physical
         self.magnetometer_channel_2_offset_physical = magnetometer_channel_2_offset_physical
         self.magnetometer_channel_3_offset_physical = magnetometer_channel_3_offset_physical
-        self.magnetometer_sensitivity_matrix_s11_physical = magnetometer_sensitivity_matrix_s11_physical
-        self.magnetometer_sensitivity_matrix_s22_physical = magnetometer_sensitivity_matrix_s22_physical
-        self.magnetometer_sensitivity_matrix_s33_physical = magnetometer_sensitivity_matrix_s33_physical
-        self.magnetometer_sensitivity_matrix_s12_physical = magnetometer_sensitivity_matrix_s12_physical
-        self.magnetometer_sensitivity_matrix_s13_physical = magnetometer_sensitivity_matrix_s13_physical
-        self.magnetometer_sensitivity_matrix_s21_physical = magnetometer_sensitivity_matrix_s21_physical
-        self.magnetometer_sensitivity_matrix_s23_physical = magnetometer_sensitivity_matrix_s23_physical
-        self.magnetometer_sensitivity_matrix_s31_physical = magnetometer_sensitivity_matrix_s31_physical
-        self.magnetometer_sensitivity_matrix_s32_physical = magnetometer_sensitivity_matrix_s32_physical
-        self.redundant_magnetometer_mounting_transform_alpha_angle_deg = redundant_magnetometer_mounting_transform_alpha_angle_deg
-        self.redundant_magnetometer_mounting_transform_beta_angle_deg = redundant_magnetometer_mounting_transform_beta_angle_deg
-        self.redundant_magnetometer_mounting_transform_gamma_angle_deg = redundant_magnetometer_mounting_transform_gamma_angle_deg
-        self.redundant_magnetometer_channel_1_offset_physical = redundant_magnetometer_channel_1_offset_physical
-        self.redundant_magnetometer_channel_2_offset_physical = redundant_magnetometer_channel_2_offset_physical
-        self.redundant_magnetometer_channel_3_offset_physical = redundant_magnetometer_channel_3_offset_physical
-        self.redundant_magnetometer_sensitivity_matrix_s11_physical = redundant_magnetometer_sensitivity_matrix_s11_physical
-        self.redundant_magnetometer_sensitivity_matrix_s22_physical = redundant_magnetometer_sensitivity_matrix_s22_physical
-        self.redundant_magnetometer_sensitivity_matrix_s33_physical = redundant_magnetometer_sensitivity_matrix_s33_physical
-        self.redundant_magnetometer_sensitivity_matrix_s12_physical = redundant_magnetometer_sensitivity_matrix_s12_physical
-        self.redundant_magnetometer_sensitivity_matrix_s13_physical = redundant_magnetometer_sensitivity_matrix_s13_physical
-        self.redundant_magnetometer_sensitivity_matrix_s21_physical = redundant_magnetometer_sensitivity_matrix_s21_physical
-        self.redundant_magnetometer_sensitivity_matrix_s23_physical = redundant_magnetometer_sensitivity_matrix_s23_physical
-        self.redundant_magnetometer_sensitivity_matrix_s31_physical = redundant_magnetometer_sensitivity_matrix_s31_physical
-        self.redundant_magnetometer_sensitivity_matrix_s32_physical = redundant_magnetometer_sensitivity_matrix_s32_physical
-        self.star_tracker_mounting_transform_alpha_angle_deg = star_tracker_mounting_transform_alpha_angle_deg
-        self.star_tracker_mounting_transform_beta_angle_deg = star_tracker_mounting_transform_beta_angle_deg
-        self.star_tracker_mounting_transform_gamma_angle_deg = star_tracker_mounting_transform_gamma_angle_deg
+        self.magnetometer_sensitivity_s11_physical = magnetometer_sensitivity_s11_physical
+        self.magnetometer_sensitivity_s22_physical = magnetometer_sensitivity_s22_physical
+        self.magnetometer_sensitivity_s33_physical = magnetometer_sensitivity_s33_physical
+        self.magnetometer_sensitivity_s12_physical = magnetometer_sensitivity_s12_physical
+        self.magnetometer_sensitivity_s13_physical = magnetometer_sensitivity_s13_physical
+        self.magnetometer_sensitivity_s21_physical = magnetometer_sensitivity_s21_physical
+        self.magnetometer_sensitivity_s23_physical = magnetometer_sensitivity_s23_physical
+        self.magnetometer_sensitivity_s31_physical = magnetometer_sensitivity_s31_physical
+        self.magnetometer_sensitivity_s32_physical = magnetometer_sensitivity_s32_physical
+        self.redundant_mag_mounting_alpha_deg = redundant_mag_mounting_alpha_deg
+        self.redundant_mag_mounting_beta_deg = redundant_mag_mounting_beta_deg
+        self.redundant_mag_mounting_gamma_deg = redundant_mag_mounting_gamma_deg
+        self.redundant_mag_channel_1_offset_physical = redundant_mag_channel_1_offset_physical
+        self.redundant_mag_channel_2_offset_physical = redundant_mag_channel_2_offset_physical
+        self.redundant_mag_channel_3_offset_physical = redundant_mag_channel_3_offset_physical
+        self.redundant_mag_sensitivity_s11_physical = redundant_mag_sensitivity_s11_physical
+        self.redundant_mag_sensitivity_s22_physical = redundant_mag_sensitivity_s22_physical
+        self.redundant_mag_sensitivity_s33_physical = redundant_mag_sensitivity_s33_physical
+        self.redundant_mag_sensitivity_s12_physical = redundant_mag_sensitivity_s12_physical
+        self.redundant_mag_sensitivity_s13_physical = redundant_mag_sensitivity_s13_physical
+        self.redundant_mag_sensitivity_s21_physical = redundant_mag_sensitivity_s21_physical
+        self.redundant_mag_sensitivity_s23_physical = redundant_mag_sensitivity_s23_physical
+        self.redundant_mag_sensitivity_s31_physical = redundant_mag_sensitivity_s31_physical
+        self.redundant_mag_sensitivity_s32_physical = redundant_mag_sensitivity_s32_physical
+        self.star_tracker_mounting_alpha_deg = star_tracker_mounting_alpha_deg
+        self.star_tracker_mounting_beta_deg = star_tracker_mounting_beta_deg
+        self.star_tracker_mounting_gamma_deg = star_tracker_mounting_gamma_deg
         self.star_tracker_exposure_time = star_tracker_exposure_time
         self.star_tracker_analog_gain = star_tracker_analog_gain
         self.star_tracker_detection_threshold = star_tracker_detection_threshold
@@ -3637,17 +3637,17 @@ class AdcsConfiguration(_base.Message):
                 self.css9_relative_scale,
                 self.css10_relative_scale,
                 self.css_threshold,
-                self.cam1_sensor_mounting_transform_alpha_angle,
-                self.cam1_sensor_mounting_transform_beta_angle,
-                self.cam1_sensor_mounting_transform_gamma_angle,
+                self.cam1_mounting_alpha,
+                self.cam1_mounting_beta,
+                self.cam1_mounting_gamma,
                 self.cam1_detection_threshold,
                 v45,
                 self.cam1_sensor_exposure_time,
                 self.cam1_boresight_x,
                 self.cam1_boresight_y,
-                self.cam2_sensor_mounting_transform_alpha_angle,
-                self.cam2_sensor_mounting_transform_beta_angle,
-                self.cam2_sensor_mounting_transform_gamma_angle,
+                self.cam2_mounting_alpha,
+                self.cam2_mounting_beta,
+                self.cam2_mounting_gamma,
                 self.cam2_detection_threshold,
                 v59,
                 self.cam2_sensor_exposure_time,
@@ -3697,39 +3697,39 @@ class AdcsConfiguration(_base.Message):
                 self.cam_2_maximum_x_of_area_5,
                 self.cam_2_minimum_y_of_area_5,
                 self.cam_2_maximum_y_of_area_5,
-                self.magnetometer_mounting_transform_alpha_angle,
-                self.magnetometer_mounting_transform_beta_angle,
-                self.magnetometer_mounting_transform_gamma_angle,
+                self.magnetometer_mounting_alpha,
+                self.magnetometer_mounting_beta,
+                self.magnetometer_mounting_gamma,
                 self.magnetometer_channel_1_offset,
                 self.magnetometer_channel_2_offset,
                 self.magnetometer_channel_3_offset,
-                self.magnetometer_sensitivity_matrix_s11,
-                self.magnetometer_sensitivity_matrix_s22,
-                self.magnetometer_sensitivity_matrix_s33,
-                self.magnetometer_sensitivity_matrix_s12,
-                self.magnetometer_sensitivity_matrix_s13,
-                self.magnetometer_sensitivity_matrix_s21,
-                self.magnetometer_sensitivity_matrix_s23,
-                self.magnetometer_sensitivity_matrix_s31,
-                self.magnetometer_sensitivity_matrix_s32,
-                self.redundant_magnetometer_mounting_transform_alpha_angle,
-                self.redundant_magnetometer_mounting_transform_beta_angle,
-                self.redundant_magnetometer_mounting_transform_gamma_angle,
-                self.redundant_magnetometer_channel_1_offset,
-                self.redundant_magnetometer_channel_2_offset,
-                self.redundant_magnetometer_channel_3_offset,
-                self.redundant_magnetometer_sensitivity_matrix_s11,
-                self.redundant_magnetometer_sensitivity_matrix_s22,
-                self.redundant_magnetometer_sensitivity_matrix_s33,
-                self.redundant_magnetometer_sensitivity_matrix_s12,
-                self.redundant_magnetometer_sensitivity_matrix_s13,
-                self.redundant_magnetometer_sensitivity_matrix_s21,
-                self.redundant_magnetometer_sensitivity_matrix_s23,
-                self.redundant_magnetometer_sensitivity_matrix_s31,
-                self.redundant_magnetometer_sensitivity_matrix_s32,
-                self.star_tracker_mounting_transform_alpha_angle,
-                self.star_tracker_mounting_transform_beta_angle,
-                self.star_tracker_mounting_transform_gamma_angle,
+                self.magnetometer_sensitivity_s11,
+                self.magnetometer_sensitivity_s22,
+                self.magnetometer_sensitivity_s33,
+                self.magnetometer_sensitivity_s12,
+                self.magnetometer_sensitivity_s13,
+                self.magnetometer_sensitivity_s21,
+                self.magnetometer_sensitivity_s23,
+                self.magnetometer_sensitivity_s31,
+                self.magnetometer_sensitivity_s32,
+                self.redundant_mag_mounting_alpha,
+                self.redundant_mag_mounting_beta,
+                self.redundant_mag_mounting_gamma,
+                self.redundant_mag_channel_1_offset,
+                self.redundant_mag_channel_2_offset,
+                self.redundant_mag_channel_3_offset,
+                self.redundant_mag_sensitivity_s11,
+                self.redundant_mag_sensitivity_s22,
+                self.redundant_mag_sensitivity_s33,
+                self.redundant_mag_sensitivity_s12,
+                self.redundant_mag_sensitivity_s13,
+                self.redundant_mag_sensitivity_s21,
+                self.redundant_mag_sensitivity_s23,
+                self.redundant_mag_sensitivity_s31,
+                self.redundant_mag_sensitivity_s32,
+                self.star_tracker_mounting_alpha,
+                self.star_tracker_mounting_beta,
+                self.star_tracker_mounting_gamma,
                 self.star_tracker_exposure_time,
                 self.star_tracker_analog_gain,
                 self.star_tracker_detection_threshold,
@@ -3955,17 +3955,17 @@ class AdcsConfiguration(_base.Message):
                 self.css9_relative_scale,
                 self.css10_relative_scale,
                 self.css_threshold,
-                self.cam1_sensor_mounting_transform_alpha_angle,
-                self.cam1_sensor_mounting_transform_beta_angle,
-                self.cam1_sensor_mounting_transform_gamma_angle,
+                self.cam1_mounting_alpha,
+                self.cam1_mounting_beta,
+                self.cam1_mounting_gamma,
                 self.cam1_detection_threshold,
                 v45,
                 self.cam1_sensor_exposure_time,
                 self.cam1_boresight_x,
                 self.cam1_boresight_y,
-                self.cam2_sensor_mounting_transform_alpha_angle,
-                self.cam2_sensor_mounting_transform_beta_angle,
-                self.cam2_sensor_mounting_transform_gamma_angle,
+                self.cam2_mounting_alpha,
+                self.cam2_mounting_beta,
+                self.cam2_mounting_gamma,
                 self.cam2_detection_threshold,
                 v59,
                 self.cam2_sensor_exposure_time,
@@ -4015,39 +4015,39 @@ class AdcsConfiguration(_base.Message):
                 self.cam_2_maximum_x_of_area_5,
                 self.cam_2_minimum_y_of_area_5,
                 self.cam_2_maximum_y_of_area_5,
-                self.magnetometer_mounting_transform_alpha_angle,
-                self.magnetometer_mounting_transform_beta_angle,
-                self.magnetometer_mounting_transform_gamma_angle,
+                self.magnetometer_mounting_alpha,
+                self.magnetometer_mounting_beta,
+                self.magnetometer_mounting_gamma,
                 self.magnetometer_channel_1_offset,
                 self.magnetometer_channel_2_offset,
                 self.magnetometer_channel_3_offset,
-                self.magnetometer_sensitivity_matrix_s11,
-                self.magnetometer_sensitivity_matrix_s22,
-                self.magnetometer_sensitivity_matrix_s33,
-                self.magnetometer_sensitivity_matrix_s12,
-                self.magnetometer_sensitivity_matrix_s13,
-                self.magnetometer_sensitivity_matrix_s21,
-                self.magnetometer_sensitivity_matrix_s23,
-                self.magnetometer_sensitivity_matrix_s31,
-                self.magnetometer_sensitivity_matrix_s32,
-                self.redundant_magnetometer_mounting_transform_alpha_angle,
-                self.redundant_magnetometer_mounting_transform_beta_angle,
-                self.redundant_magnetometer_mounting_transform_gamma_angle,
-                self.redundant_magnetometer_channel_1_offset,
-                self.redundant_magnetometer_channel_2_offset,
-                self.redundant_magnetometer_channel_3_offset,
-                self.redundant_magnetometer_sensitivity_matrix_s11,
-                self.redundant_magnetometer_sensitivity_matrix_s22,
-                self.redundant_magnetometer_sensitivity_matrix_s33,
-                self.redundant_magnetometer_sensitivity_matrix_s12,
-                self.redundant_magnetometer_sensitivity_matrix_s13,
-                self.redundant_magnetometer_sensitivity_matrix_s21,
-                self.redundant_magnetometer_sensitivity_matrix_s23,
-                self.redundant_magnetometer_sensitivity_matrix_s31,
-                self.redundant_magnetometer_sensitivity_matrix_s32,
-                self.star_tracker_mounting_transform_alpha_angle,
-                self.star_tracker_mounting_transform_beta_angle,
-                self.star_tracker_mounting_transform_gamma_angle,
+                self.magnetometer_sensitivity_s11,
+                self.magnetometer_sensitivity_s22,
+                self.magnetometer_sensitivity_s33,
+                self.magnetometer_sensitivity_s12,
+                self.magnetometer_sensitivity_s13,
+                self.magnetometer_sensitivity_s21,
+                self.magnetometer_sensitivity_s23,
+                self.magnetometer_sensitivity_s31,
+                self.magnetometer_sensitivity_s32,
+                self.redundant_mag_mounting_alpha,
+                self.redundant_mag_mounting_beta,
+                self.redundant_mag_mounting_gamma,
+                self.redundant_mag_channel_1_offset,
+                self.redundant_mag_channel_2_offset,
+                self.redundant_mag_channel_3_offset,
+                self.redundant_mag_sensitivity_s11,
+                self.redundant_mag_sensitivity_s22,
+                self.redundant_mag_sensitivity_s33,
+                self.redundant_mag_sensitivity_s12,
+                self.redundant_mag_sensitivity_s13,
+                self.redundant_mag_sensitivity_s21,
+                self.redundant_mag_sensitivity_s23,
+                self.redundant_mag_sensitivity_s31,
+                self.redundant_mag_sensitivity_s32,
+                self.star_tracker_mounting_alpha,
+                self.star_tracker_mounting_beta,
+                self.star_tracker_mounting_gamma,
                 self.star_tracker_exposure_time,
                 self.star_tracker_analog_gain,
                 self.star_tracker_detection_threshold,
@@ -4359,45 +4359,45 @@ class AdcsConfiguration(_base.Message):
         )
 
     @property
-    def cam1_sensor_mounting_transform_alpha_angle_deg(self) -> float:
+    def cam1_mounting_alpha_deg(self) -> float:
         """Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.cam1_sensor_mounting_transform_alpha_angle / 100
+        return self.cam1_mounting_alpha / 100
 
-    @cam1_sensor_mounting_transform_alpha_angle_deg.setter
-    def cam1_sensor_mounting_transform_alpha_angle_deg(self, value: float) -> None:
-        self.cam1_sensor_mounting_transform_alpha_angle = _codec.raw_value(
+    @cam1_mounting_alpha_deg.setter
+    def cam1_mounting_alpha_deg(self, value: float) -> None:
+        self.cam1_mounting_alpha = _codec.raw_value(
             value,
-            "cam1_sensor_mounting_transform_alpha_angle",
+            "cam1_mounting_alpha",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def cam1_sensor_mounting_transform_beta_angle_deg(self) -> float:
+    def cam1_mounting_beta_deg(self) -> float:
         """Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.cam1_sensor_mounting_transform_beta_angle / 100
+        return self.cam1_mounting_beta / 100
 
-    @cam1_sensor_mounting_transform_beta_angle_deg.setter
-    def cam1_sensor_mounting_transform_beta_angle_deg(self, value: float) -> None:
-        self.cam1_sensor_mounting_transform_beta_angle = _codec.raw_value(
+    @cam1_mounting_beta_deg.setter
+    def cam1_mounting_beta_deg(self, value: float) -> None:
+        self.cam1_mounting_beta = _codec.raw_value(
             value,
-            "cam1_sensor_mounting_transform_beta_angle",
+            "cam1_mounting_beta",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def cam1_sensor_mounting_transform_gamma_angle_deg(self) -> float:
+    def cam1_mounting_gamma_deg(self) -> float:
         """Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.cam1_sensor_mounting_transform_gamma_angle / 100
+        return self.cam1_mounting_gamma / 100
 
-    @cam1_sensor_mounting_transform_gamma_angle_deg.setter
-    def cam1_sensor_mounting_transform_gamma_angle_deg(self, value: float) -> None:
-        self.cam1_sensor_mounting_transform_gamma_angle = _codec.raw_value(
+    @cam1_mounting_gamma_deg.setter
+    def cam1_mounting_gamma_deg(self, value: float) -> None:
+        self.cam1_mounting_gamma = _codec.raw_value(
             value,
-            "cam1_sensor_mounting_transform_gamma_angle",
+            "cam1_mounting_gamma",
             (1, 0, 100),
             -32768,
             32767,
@@ -4434,45 +4434,45 @@ class AdcsConfiguration(_base.Message):
         )
 
     @property
-    def cam2_sensor_mounting_transform_alpha_angle_deg(self) -> float:
+    def cam2_mounting_alpha_deg(self) -> float:
         """Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.cam2_sensor_mounting_transform_alpha_angle / 100
+        return self.cam2_mounting_alpha / 100
 
-    @cam2_sensor_mounting_transform_alpha_angle_deg.setter
-    def cam2_sensor_mounting_transform_alpha_angle_deg(self, value: float) -> None:
-        self.cam2_sensor_mounting_transform_alpha_angle = _codec.raw_value(
+    @cam2_mounting_alpha_deg.setter
+    def cam2_mounting_alpha_deg(self, value: float) -> None:
+        self.cam2_mounting_alpha = _codec.raw_value(
             value,
-            "cam2_sensor_mounting_transform_alpha_angle",
+            "cam2_mounting_alpha",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def cam2_sensor_mounting_transform_beta_angle_deg(self) -> float:
+    def cam2_mounting_beta_deg(self) -> float:
         """Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.cam2_sensor_mounting_transform_beta_angle / 100
+        return self.cam2_mounting_beta / 100
 
-    @cam2_sensor_mounting_transform_beta_angle_deg.setter
-    def cam2_sensor_mounting_transform_beta_angle_deg(self, value: float) -> None:
-        self.cam2_sensor_mounting_transform_beta_angle = _codec.raw_value(
+    @cam2_mounting_beta_deg.setter
+    def cam2_mounting_beta_deg(self, value: float) -> None:
+        self.cam2_mounting_beta = _codec.raw_value(
             value,
-            "cam2_sensor_mounting_transform_beta_angle",
+            "cam2_mounting_beta",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def cam2_sensor_mounting_transform_gamma_angle_deg(self) -> float:
+    def cam2_mounting_gamma_deg(self) -> float:
         """Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.cam2_sensor_mounting_transform_gamma_angle / 100
+        return self.cam2_mounting_gamma / 100
 
-    @cam2_sensor_mounting_transform_gamma_angle_deg.setter
-    def cam2_sensor_mounting_transform_gamma_angle_deg(self, value: float) -> None:
-        self.cam2_sensor_mounting_transform_gamma_angle = _codec.raw_value(
+    @cam2_mounting_gamma_deg.setter
+    def cam2_mounting_gamma_deg(self, value: float) -> None:
+        self.cam2_mounting_gamma = _codec.raw_value(
             value,
-            "cam2_sensor_mounting_transform_gamma_angle",
+            "cam2_mounting_gamma",
             (1, 0, 100),
             -32768,
             32767,
@@ -4509,45 +4509,45 @@ class AdcsConfiguration(_base.Message):
         )
 
     @property
-    def magnetometer_mounting_transform_alpha_angle_deg(self) -> float:
+    def magnetometer_mounting_alpha_deg(self) -> float:
         """Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.magnetometer_mounting_transform_alpha_angle / 100
+        return self.magnetometer_mounting_alpha / 100
 
-    @magnetometer_mounting_transform_alpha_angle_deg.setter
-    def magnetometer_mounting_transform_alpha_angle_deg(self, value: float) -> None:
-        self.magnetometer_mounting_transform_alpha_angle = _codec.raw_value(
+    @magnetometer_mounting_alpha_deg.setter
+    def magnetometer_mounting_alpha_deg(self, value: float) -> None:
+        self.magnetometer_mounting_alpha = _codec.raw_value(
             value,
-            "magnetometer_mounting_transform_alpha_angle",
+            "magnetometer_mounting_alpha",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_mounting_transform_beta_angle_deg(self) -> float:
+    def magnetometer_mounting_beta_deg(self) -> float:
         """Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.magnetometer_mounting_transform_beta_angle / 100
+        return self.magnetometer_mounting_beta / 100
 
-    @magnetometer_mounting_transform_beta_angle_deg.setter
-    def magnetometer_mounting_transform_beta_angle_deg(self, value: float) -> None:
-        self.magnetometer_mounting_transform_beta_angle = _codec.raw_value(
+    @magnetometer_mounting_beta_deg.setter
+    def magnetometer_mounting_beta_deg(self, value: float) -> None:
+        self.magnetometer_mounting_beta = _codec.raw_value(
             value,
-            "magnetometer_mounting_transform_beta_angle",
+            "magnetometer_mounting_beta",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_mounting_transform_gamma_angle_deg(self) -> float:
+    def magnetometer_mounting_gamma_deg(self) -> float:
         """Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.magnetometer_mounting_transform_gamma_angle / 100
+        return self.magnetometer_mounting_gamma / 100
 
-    @magnetometer_mounting_transform_gamma_angle_deg.setter
-    def magnetometer_mounting_transform_gamma_angle_deg(self, value: float) -> None:
-        self.magnetometer_mounting_transform_gamma_angle = _codec.raw_value(
+    @magnetometer_mounting_gamma_deg.setter
+    def magnetometer_mounting_gamma_deg(self, value: float) -> None:
+        self.magnetometer_mounting_gamma = _codec.raw_value(
             value,
-            "magnetometer_mounting_transform_gamma_angle",
+            "magnetometer_mounting_gamma",
             (1, 0, 100),
             -32768,
             32767,
@@ -4599,444 +4599,444 @@ class AdcsConfiguration(_base.Message):
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s11_physical(self) -> float:
+    def magnetometer_sensitivity_s11_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s11 / 1000
+        return self.magnetometer_sensitivity_s11 / 1000
 
-    @magnetometer_sensitivity_matrix_s11_physical.setter
-    def magnetometer_sensitivity_matrix_s11_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s11 = _codec.raw_value(
+    @magnetometer_sensitivity_s11_physical.setter
+    def magnetometer_sensitivity_s11_physical(self, value: float) -> None:
+        self.magnetometer_sensitivity_s11 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s11",
+            "magnetometer_sensitivity_s11",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s22_physical(self) -> float:
+    def magnetometer_sensitivity_s22_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s22 / 1000
+        return self.magnetometer_sensitivity_s22 / 1000
 
-    @magnetometer_sensitivity_matrix_s22_physical.setter
-    def magnetometer_sensitivity_matrix_s22_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s22 = _codec.raw_value(
+    @magnetometer_sensitivity_s22_physical.setter
+    def magnetometer_sensitivity_s22_physical(self, value: float) -> None:
+        self.magnetometer_sensitivity_s22 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s22",
+            "magnetometer_sensitivity_s22",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s33_physical(self) -> float:
+    def magnetometer_sensitivity_s33_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s33 / 1000
+        return self.magnetometer_sensitivity_s33 / 1000
 
-    @magnetometer_sensitivity_matrix_s33_physical.setter
-    def magnetometer_sensitivity_matrix_s33_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s33 = _codec.raw_value(
+    @magnetometer_sensitivity_s33_physical.setter
+    def magnetometer_sensitivity_s33_physical(self, value: float) -> None:
+        self.magnetometer_sensitivity_s33 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s33",
+            "magnetometer_sensitivity_s33",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s12_physical(self) -> float:
+    def magnetometer_sensitivity_s12_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s12 / 1000
+        return self.magnetometer_sensitivity_s12 / 1000
 
-    @magnetometer_sensitivity_matrix_s12_physical.setter
-    def magnetometer_sensitivity_matrix_s12_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s12 = _codec.raw_value(
+    @magnetometer_sensitivity_s12_physical.setter
+    def magnetometer_sensitivity_s12_physical(self, value: float) -> None:
+        self.magnetometer_sensitivity_s12 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s12",
+            "magnetometer_sensitivity_s12",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s13_physical(self) -> float:
+    def magnetometer_sensitivity_s13_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s13 / 1000
+        return self.magnetometer_sensitivity_s13 / 1000
 
-    @magnetometer_sensitivity_matrix_s13_physical.setter
-    def magnetometer_sensitivity_matrix_s13_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s13 = _codec.raw_value(
+    @magnetometer_sensitivity_s13_physical.setter
+    def magnetometer_sensitivity_s13_physical(self, value: float) -> None:
+        self.magnetometer_sensitivity_s13 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s13",
+            "magnetometer_sensitivity_s13",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s21_physical(self) -> float:
+    def magnetometer_sensitivity_s21_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s21 / 1000
+        return self.magnetometer_sensitivity_s21 / 1000
 
-    @magnetometer_sensitivity_matrix_s21_physical.setter
-    def magnetometer_sensitivity_matrix_s21_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s21 = _codec.raw_value(
+    @magnetometer_sensitivity_s21_physical.setter
+    def magnetometer_sensitivity_s21_physical(self, value: float) -> None:
+        self.magnetometer_sensitivity_s21 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s21",
+            "magnetometer_sensitivity_s21",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s23_physical(self) -> float:
+    def magnetometer_sensitivity_s23_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s23 / 1000
+        return self.magnetometer_sensitivity_s23 / 1000
 
-    @magnetometer_sensitivity_matrix_s23_physical.setter
-    def magnetometer_sensitivity_matrix_s23_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s23 = _codec.raw_value(
+    @magnetometer_sensitivity_s23_physical.setter
+    def magnetometer_sensitivity_s23_physical(self, value: float) -> None:
+        self.magnetometer_sensitivity_s23 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s23",
+            "magnetometer_sensitivity_s23",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s31_physical(self) -> float:
+    def magnetometer_sensitivity_s31_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s31 / 1000
+        return self.magnetometer_sensitivity_s31 / 1000
 
-    @magnetometer_sensitivity_matrix_s31_physical.setter
-    def magnetometer_sensitivity_matrix_s31_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s31 = _codec.raw_value(
+    @magnetometer_sensitivity_s31_physical.setter
+    def magnetometer_sensitivity_s31_physical(self, value: float) -> None:
+        self.magnetometer_sensitivity_s31 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s31",
+            "magnetometer_sensitivity_s31",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s32_physical(self) -> float:
+    def magnetometer_sensitivity_s32_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s32 / 1000
+        return self.magnetometer_sensitivity_s32 / 1000
 
-    @magnetometer_sensitivity_matrix_s32_physical.setter
-    def magnetometer_sensitivity_matrix_s32_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s32 = _codec.raw_value(
+    @magnetometer_sensitivity_s32_physical.setter
+    def magnetometer_sensitivity_s32_physical(self, value: float) -> None:
+        self.magnetometer_sensitivity_s32 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s32",
+            "magnetometer_sensitivity_s32",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_mounting_transform_alpha_angle_deg(self) -> float:
+    def redundant_mag_mounting_alpha_deg(self) -> float:
         """Redundant Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to
         327.67.
         """
-        return self.redundant_magnetometer_mounting_transform_alpha_angle / 100
+        return self.redundant_mag_mounting_alpha / 100
 
-    @redundant_magnetometer_mounting_transform_alpha_angle_deg.setter
-    def redundant_magnetometer_mounting_transform_alpha_angle_deg(self, value: float) -> None:
-        self.redundant_magnetometer_mounting_transform_alpha_angle = _codec.raw_value(
+    @redundant_mag_mounting_alpha_deg.setter
+    def redundant_mag_mounting_alpha_deg(self, value: float) -> None:
+        self.redundant_mag_mounting_alpha = _codec.raw_value(
             value,
-            "redundant_magnetometer_mounting_transform_alpha_angle",
+            "redundant_mag_mounting_alpha",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_mounting_transform_beta_angle_deg(self) -> float:
+    def redundant_mag_mounting_beta_deg(self) -> float:
         """Redundant Magnetometer Mounting Transform Beta Angle in deg: -327.68 to
         327.67.
         """
-        return self.redundant_magnetometer_mounting_transform_beta_angle / 100
+        return self.redundant_mag_mounting_beta / 100
 
-    @redundant_magnetometer_mounting_transform_beta_angle_deg.setter
-    def redundant_magnetometer_mounting_transform_beta_angle_deg(self, value: float) -> None:
-        self.redundant_magnetometer_mounting_transform_beta_angle = _codec.raw_value(
+    @redundant_mag_mounting_beta_deg.setter
+    def redundant_mag_mounting_beta_deg(self, value: float) -> None:
+        self.redundant_mag_mounting_beta = _codec.raw_value(
             value,
-            "redundant_magnetometer_mounting_transform_beta_angle",
+            "redundant_mag_mounting_beta",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_mounting_transform_gamma_angle_deg(self) -> float:
+    def redundant_mag_mounting_gamma_deg(self) -> float:
         """Redundant Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to
         327.67.
         """
-        return self.redundant_magnetometer_mounting_transform_gamma_angle / 100
+        return self.redundant_mag_mounting_gamma / 100
 
-    @redundant_magnetometer_mounting_transform_gamma_angle_deg.setter
-    def redundant_magnetometer_mounting_transform_gamma_angle_deg(self, value: float) -> None:
-        self.redundant_magnetometer_mounting_transform_gamma_angle = _codec.raw_value(
+    @redundant_mag_mounting_gamma_deg.setter
+    def redundant_mag_mounting_gamma_deg(self, value: float) -> None:
+        self.redundant_mag_mounting_gamma = _codec.raw_value(
             value,
-            "redundant_magnetometer_mounting_transform_gamma_angle",
+            "redundant_mag_mounting_gamma",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_channel_1_offset_physical(self) -> float:
+    def redundant_mag_channel_1_offset_physical(self) -> float:
         """Redundant Magnetometer Channel 1 Offset, as a physical value: -32.768 to
         32.767.
         """
-        return self.redundant_magnetometer_channel_1_offset / 1000
+        return self.redundant_mag_channel_1_offset / 1000
 
-    @redundant_magnetometer_channel_1_offset_physical.setter
-    def redundant_magnetometer_channel_1_offset_physical(self, value: float) -> None:
-        self.redundant_magnetometer_channel_1_offset = _codec.raw_value(
+    @redundant_mag_channel_1_offset_physical.setter
+    def redundant_mag_channel_1_offset_physical(self, value: float) -> None:
+        self.redundant_mag_channel_1_offset = _codec.raw_value(
             value,
-            "redundant_magnetometer_channel_1_offset",
+            "redundant_mag_channel_1_offset",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_channel_2_offset_physical(self) -> float:
+    def redundant_mag_channel_2_offset_physical(self) -> float:
         """Redundant Magnetometer Channel 2 Offset, as a physical value: -32.768 to
         32.767.
         """
-        return self.redundant_magnetometer_channel_2_offset / 1000
+        return self.redundant_mag_channel_2_offset / 1000
 
-    @redundant_magnetometer_channel_2_offset_physical.setter
-    def redundant_magnetometer_channel_2_offset_physical(self, value: float) -> None:
-        self.redundant_magnetometer_channel_2_offset = _codec.raw_value(
+    @redundant_mag_channel_2_offset_physical.setter
+    def redundant_mag_channel_2_offset_physical(self, value: float) -> None:
+        self.redundant_mag_channel_2_offset = _codec.raw_value(
             value,
-            "redundant_magnetometer_channel_2_offset",
+            "redundant_mag_channel_2_offset",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_channel_3_offset_physical(self) -> float:
+    def redundant_mag_channel_3_offset_physical(self) -> float:
         """Redundant Magnetometer Channel 3 Offset, as a physical value: -32.768 to
         32.767.
         """
-        return self.redundant_magnetometer_channel_3_offset / 1000
+        return self.redundant_mag_channel_3_offset / 1000
 
-    @redundant_magnetometer_channel_3_offset_physical.setter
-    def redundant_magnetometer_channel_3_offset_physical(self, value: float) -> None:
-        self.redundant_magnetometer_channel_3_offset = _codec.raw_value(
+    @redundant_mag_channel_3_offset_physical.setter
+    def redundant_mag_channel_3_offset_physical(self, value: float) -> None:
+        self.redundant_mag_channel_3_offset = _codec.raw_value(
             value,
-            "redundant_magnetometer_channel_3_offset",
+            "redundant_mag_channel_3_offset",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_sensitivity_matrix_s11_physical(self) -> float:
+    def redundant_mag_sensitivity_s11_physical(self) -> float:
         """Redundant Magnetometer Sensitivity Matrix S11, as a physical value: -32.768
         to 32.767.
         """
-        return self.redundant_magnetometer_sensitivity_matrix_s11 / 1000
+        return self.redundant_mag_sensitivity_s11 / 1000
 
-    @redundant_magnetometer_sensitivity_matrix_s11_physical.setter
-    def redundant_magnetometer_sensitivity_matrix_s11_physical(self, value: float) -> None:
-        self.redundant_magnetometer_sensitivity_matrix_s11 = _codec.raw_value(
+    @redundant_mag_sensitivity_s11_physical.setter
+    def redundant_mag_sensitivity_s11_physical(self, value: float) -> None:
+        self.redundant_mag_sensitivity_s11 = _codec.raw_value(
             value,
-            "redundant_magnetometer_sensitivity_matrix_s11",
+            "redundant_mag_sensitivity_s11",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_sensitivity_matrix_s22_physical(self) -> float:
+    def redundant_mag_sensitivity_s22_physical(self) -> float:
         """Redundant Magnetometer Sensitivity Matrix S22, as a physical value: -32.768
         to 32.767.
         """
-        return self.redundant_magnetometer_sensitivity_matrix_s22 / 1000
+        return self.redundant_mag_sensitivity_s22 / 1000
 
-    @redundant_magnetometer_sensitivity_matrix_s22_physical.setter
-    def redundant_magnetometer_sensitivity_matrix_s22_physical(self, value: float) -> None:
-        self.redundant_magnetometer_sensitivity_matrix_s22 = _codec.raw_value(
+    @redundant_mag_sensitivity_s22_physical.setter
+    def redundant_mag_sensitivity_s22_physical(self, value: float) -> None:
+        self.redundant_mag_sensitivity_s22 = _codec.raw_value(
             value,
-            "redundant_magnetometer_sensitivity_matrix_s22",
+            "redundant_mag_sensitivity_s22",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_sensitivity_matrix_s33_physical(self) -> float:
+    def redundant_mag_sensitivity_s33_physical(self) -> float:
         """Redundant Magnetometer Sensitivity Matrix S33, as a physical value: -32.768
         to 32.767.
         """
-        return self.redundant_magnetometer_sensitivity_matrix_s33 / 1000
+        return self.redundant_mag_sensitivity_s33 / 1000
 
-    @redundant_magnetometer_sensitivity_matrix_s33_physical.setter
-    def redundant_magnetometer_sensitivity_matrix_s33_physical(self, value: float) -> None:
-        self.redundant_magnetometer_sensitivity_matrix_s33 = _codec.raw_value(
+    @redundant_mag_sensitivity_s33_physical.setter
+    def redundant_mag_sensitivity_s33_physical(self, value: float) -> None:
+        self.redundant_mag_sensitivity_s33 = _codec.raw_value(
             value,
-            "redundant_magnetometer_sensitivity_matrix_s33",
+            "redundant_mag_sensitivity_s33",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_sensitivity_matrix_s12_physical(self) -> float:
+    def redundant_mag_sensitivity_s12_physical(self) -> float:
         """Redundant Magnetometer Sensitivity Matrix S12, as a physical value: -32.768
         to 32.767.
         """
-        return self.redundant_magnetometer_sensitivity_matrix_s12 / 1000
+        return self.redundant_mag_sensitivity_s12 / 1000
 
-    @redundant_magnetometer_sensitivity_matrix_s12_physical.setter
-    def redundant_magnetometer_sensitivity_matrix_s12_physical(self, value: float) -> None:
-        self.redundant_magnetometer_sensitivity_matrix_s12 = _codec.raw_value(
+    @redundant_mag_sensitivity_s12_physical.setter
+    def redundant_mag_sensitivity_s12_physical(self, value: float) -> None:
+        self.redundant_mag_sensitivity_s12 = _codec.raw_value(
             value,
-            "redundant_magnetometer_sensitivity_matrix_s12",
+            "redundant_mag_sensitivity_s12",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_sensitivity_matrix_s13_physical(self) -> float:
+    def redundant_mag_sensitivity_s13_physical(self) -> float:
         """Redundant Magnetometer Sensitivity Matrix S13, as a physical value: -32.768
         to 32.767.
         """
-        return self.redundant_magnetometer_sensitivity_matrix_s13 / 1000
+        return self.redundant_mag_sensitivity_s13 / 1000
 
-    @redundant_magnetometer_sensitivity_matrix_s13_physical.setter
-    def redundant_magnetometer_sensitivity_matrix_s13_physical(self, value: float) -> None:
-        self.redundant_magnetometer_sensitivity_matrix_s13 = _codec.raw_value(
+    @redundant_mag_sensitivity_s13_physical.setter
+    def redundant_mag_sensitivity_s13_physical(self, value: float) -> None:
+        self.redundant_mag_sensitivity_s13 = _codec.raw_value(
             value,
-            "redundant_magnetometer_sensitivity_matrix_s13",
+            "redundant_mag_sensitivity_s13",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_sensitivity_matrix_s21_physical(self) -> float:
+    def redundant_mag_sensitivity_s21_physical(self) -> float:
         """Redundant Magnetometer Sensitivity Matrix S21, as a physical value: -32.768
         to 32.767.
         """
-        return self.redundant_magnetometer_sensitivity_matrix_s21 / 1000
+        return self.redundant_mag_sensitivity_s21 / 1000
 
-    @redundant_magnetometer_sensitivity_matrix_s21_physical.setter
-    def redundant_magnetometer_sensitivity_matrix_s21_physical(self, value: float) -> None:
-        self.redundant_magnetometer_sensitivity_matrix_s21 = _codec.raw_value(
+    @redundant_mag_sensitivity_s21_physical.setter
+    def redundant_mag_sensitivity_s21_physical(self, value: float) -> None:
+        self.redundant_mag_sensitivity_s21 = _codec.raw_value(
             value,
-            "redundant_magnetometer_sensitivity_matrix_s21",
+            "redundant_mag_sensitivity_s21",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_sensitivity_matrix_s23_physical(self) -> float:
+    def redundant_mag_sensitivity_s23_physical(self) -> float:
         """Redundant Magnetometer Sensitivity Matrix S23, as a physical value: -32.768
         to 32.767.
         """
-        return self.redundant_magnetometer_sensitivity_matrix_s23 / 1000
+        return self.redundant_mag_sensitivity_s23 / 1000
 
-    @redundant_magnetometer_sensitivity_matrix_s23_physical.setter
-    def redundant_magnetometer_sensitivity_matrix_s23_physical(self, value: float) -> None:
-        self.redundant_magnetometer_sensitivity_matrix_s23 = _codec.raw_value(
+    @redundant_mag_sensitivity_s23_physical.setter
+    def redundant_mag_sensitivity_s23_physical(self, value: float) -> None:
+        self.redundant_mag_sensitivity_s23 = _codec.raw_value(
             value,
-            "redundant_magnetometer_sensitivity_matrix_s23",
+            "redundant_mag_sensitivity_s23",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_sensitivity_matrix_s31_physical(self) -> float:
+    def redundant_mag_sensitivity_s31_physical(self) -> float:
         """Redundant Magnetometer Sensitivity Matrix S31, as a physical value: -32.768
         to 32.767.
         """
-        return self.redundant_magnetometer_sensitivity_matrix_s31 / 1000
+        return self.redundant_mag_sensitivity_s31 / 1000
 
-    @redundant_magnetometer_sensitivity_matrix_s31_physical.setter
-    def redundant_magnetometer_sensitivity_matrix_s31_physical(self, value: float) -> None:
-        self.redundant_magnetometer_sensitivity_matrix_s31 = _codec.raw_value(
+    @redundant_mag_sensitivity_s31_physical.setter
+    def redundant_mag_sensitivity_s31_physical(self, value: float) -> None:
+        self.redundant_mag_sensitivity_s31 = _codec.raw_value(
             value,
-            "redundant_magnetometer_sensitivity_matrix_s31",
+            "redundant_mag_sensitivity_s31",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def redundant_magnetometer_sensitivity_matrix_s32_physical(self) -> float:
+    def redundant_mag_sensitivity_s32_physical(self) -> float:
         """Redundant Magnetometer Sensitivity Matrix S32, as a physical value: -32.768
         to 32.767.
         """
-        return self.redundant_magnetometer_sensitivity_matrix_s32 / 1000
+        return self.redundant_mag_sensitivity_s32 / 1000
 
-    @redundant_magnetometer_sensitivity_matrix_s32_physical.setter
-    def redundant_magnetometer_sensitivity_matrix_s32_physical(self, value: float) -> None:
-        self.redundant_magnetometer_sensitivity_matrix_s32 = _codec.raw_value(
+    @redundant_mag_sensitivity_s32_physical.setter
+    def redundant_mag_sensitivity_s32_physical(self, value: float) -> None:
+        self.redundant_mag_sensitivity_s32 = _codec.raw_value(
             value,
-            "redundant_magnetometer_sensitivity_matrix_s32",
+            "redundant_mag_sensitivity_s32",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def star_tracker_mounting_transform_alpha_angle_deg(self) -> float:
+    def star_tracker_mounting_alpha_deg(self) -> float:
         """StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.star_tracker_mounting_transform_alpha_angle / 100
+        return self.star_tracker_mounting_alpha / 100
 
-    @star_tracker_mounting_transform_alpha_angle_deg.setter
-    def star_tracker_mounting_transform_alpha_angle_deg(self, value: float) -> None:
-        self.star_tracker_mounting_transform_alpha_angle = _codec.raw_value(
+    @star_tracker_mounting_alpha_deg.setter
+    def star_tracker_mounting_alpha_deg(self, value: float) -> None:
+        self.star_tracker_mounting_alpha = _codec.raw_value(
             value,
-            "star_tracker_mounting_transform_alpha_angle",
+            "star_tracker_mounting_alpha",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def star_tracker_mounting_transform_beta_angle_deg(self) -> float:
+    def star_tracker_mounting_beta_deg(self) -> float:
         """StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.star_tracker_mounting_transform_beta_angle / 100
+        return self.star_tracker_mounting_beta / 100
 
-    @star_tracker_mounting_transform_beta_angle_deg.setter
-    def star_tracker_mounting_transform_beta_angle_deg(self, value: float) -> None:
-        self.star_tracker_mounting_transform_beta_angle = _codec.raw_value(
+    @star_tracker_mounting_beta_deg.setter
+    def star_tracker_mounting_beta_deg(self, value: float) -> None:
+        self.star_tracker_mounting_beta = _codec.raw_value(
             value,
-            "star_tracker_mounting_transform_beta_angle",
+            "star_tracker_mounting_beta",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def star_tracker_mounting_transform_gamma_angle_deg(self) -> float:
+    def star_tracker_mounting_gamma_deg(self) -> float:
         """StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.star_tracker_mounting_transform_gamma_angle / 100
+        return self.star_tracker_mounting_gamma / 100
 
-    @star_tracker_mounting_transform_gamma_angle_deg.setter
-    def star_tracker_mounting_transform_gamma_angle_deg(self, value: float) -> None:
-        self.star_tracker_mounting_transform_gamma_angle = _codec.raw_value(
+    @star_tracker_mounting_gamma_deg.setter
+    def star_tracker_mounting_gamma_deg(self, value: float) -> None:
+        self.star_tracker_mounting_gamma = _codec.raw_value(
             value,
-            "star_tracker_mounting_transform_gamma_angle",
+            "star_tracker_mounting_gamma",
             (1, 0, 100),
             -32768,
             32767,

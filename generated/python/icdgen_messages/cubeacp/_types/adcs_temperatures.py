@@ -26,7 +26,7 @@ class AdcsTemperatures(_base.Message):
     __slots__ = (
         "mcu_temperature",
         "magnetometer_temperature",
-        "redundant_magnetometer_temperature",
+        "redundant_mag_temperature",
     )
 
     NODE = "cubeacp"
@@ -49,13 +49,13 @@ class AdcsTemperatures(_base.Message):
             scale=(1, 0, 10),
         ),
         _base.FieldInfo(
-            "redundant_magnetometer_temperature",
+            "redundant_mag_temperature",
             "Redundant Magnetometer Temperature",
             32,
             16,
             "int",
             unit="C",
-            physical="redundant_magnetometer_temperature_c",
+            physical="redundant_mag_temperature_c",
             scale=(1, 0, 10),
         ),
     )
@@ -73,7 +73,7 @@ class AdcsTemperatures(_base.Message):
 
     Note ACP-005 (likely): Symbol C is the coulomb.
     """
-    redundant_magnetometer_temperature: int
+    redundant_mag_temperature: int
     """Redundant Magnetometer Temperature: bits 32 to 47, raw -32768 to 32767; physical
     `raw/10.0`, -3276.8 to 3276.7 C.
 
@@ -88,11 +88,11 @@ class AdcsTemperatures(_base.Message):
         *,
         mcu_temperature: int = 0,
         magnetometer_temperature: int = 0,
-        redundant_magnetometer_temperature: int = 0,
+        redundant_mag_temperature: int = 0,
     ) -> None:
         self.mcu_temperature = mcu_temperature
         self.magnetometer_temperature = magnetometer_temperature
-        self.redundant_magnetometer_temperature = redundant_magnetometer_temperature
+        self.redundant_mag_temperature = redundant_mag_temperature
 
     @classmethod
     def from_physical(
@@ -100,13 +100,13 @@ class AdcsTemperatures(_base.Message):
         *,
         mcu_temperature: int = 0,
         magnetometer_temperature_c: float = 0.0,
-        redundant_magnetometer_temperature_c: float = 0.0,
+        redundant_mag_temperature_c: float = 0.0,
     ) -> AdcsTemperatures:
         """From physical values, raw ones where there is no scale. Raises `RangeError`."""
         self = _new(cls)
         self.mcu_temperature = mcu_temperature
         self.magnetometer_temperature_c = magnetometer_temperature_c
-        self.redundant_magnetometer_temperature_c = redundant_magnetometer_temperature_c
+        self.redundant_mag_temperature_c = redundant_mag_temperature_c
         return self
 
     @classmethod
@@ -117,7 +117,7 @@ class AdcsTemperatures(_base.Message):
             (
                 self.mcu_temperature,
                 self.magnetometer_temperature,
-                self.redundant_magnetometer_temperature,
+                self.redundant_mag_temperature,
             ) = _unpack(data)
         except struct.error:
             raise _codec.length_error(cls, data) from None
@@ -129,7 +129,7 @@ class AdcsTemperatures(_base.Message):
             return _pack(
                 self.mcu_temperature,
                 self.magnetometer_temperature,
-                self.redundant_magnetometer_temperature,
+                self.redundant_mag_temperature,
             )
         except _codec.REFUSED:
             raise _codec.range_error(self) from None
@@ -150,15 +150,15 @@ class AdcsTemperatures(_base.Message):
         )
 
     @property
-    def redundant_magnetometer_temperature_c(self) -> float:
+    def redundant_mag_temperature_c(self) -> float:
         """Redundant Magnetometer Temperature in C: -3276.8 to 3276.7."""
-        return self.redundant_magnetometer_temperature / 10
+        return self.redundant_mag_temperature / 10
 
-    @redundant_magnetometer_temperature_c.setter
-    def redundant_magnetometer_temperature_c(self, value: float) -> None:
-        self.redundant_magnetometer_temperature = _codec.raw_value(
+    @redundant_mag_temperature_c.setter
+    def redundant_mag_temperature_c(self, value: float) -> None:
+        self.redundant_mag_temperature = _codec.raw_value(
             value,
-            "redundant_magnetometer_temperature",
+            "redundant_mag_temperature",
             (1, 0, 10),
             -32768,
             32767,

@@ -25,17 +25,17 @@ class CubesenseConfiguration(_base.Message):
     """
 
     __slots__ = (
-        "cam1_sensor_mounting_transform_alpha_angle",
-        "cam1_sensor_mounting_transform_beta_angle",
-        "cam1_sensor_mounting_transform_gamma_angle",
+        "cam1_mounting_alpha",
+        "cam1_mounting_beta",
+        "cam1_mounting_gamma",
         "cam1_detection_threshold",
         "cam1_sensor_auto_adjust_mode",
         "cam1_sensor_exposure_time",
         "cam1_boresight_x",
         "cam1_boresight_y",
-        "cam2_sensor_mounting_transform_alpha_angle",
-        "cam2_sensor_mounting_transform_beta_angle",
-        "cam2_sensor_mounting_transform_gamma_angle",
+        "cam2_mounting_alpha",
+        "cam2_mounting_beta",
+        "cam2_mounting_gamma",
         "cam2_detection_threshold",
         "cam2_sensor_auto_adjust_mode",
         "cam2_sensor_exposure_time",
@@ -97,33 +97,33 @@ class CubesenseConfiguration(_base.Message):
     TABLE = 189
     FIELDS = (
         _base.FieldInfo(
-            "cam1_sensor_mounting_transform_alpha_angle",
+            "cam1_mounting_alpha",
             "Cam1 Sensor Mounting Transform Alpha Angle",
             0,
             16,
             "int",
             unit="deg",
-            physical="cam1_sensor_mounting_transform_alpha_angle_deg",
+            physical="cam1_mounting_alpha_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "cam1_sensor_mounting_transform_beta_angle",
+            "cam1_mounting_beta",
             "Cam1 Sensor Mounting Transform Beta Angle",
             16,
             16,
             "int",
             unit="deg",
-            physical="cam1_sensor_mounting_transform_beta_angle_deg",
+            physical="cam1_mounting_beta_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "cam1_sensor_mounting_transform_gamma_angle",
+            "cam1_mounting_gamma",
             "Cam1 Sensor Mounting Transform Gamma Angle",
             32,
             16,
             "int",
             unit="deg",
-            physical="cam1_sensor_mounting_transform_gamma_angle_deg",
+            physical="cam1_mounting_gamma_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
@@ -168,33 +168,33 @@ class CubesenseConfiguration(_base.Message):
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "cam2_sensor_mounting_transform_alpha_angle",
+            "cam2_mounting_alpha",
             "Cam2 Sensor Mounting Transform Alpha Angle",
             112,
             16,
             "int",
             unit="deg",
-            physical="cam2_sensor_mounting_transform_alpha_angle_deg",
+            physical="cam2_mounting_alpha_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "cam2_sensor_mounting_transform_beta_angle",
+            "cam2_mounting_beta",
             "Cam2 Sensor Mounting Transform Beta Angle",
             128,
             16,
             "int",
             unit="deg",
-            physical="cam2_sensor_mounting_transform_beta_angle_deg",
+            physical="cam2_mounting_beta_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "cam2_sensor_mounting_transform_gamma_angle",
+            "cam2_mounting_gamma",
             "Cam2 Sensor Mounting Transform Gamma Angle",
             144,
             16,
             "int",
             unit="deg",
-            physical="cam2_sensor_mounting_transform_gamma_angle_deg",
+            physical="cam2_mounting_gamma_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
@@ -545,19 +545,19 @@ class CubesenseConfiguration(_base.Message):
         ),
     )
 
-    cam1_sensor_mounting_transform_alpha_angle: int
+    cam1_mounting_alpha: int
     """Cam1 Sensor Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
     Note ACP-157 (open): Mounting angles: order of rotation.
     """
-    cam1_sensor_mounting_transform_beta_angle: int
+    cam1_mounting_beta: int
     """Cam1 Sensor Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
     Note ACP-157 (open): Mounting angles: order of rotation.
     """
-    cam1_sensor_mounting_transform_gamma_angle: int
+    cam1_mounting_gamma: int
     """Cam1 Sensor Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
@@ -591,19 +591,19 @@ class CubesenseConfiguration(_base.Message):
 
     Where the boresight meets the image.
     """
-    cam2_sensor_mounting_transform_alpha_angle: int
+    cam2_mounting_alpha: int
     """Cam2 Sensor Mounting Transform Alpha Angle: bits 112 to 127, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
     Note ACP-157 (open): Mounting angles: order of rotation.
     """
-    cam2_sensor_mounting_transform_beta_angle: int
+    cam2_mounting_beta: int
     """Cam2 Sensor Mounting Transform Beta Angle: bits 128 to 143, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
     Note ACP-157 (open): Mounting angles: order of rotation.
     """
-    cam2_sensor_mounting_transform_gamma_angle: int
+    cam2_mounting_gamma: int
     """Cam2 Sensor Mounting Transform Gamma Angle: bits 144 to 159, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
@@ -864,17 +864,17 @@ class CubesenseConfiguration(_base.Message):
     def __init__(
         self,
         *,
-        cam1_sensor_mounting_transform_alpha_angle: int = 0,
-        cam1_sensor_mounting_transform_beta_angle: int = 0,
-        cam1_sensor_mounting_transform_gamma_angle: int = 0,
+        cam1_mounting_alpha: int = 0,
+        cam1_mounting_beta: int = 0,
+        cam1_mounting_gamma: int = 0,
         cam1_detection_threshold: int = 0,
         cam1_sensor_auto_adjust_mode: bool = False,
         cam1_sensor_exposure_time: int = 0,
         cam1_boresight_x: int = 0,
         cam1_boresight_y: int = 0,
-        cam2_sensor_mounting_transform_alpha_angle: int = 0,
-        cam2_sensor_mounting_transform_beta_angle: int = 0,
-        cam2_sensor_mounting_transform_gamma_angle: int = 0,
+        cam2_mounting_alpha: int = 0,
+        cam2_mounting_beta: int = 0,
+        cam2_mounting_gamma: int = 0,
         cam2_detection_threshold: int = 0,
         cam2_sensor_auto_adjust_mode: bool = False,
         cam2_sensor_exposure_time: int = 0,
@@ -925,17 +925,17 @@ class CubesenseConfiguration(_base.Message):
         cam_2_minimum_y_of_area_5: int = 0,
         cam_2_maximum_y_of_area_5: int = 0,
     ) -> None:
-        self.cam1_sensor_mounting_transform_alpha_angle = cam1_sensor_mounting_transform_alpha_angle
-        self.cam1_sensor_mounting_transform_beta_angle = cam1_sensor_mounting_transform_beta_angle
-        self.cam1_sensor_mounting_transform_gamma_angle = cam1_sensor_mounting_transform_gamma_angle
+        self.cam1_mounting_alpha = cam1_mounting_alpha
+        self.cam1_mounting_beta = cam1_mounting_beta
+        self.cam1_mounting_gamma = cam1_mounting_gamma
         self.cam1_detection_threshold = cam1_detection_threshold
         self.cam1_sensor_auto_adjust_mode = cam1_sensor_auto_adjust_mode
         self.cam1_sensor_exposure_time = cam1_sensor_exposure_time
         self.cam1_boresight_x = cam1_boresight_x
         self.cam1_boresight_y = cam1_boresight_y
-        self.cam2_sensor_mounting_transform_alpha_angle = cam2_sensor_mounting_transform_alpha_angle
-        self.cam2_sensor_mounting_transform_beta_angle = cam2_sensor_mounting_transform_beta_angle
-        self.cam2_sensor_mounting_transform_gamma_angle = cam2_sensor_mounting_transform_gamma_angle
+        self.cam2_mounting_alpha = cam2_mounting_alpha
+        self.cam2_mounting_beta = cam2_mounting_beta
+        self.cam2_mounting_gamma = cam2_mounting_gamma
         self.cam2_detection_threshold = cam2_detection_threshold
         self.cam2_sensor_auto_adjust_mode = cam2_sensor_auto_adjust_mode
         self.cam2_sensor_exposure_time = cam2_sensor_exposure_time
@@ -990,17 +990,17 @@ class CubesenseConfiguration(_base.Message):
     def from_physical(
         cls,
         *,
-        cam1_sensor_mounting_transform_alpha_angle_deg: float = 0.0,
-        cam1_sensor_mounting_transform_beta_angle_deg: float = 0.0,
-        cam1_sensor_mounting_transform_gamma_angle_deg: float = 0.0,
+        cam1_mounting_alpha_deg: float = 0.0,
+        cam1_mounting_beta_deg: float = 0.0,
+        cam1_mounting_gamma_deg: float = 0.0,
         cam1_detection_threshold: int = 0,
         cam1_sensor_auto_adjust_mode: bool = False,
         cam1_sensor_exposure_time: int = 0,
         cam1_boresight_x_pixels: float = 0.0,
         cam1_boresight_y_pixels: float = 0.0,
-        cam2_sensor_mounting_transform_alpha_angle_deg: float = 0.0,
-        cam2_sensor_mounting_transform_beta_angle_deg: float = 0.0,
-        cam2_sensor_mounting_transform_gamma_angle_deg: float = 0.0,
+        cam2_mounting_alpha_deg: float = 0.0,
+        cam2_mounting_beta_deg: float = 0.0,
+        cam2_mounting_gamma_deg: float = 0.0,
         cam2_detection_threshold: int = 0,
         cam2_sensor_auto_adjust_mode: bool = False,
         cam2_sensor_exposure_time: int = 0,
@@ -1053,17 +1053,17 @@ class CubesenseConfiguration(_base.Message):
     ) -> CubesenseConfiguration:
         """From physical values, raw ones where there is no scale. Raises `RangeError`."""
         self = _new(cls)
-        self.cam1_sensor_mounting_transform_alpha_angle_deg = cam1_sensor_mounting_transform_alpha_angle_deg
-        self.cam1_sensor_mounting_transform_beta_angle_deg = cam1_sensor_mounting_transform_beta_angle_deg
-        self.cam1_sensor_mounting_transform_gamma_angle_deg = cam1_sensor_mounting_transform_gamma_angle_deg
+        self.cam1_mounting_alpha_deg = cam1_mounting_alpha_deg
+        self.cam1_mounting_beta_deg = cam1_mounting_beta_deg
+        self.cam1_mounting_gamma_deg = cam1_mounting_gamma_deg
         self.cam1_detection_threshold = cam1_detection_threshold
         self.cam1_sensor_auto_adjust_mode = cam1_sensor_auto_adjust_mode
         self.cam1_sensor_exposure_time = cam1_sensor_exposure_time
         self.cam1_boresight_x_pixels = cam1_boresight_x_pixels
         self.cam1_boresight_y_pixels = cam1_boresight_y_pixels
-        self.cam2_sensor_mounting_transform_alpha_angle_deg = cam2_sensor_mounting_transform_alpha_angle_deg
-        self.cam2_sensor_mounting_transform_beta_angle_deg = cam2_sensor_mounting_transform_beta_angle_deg
-        self.cam2_sensor_mounting_transform_gamma_angle_deg = cam2_sensor_mounting_transform_gamma_angle_deg
+        self.cam2_mounting_alpha_deg = cam2_mounting_alpha_deg
+        self.cam2_mounting_beta_deg = cam2_mounting_beta_deg
+        self.cam2_mounting_gamma_deg = cam2_mounting_gamma_deg
         self.cam2_detection_threshold = cam2_detection_threshold
         self.cam2_sensor_auto_adjust_mode = cam2_sensor_auto_adjust_mode
         self.cam2_sensor_exposure_time = cam2_sensor_exposure_time
@@ -1121,17 +1121,17 @@ class CubesenseConfiguration(_base.Message):
         self = _new(cls)
         try:
             (
-                self.cam1_sensor_mounting_transform_alpha_angle,
-                self.cam1_sensor_mounting_transform_beta_angle,
-                self.cam1_sensor_mounting_transform_gamma_angle,
+                self.cam1_mounting_alpha,
+                self.cam1_mounting_beta,
+                self.cam1_mounting_gamma,
                 self.cam1_detection_threshold,
                 v7,
                 self.cam1_sensor_exposure_time,
                 self.cam1_boresight_x,
                 self.cam1_boresight_y,
-                self.cam2_sensor_mounting_transform_alpha_angle,
-                self.cam2_sensor_mounting_transform_beta_angle,
-                self.cam2_sensor_mounting_transform_gamma_angle,
+                self.cam2_mounting_alpha,
+                self.cam2_mounting_beta,
+                self.cam2_mounting_gamma,
                 self.cam2_detection_threshold,
                 v21,
                 self.cam2_sensor_exposure_time,
@@ -1194,17 +1194,17 @@ class CubesenseConfiguration(_base.Message):
             v7 = _BYTES_0[self.cam1_sensor_auto_adjust_mode]
             v21 = _BYTES_0[self.cam2_sensor_auto_adjust_mode]
             return _pack(
-                self.cam1_sensor_mounting_transform_alpha_angle,
-                self.cam1_sensor_mounting_transform_beta_angle,
-                self.cam1_sensor_mounting_transform_gamma_angle,
+                self.cam1_mounting_alpha,
+                self.cam1_mounting_beta,
+                self.cam1_mounting_gamma,
                 self.cam1_detection_threshold,
                 v7,
                 self.cam1_sensor_exposure_time,
                 self.cam1_boresight_x,
                 self.cam1_boresight_y,
-                self.cam2_sensor_mounting_transform_alpha_angle,
-                self.cam2_sensor_mounting_transform_beta_angle,
-                self.cam2_sensor_mounting_transform_gamma_angle,
+                self.cam2_mounting_alpha,
+                self.cam2_mounting_beta,
+                self.cam2_mounting_gamma,
                 self.cam2_detection_threshold,
                 v21,
                 self.cam2_sensor_exposure_time,
@@ -1259,45 +1259,45 @@ class CubesenseConfiguration(_base.Message):
             raise _codec.range_error(self) from None
 
     @property
-    def cam1_sensor_mounting_transform_alpha_angle_deg(self) -> float:
+    def cam1_mounting_alpha_deg(self) -> float:
         """Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.cam1_sensor_mounting_transform_alpha_angle / 100
+        return self.cam1_mounting_alpha / 100
 
-    @cam1_sensor_mounting_transform_alpha_angle_deg.setter
-    def cam1_sensor_mounting_transform_alpha_angle_deg(self, value: float) -> None:
-        self.cam1_sensor_mounting_transform_alpha_angle = _codec.raw_value(
+    @cam1_mounting_alpha_deg.setter
+    def cam1_mounting_alpha_deg(self, value: float) -> None:
+        self.cam1_mounting_alpha = _codec.raw_value(
             value,
-            "cam1_sensor_mounting_transform_alpha_angle",
+            "cam1_mounting_alpha",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def cam1_sensor_mounting_transform_beta_angle_deg(self) -> float:
+    def cam1_mounting_beta_deg(self) -> float:
         """Cam1 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.cam1_sensor_mounting_transform_beta_angle / 100
+        return self.cam1_mounting_beta / 100
 
-    @cam1_sensor_mounting_transform_beta_angle_deg.setter
-    def cam1_sensor_mounting_transform_beta_angle_deg(self, value: float) -> None:
-        self.cam1_sensor_mounting_transform_beta_angle = _codec.raw_value(
+    @cam1_mounting_beta_deg.setter
+    def cam1_mounting_beta_deg(self, value: float) -> None:
+        self.cam1_mounting_beta = _codec.raw_value(
             value,
-            "cam1_sensor_mounting_transform_beta_angle",
+            "cam1_mounting_beta",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def cam1_sensor_mounting_transform_gamma_angle_deg(self) -> float:
+    def cam1_mounting_gamma_deg(self) -> float:
         """Cam1 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.cam1_sensor_mounting_transform_gamma_angle / 100
+        return self.cam1_mounting_gamma / 100
 
-    @cam1_sensor_mounting_transform_gamma_angle_deg.setter
-    def cam1_sensor_mounting_transform_gamma_angle_deg(self, value: float) -> None:
-        self.cam1_sensor_mounting_transform_gamma_angle = _codec.raw_value(
+    @cam1_mounting_gamma_deg.setter
+    def cam1_mounting_gamma_deg(self, value: float) -> None:
+        self.cam1_mounting_gamma = _codec.raw_value(
             value,
-            "cam1_sensor_mounting_transform_gamma_angle",
+            "cam1_mounting_gamma",
             (1, 0, 100),
             -32768,
             32767,
@@ -1334,45 +1334,45 @@ class CubesenseConfiguration(_base.Message):
         )
 
     @property
-    def cam2_sensor_mounting_transform_alpha_angle_deg(self) -> float:
+    def cam2_mounting_alpha_deg(self) -> float:
         """Cam2 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.cam2_sensor_mounting_transform_alpha_angle / 100
+        return self.cam2_mounting_alpha / 100
 
-    @cam2_sensor_mounting_transform_alpha_angle_deg.setter
-    def cam2_sensor_mounting_transform_alpha_angle_deg(self, value: float) -> None:
-        self.cam2_sensor_mounting_transform_alpha_angle = _codec.raw_value(
+    @cam2_mounting_alpha_deg.setter
+    def cam2_mounting_alpha_deg(self, value: float) -> None:
+        self.cam2_mounting_alpha = _codec.raw_value(
             value,
-            "cam2_sensor_mounting_transform_alpha_angle",
+            "cam2_mounting_alpha",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def cam2_sensor_mounting_transform_beta_angle_deg(self) -> float:
+    def cam2_mounting_beta_deg(self) -> float:
         """Cam2 Sensor Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.cam2_sensor_mounting_transform_beta_angle / 100
+        return self.cam2_mounting_beta / 100
 
-    @cam2_sensor_mounting_transform_beta_angle_deg.setter
-    def cam2_sensor_mounting_transform_beta_angle_deg(self, value: float) -> None:
-        self.cam2_sensor_mounting_transform_beta_angle = _codec.raw_value(
+    @cam2_mounting_beta_deg.setter
+    def cam2_mounting_beta_deg(self, value: float) -> None:
+        self.cam2_mounting_beta = _codec.raw_value(
             value,
-            "cam2_sensor_mounting_transform_beta_angle",
+            "cam2_mounting_beta",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def cam2_sensor_mounting_transform_gamma_angle_deg(self) -> float:
+    def cam2_mounting_gamma_deg(self) -> float:
         """Cam2 Sensor Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.cam2_sensor_mounting_transform_gamma_angle / 100
+        return self.cam2_mounting_gamma / 100
 
-    @cam2_sensor_mounting_transform_gamma_angle_deg.setter
-    def cam2_sensor_mounting_transform_gamma_angle_deg(self, value: float) -> None:
-        self.cam2_sensor_mounting_transform_gamma_angle = _codec.raw_value(
+    @cam2_mounting_gamma_deg.setter
+    def cam2_mounting_gamma_deg(self, value: float) -> None:
+        self.cam2_mounting_gamma = _codec.raw_value(
             value,
-            "cam2_sensor_mounting_transform_gamma_angle",
+            "cam2_mounting_gamma",
             (1, 0, 100),
             -32768,
             32767,

@@ -24,9 +24,9 @@ class IgrfModelledMagneticFieldVector(_base.Message):
     """
 
     __slots__ = (
-        "igrf_modelled_magnetic_field_x",
-        "igrf_modelled_magnetic_field_y",
-        "igrf_modelled_magnetic_field_z",
+        "field_x",
+        "field_y",
+        "field_z",
     )
 
     NODE = "cubeacp"
@@ -38,46 +38,46 @@ class IgrfModelledMagneticFieldVector(_base.Message):
     TABLE = 115
     FIELDS = (
         _base.FieldInfo(
-            "igrf_modelled_magnetic_field_x",
+            "field_x",
             "IGRF Modelled Magnetic Field X",
             0,
             16,
             "int",
             unit="uT",
-            physical="igrf_modelled_magnetic_field_x_ut",
+            physical="field_x_ut",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "igrf_modelled_magnetic_field_y",
+            "field_y",
             "IGRF Modelled Magnetic Field Y",
             16,
             16,
             "int",
             unit="uT",
-            physical="igrf_modelled_magnetic_field_y_ut",
+            physical="field_y_ut",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "igrf_modelled_magnetic_field_z",
+            "field_z",
             "IGRF Modelled Magnetic Field Z",
             32,
             16,
             "int",
             unit="uT",
-            physical="igrf_modelled_magnetic_field_z_ut",
+            physical="field_z_ut",
             scale=(1, 0, 100),
         ),
     )
 
-    igrf_modelled_magnetic_field_x: int
+    field_x: int
     """IGRF Modelled Magnetic Field X: bits 0 to 15, raw -32768 to 32767; physical
     `raw*0.01`, -327.68 to 327.67 uT.
     """
-    igrf_modelled_magnetic_field_y: int
+    field_y: int
     """IGRF Modelled Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical
     `raw*0.01`, -327.68 to 327.67 uT.
     """
-    igrf_modelled_magnetic_field_z: int
+    field_z: int
     """IGRF Modelled Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical
     `raw*0.01`, -327.68 to 327.67 uT.
     """
@@ -85,27 +85,27 @@ class IgrfModelledMagneticFieldVector(_base.Message):
     def __init__(
         self,
         *,
-        igrf_modelled_magnetic_field_x: int = 0,
-        igrf_modelled_magnetic_field_y: int = 0,
-        igrf_modelled_magnetic_field_z: int = 0,
+        field_x: int = 0,
+        field_y: int = 0,
+        field_z: int = 0,
     ) -> None:
-        self.igrf_modelled_magnetic_field_x = igrf_modelled_magnetic_field_x
-        self.igrf_modelled_magnetic_field_y = igrf_modelled_magnetic_field_y
-        self.igrf_modelled_magnetic_field_z = igrf_modelled_magnetic_field_z
+        self.field_x = field_x
+        self.field_y = field_y
+        self.field_z = field_z
 
     @classmethod
     def from_physical(
         cls,
         *,
-        igrf_modelled_magnetic_field_x_ut: float = 0.0,
-        igrf_modelled_magnetic_field_y_ut: float = 0.0,
-        igrf_modelled_magnetic_field_z_ut: float = 0.0,
+        field_x_ut: float = 0.0,
+        field_y_ut: float = 0.0,
+        field_z_ut: float = 0.0,
     ) -> IgrfModelledMagneticFieldVector:
         """From physical values, raw ones where there is no scale. Raises `RangeError`."""
         self = _new(cls)
-        self.igrf_modelled_magnetic_field_x_ut = igrf_modelled_magnetic_field_x_ut
-        self.igrf_modelled_magnetic_field_y_ut = igrf_modelled_magnetic_field_y_ut
-        self.igrf_modelled_magnetic_field_z_ut = igrf_modelled_magnetic_field_z_ut
+        self.field_x_ut = field_x_ut
+        self.field_y_ut = field_y_ut
+        self.field_z_ut = field_z_ut
         return self
 
     @classmethod
@@ -113,11 +113,7 @@ class IgrfModelledMagneticFieldVector(_base.Message):
         """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
         self = _new(cls)
         try:
-            (
-                self.igrf_modelled_magnetic_field_x,
-                self.igrf_modelled_magnetic_field_y,
-                self.igrf_modelled_magnetic_field_z,
-            ) = _unpack(data)
+            self.field_x, self.field_y, self.field_z = _unpack(data)
         except struct.error:
             raise _codec.length_error(cls, data) from None
         return self
@@ -125,55 +121,33 @@ class IgrfModelledMagneticFieldVector(_base.Message):
     def to_bytes(self) -> bytes:
         """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
         try:
-            return _pack(
-                self.igrf_modelled_magnetic_field_x,
-                self.igrf_modelled_magnetic_field_y,
-                self.igrf_modelled_magnetic_field_z,
-            )
+            return _pack(self.field_x, self.field_y, self.field_z)
         except _codec.REFUSED:
             raise _codec.range_error(self) from None
 
     @property
-    def igrf_modelled_magnetic_field_x_ut(self) -> float:
+    def field_x_ut(self) -> float:
         """IGRF Modelled Magnetic Field X in uT: -327.68 to 327.67."""
-        return self.igrf_modelled_magnetic_field_x / 100
+        return self.field_x / 100
 
-    @igrf_modelled_magnetic_field_x_ut.setter
-    def igrf_modelled_magnetic_field_x_ut(self, value: float) -> None:
-        self.igrf_modelled_magnetic_field_x = _codec.raw_value(
-            value,
-            "igrf_modelled_magnetic_field_x",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
+    @field_x_ut.setter
+    def field_x_ut(self, value: float) -> None:
+        self.field_x = _codec.raw_value(value, "field_x", (1, 0, 100), -32768, 32767)
 
     @property
-    def igrf_modelled_magnetic_field_y_ut(self) -> float:
+    def field_y_ut(self) -> float:
         """IGRF Modelled Magnetic Field Y in uT: -327.68 to 327.67."""
-        return self.igrf_modelled_magnetic_field_y / 100
+        return self.field_y / 100
 
-    @igrf_modelled_magnetic_field_y_ut.setter
-    def igrf_modelled_magnetic_field_y_ut(self, value: float) -> None:
-        self.igrf_modelled_magnetic_field_y = _codec.raw_value(
-            value,
-            "igrf_modelled_magnetic_field_y",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
+    @field_y_ut.setter
+    def field_y_ut(self, value: float) -> None:
+        self.field_y = _codec.raw_value(value, "field_y", (1, 0, 100), -32768, 32767)
 
     @property
-    def igrf_modelled_magnetic_field_z_ut(self) -> float:
+    def field_z_ut(self) -> float:
         """IGRF Modelled Magnetic Field Z in uT: -327.68 to 327.67."""
-        return self.igrf_modelled_magnetic_field_z / 100
+        return self.field_z / 100
 
-    @igrf_modelled_magnetic_field_z_ut.setter
-    def igrf_modelled_magnetic_field_z_ut(self, value: float) -> None:
-        self.igrf_modelled_magnetic_field_z = _codec.raw_value(
-            value,
-            "igrf_modelled_magnetic_field_z",
-            (1, 0, 100),
-            -32768,
-            32767,
-        )
+    @field_z_ut.setter
+    def field_z_ut(self, value: float) -> None:
+        self.field_z = _codec.raw_value(value, "field_z", (1, 0, 100), -32768, 32767)

@@ -25,9 +25,9 @@ class InertialPointingReferenceVector(_base.Message):
     """
 
     __slots__ = (
-        "inertial_reference_x",
-        "inertial_reference_y",
-        "inertial_reference_z",
+        "reference_x",
+        "reference_y",
+        "reference_z",
     )
 
     NODE = "cubeacp"
@@ -40,47 +40,47 @@ class InertialPointingReferenceVector(_base.Message):
     TABLE = 214
     FIELDS = (
         _base.FieldInfo(
-            "inertial_reference_x",
+            "reference_x",
             "Inertial Reference X",
             0,
             16,
             "int",
-            physical="inertial_reference_x_physical",
+            physical="reference_x_physical",
             scale=(1, 0, 10000),
         ),
         _base.FieldInfo(
-            "inertial_reference_y",
+            "reference_y",
             "Inertial Reference Y",
             16,
             16,
             "int",
-            physical="inertial_reference_y_physical",
+            physical="reference_y_physical",
             scale=(1, 0, 10000),
         ),
         _base.FieldInfo(
-            "inertial_reference_z",
+            "reference_z",
             "Inertial Reference Z",
             32,
             16,
             "int",
-            physical="inertial_reference_z_physical",
+            physical="reference_z_physical",
             scale=(1, 0, 10000),
         ),
     )
 
-    inertial_reference_x: int
+    reference_x: int
     """Inertial Reference X: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`,
     -3.2768 to 3.2767.
 
     Note ACP-188 (open): Inertial reference: unit vector without a frame.
     """
-    inertial_reference_y: int
+    reference_y: int
     """Inertial Reference Y: bits 16 to 31, raw -32768 to 32767; physical `raw/10000.0`,
     -3.2768 to 3.2767.
 
     Note ACP-188 (open): Inertial reference: unit vector without a frame.
     """
-    inertial_reference_z: int
+    reference_z: int
     """Inertial Reference Z: bits 32 to 47, raw -32768 to 32767; physical `raw/10000.0`,
     -3.2768 to 3.2767.
 
@@ -90,27 +90,27 @@ class InertialPointingReferenceVector(_base.Message):
     def __init__(
         self,
         *,
-        inertial_reference_x: int = 0,
-        inertial_reference_y: int = 0,
-        inertial_reference_z: int = 0,
+        reference_x: int = 0,
+        reference_y: int = 0,
+        reference_z: int = 0,
     ) -> None:
-        self.inertial_reference_x = inertial_reference_x
-        self.inertial_reference_y = inertial_reference_y
-        self.inertial_reference_z = inertial_reference_z
+        self.reference_x = reference_x
+        self.reference_y = reference_y
+        self.reference_z = reference_z
 
     @classmethod
     def from_physical(
         cls,
         *,
-        inertial_reference_x_physical: float = 0.0,
-        inertial_reference_y_physical: float = 0.0,
-        inertial_reference_z_physical: float = 0.0,
+        reference_x_physical: float = 0.0,
+        reference_y_physical: float = 0.0,
+        reference_z_physical: float = 0.0,
     ) -> InertialPointingReferenceVector:
         """From physical values, raw ones where there is no scale. Raises `RangeError`."""
         self = _new(cls)
-        self.inertial_reference_x_physical = inertial_reference_x_physical
-        self.inertial_reference_y_physical = inertial_reference_y_physical
-        self.inertial_reference_z_physical = inertial_reference_z_physical
+        self.reference_x_physical = reference_x_physical
+        self.reference_y_physical = reference_y_physical
+        self.reference_z_physical = reference_z_physical
         return self
 
     @classmethod
@@ -118,11 +118,7 @@ class InertialPointingReferenceVector(_base.Message):
         """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
         self = _new(cls)
         try:
-            (
-                self.inertial_reference_x,
-                self.inertial_reference_y,
-                self.inertial_reference_z,
-            ) = _unpack(data)
+            self.reference_x, self.reference_y, self.reference_z = _unpack(data)
         except struct.error:
             raise _codec.length_error(cls, data) from None
         return self
@@ -130,54 +126,50 @@ class InertialPointingReferenceVector(_base.Message):
     def to_bytes(self) -> bytes:
         """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
         try:
-            return _pack(
-                self.inertial_reference_x,
-                self.inertial_reference_y,
-                self.inertial_reference_z,
-            )
+            return _pack(self.reference_x, self.reference_y, self.reference_z)
         except _codec.REFUSED:
             raise _codec.range_error(self) from None
 
     @property
-    def inertial_reference_x_physical(self) -> float:
+    def reference_x_physical(self) -> float:
         """Inertial Reference X, as a physical value: -3.2768 to 3.2767."""
-        return self.inertial_reference_x / 10000
+        return self.reference_x / 10000
 
-    @inertial_reference_x_physical.setter
-    def inertial_reference_x_physical(self, value: float) -> None:
-        self.inertial_reference_x = _codec.raw_value(
+    @reference_x_physical.setter
+    def reference_x_physical(self, value: float) -> None:
+        self.reference_x = _codec.raw_value(
             value,
-            "inertial_reference_x",
+            "reference_x",
             (1, 0, 10000),
             -32768,
             32767,
         )
 
     @property
-    def inertial_reference_y_physical(self) -> float:
+    def reference_y_physical(self) -> float:
         """Inertial Reference Y, as a physical value: -3.2768 to 3.2767."""
-        return self.inertial_reference_y / 10000
+        return self.reference_y / 10000
 
-    @inertial_reference_y_physical.setter
-    def inertial_reference_y_physical(self, value: float) -> None:
-        self.inertial_reference_y = _codec.raw_value(
+    @reference_y_physical.setter
+    def reference_y_physical(self, value: float) -> None:
+        self.reference_y = _codec.raw_value(
             value,
-            "inertial_reference_y",
+            "reference_y",
             (1, 0, 10000),
             -32768,
             32767,
         )
 
     @property
-    def inertial_reference_z_physical(self) -> float:
+    def reference_z_physical(self) -> float:
         """Inertial Reference Z, as a physical value: -3.2768 to 3.2767."""
-        return self.inertial_reference_z / 10000
+        return self.reference_z / 10000
 
-    @inertial_reference_z_physical.setter
-    def inertial_reference_z_physical(self, value: float) -> None:
-        self.inertial_reference_z = _codec.raw_value(
+    @reference_z_physical.setter
+    def reference_z_physical(self, value: float) -> None:
+        self.reference_z = _codec.raw_value(
             value,
-            "inertial_reference_z",
+            "reference_z",
             (1, 0, 10000),
             -32768,
             32767,

@@ -23,21 +23,21 @@ class MagnetometerConfiguration(_base.Message):
     """
 
     __slots__ = (
-        "magnetometer_mounting_transform_alpha_angle",
-        "magnetometer_mounting_transform_beta_angle",
-        "magnetometer_mounting_transform_gamma_angle",
-        "magnetometer_channel_1_offset",
-        "magnetometer_channel_2_offset",
-        "magnetometer_channel_3_offset",
-        "magnetometer_sensitivity_matrix_s11",
-        "magnetometer_sensitivity_matrix_s22",
-        "magnetometer_sensitivity_matrix_s33",
-        "magnetometer_sensitivity_matrix_s12",
-        "magnetometer_sensitivity_matrix_s13",
-        "magnetometer_sensitivity_matrix_s21",
-        "magnetometer_sensitivity_matrix_s23",
-        "magnetometer_sensitivity_matrix_s31",
-        "magnetometer_sensitivity_matrix_s32",
+        "mounting_alpha",
+        "mounting_beta",
+        "mounting_gamma",
+        "channel_1_offset",
+        "channel_2_offset",
+        "channel_3_offset",
+        "sensitivity_s11",
+        "sensitivity_s22",
+        "sensitivity_s33",
+        "sensitivity_s12",
+        "sensitivity_s13",
+        "sensitivity_s21",
+        "sensitivity_s23",
+        "sensitivity_s31",
+        "sensitivity_s32",
     )
 
     NODE = "cubeacp"
@@ -50,214 +50,214 @@ class MagnetometerConfiguration(_base.Message):
     TABLE = 190
     FIELDS = (
         _base.FieldInfo(
-            "magnetometer_mounting_transform_alpha_angle",
+            "mounting_alpha",
             "Magnetometer Mounting Transform Alpha Angle",
             0,
             16,
             "int",
             unit="deg",
-            physical="magnetometer_mounting_transform_alpha_angle_deg",
+            physical="mounting_alpha_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "magnetometer_mounting_transform_beta_angle",
+            "mounting_beta",
             "Magnetometer Mounting Transform Beta Angle",
             16,
             16,
             "int",
             unit="deg",
-            physical="magnetometer_mounting_transform_beta_angle_deg",
+            physical="mounting_beta_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "magnetometer_mounting_transform_gamma_angle",
+            "mounting_gamma",
             "Magnetometer Mounting Transform Gamma Angle",
             32,
             16,
             "int",
             unit="deg",
-            physical="magnetometer_mounting_transform_gamma_angle_deg",
+            physical="mounting_gamma_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "magnetometer_channel_1_offset",
+            "channel_1_offset",
             "Magnetometer Channel 1 Offset",
             48,
             16,
             "int",
-            physical="magnetometer_channel_1_offset_physical",
+            physical="channel_1_offset_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_channel_2_offset",
+            "channel_2_offset",
             "Magnetometer Channel 2 Offset",
             64,
             16,
             "int",
-            physical="magnetometer_channel_2_offset_physical",
+            physical="channel_2_offset_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_channel_3_offset",
+            "channel_3_offset",
             "Magnetometer Channel 3 Offset",
             80,
             16,
             "int",
-            physical="magnetometer_channel_3_offset_physical",
+            physical="channel_3_offset_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s11",
+            "sensitivity_s11",
             "Magnetometer Sensitivity Matrix S11",
             96,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s11_physical",
+            physical="sensitivity_s11_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s22",
+            "sensitivity_s22",
             "Magnetometer Sensitivity Matrix S22",
             112,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s22_physical",
+            physical="sensitivity_s22_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s33",
+            "sensitivity_s33",
             "Magnetometer Sensitivity Matrix S33",
             128,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s33_physical",
+            physical="sensitivity_s33_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s12",
+            "sensitivity_s12",
             "Magnetometer Sensitivity Matrix S12",
             144,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s12_physical",
+            physical="sensitivity_s12_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s13",
+            "sensitivity_s13",
             "Magnetometer Sensitivity Matrix S13",
             160,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s13_physical",
+            physical="sensitivity_s13_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s21",
+            "sensitivity_s21",
             "Magnetometer Sensitivity Matrix S21",
             176,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s21_physical",
+            physical="sensitivity_s21_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s23",
+            "sensitivity_s23",
             "Magnetometer Sensitivity Matrix S23",
             192,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s23_physical",
+            physical="sensitivity_s23_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s31",
+            "sensitivity_s31",
             "Magnetometer Sensitivity Matrix S31",
             208,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s31_physical",
+            physical="sensitivity_s31_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "magnetometer_sensitivity_matrix_s32",
+            "sensitivity_s32",
             "Magnetometer Sensitivity Matrix S32",
             224,
             16,
             "int",
-            physical="magnetometer_sensitivity_matrix_s32_physical",
+            physical="sensitivity_s32_physical",
             scale=(1, 0, 1000),
         ),
     )
 
-    magnetometer_mounting_transform_alpha_angle: int
+    mounting_alpha: int
     """Magnetometer Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
     Note ACP-157 (open): Mounting angles: order of rotation.
     """
-    magnetometer_mounting_transform_beta_angle: int
+    mounting_beta: int
     """Magnetometer Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
     Note ACP-157 (open): Mounting angles: order of rotation.
     """
-    magnetometer_mounting_transform_gamma_angle: int
+    mounting_gamma: int
     """Magnetometer Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
     Note ACP-157 (open): Mounting angles: order of rotation.
     """
-    magnetometer_channel_1_offset: int
+    channel_1_offset: int
     """Magnetometer Channel 1 Offset: bits 48 to 63, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
     Note ACP-155 (open): Magnetometer offsets have no unit.
     """
-    magnetometer_channel_2_offset: int
+    channel_2_offset: int
     """Magnetometer Channel 2 Offset: bits 64 to 79, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
     Note ACP-155 (open): Magnetometer offsets have no unit.
     """
-    magnetometer_channel_3_offset: int
+    channel_3_offset: int
     """Magnetometer Channel 3 Offset: bits 80 to 95, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
     Note ACP-155 (open): Magnetometer offsets have no unit.
     """
-    magnetometer_sensitivity_matrix_s11: int
+    sensitivity_s11: int
     """Magnetometer Sensitivity Matrix S11: bits 96 to 111, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s22: int
+    sensitivity_s22: int
     """Magnetometer Sensitivity Matrix S22: bits 112 to 127, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s33: int
+    sensitivity_s33: int
     """Magnetometer Sensitivity Matrix S33: bits 128 to 143, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s12: int
+    sensitivity_s12: int
     """Magnetometer Sensitivity Matrix S12: bits 144 to 159, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s13: int
+    sensitivity_s13: int
     """Magnetometer Sensitivity Matrix S13: bits 160 to 175, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s21: int
+    sensitivity_s21: int
     """Magnetometer Sensitivity Matrix S21: bits 176 to 191, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s23: int
+    sensitivity_s23: int
     """Magnetometer Sensitivity Matrix S23: bits 192 to 207, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s31: int
+    sensitivity_s31: int
     """Magnetometer Sensitivity Matrix S31: bits 208 to 223, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
-    magnetometer_sensitivity_matrix_s32: int
+    sensitivity_s32: int
     """Magnetometer Sensitivity Matrix S32: bits 224 to 239, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
     """
@@ -265,75 +265,75 @@ class MagnetometerConfiguration(_base.Message):
     def __init__(
         self,
         *,
-        magnetometer_mounting_transform_alpha_angle: int = 0,
-        magnetometer_mounting_transform_beta_angle: int = 0,
-        magnetometer_mounting_transform_gamma_angle: int = 0,
-        magnetometer_channel_1_offset: int = 0,
-        magnetometer_channel_2_offset: int = 0,
-        magnetometer_channel_3_offset: int = 0,
-        magnetometer_sensitivity_matrix_s11: int = 0,
-        magnetometer_sensitivity_matrix_s22: int = 0,
-        magnetometer_sensitivity_matrix_s33: int = 0,
-        magnetometer_sensitivity_matrix_s12: int = 0,
-        magnetometer_sensitivity_matrix_s13: int = 0,
-        magnetometer_sensitivity_matrix_s21: int = 0,
-        magnetometer_sensitivity_matrix_s23: int = 0,
-        magnetometer_sensitivity_matrix_s31: int = 0,
-        magnetometer_sensitivity_matrix_s32: int = 0,
+        mounting_alpha: int = 0,
+        mounting_beta: int = 0,
+        mounting_gamma: int = 0,
+        channel_1_offset: int = 0,
+        channel_2_offset: int = 0,
+        channel_3_offset: int = 0,
+        sensitivity_s11: int = 0,
+        sensitivity_s22: int = 0,
+        sensitivity_s33: int = 0,
+        sensitivity_s12: int = 0,
+        sensitivity_s13: int = 0,
+        sensitivity_s21: int = 0,
+        sensitivity_s23: int = 0,
+        sensitivity_s31: int = 0,
+        sensitivity_s32: int = 0,
     ) -> None:
-        self.magnetometer_mounting_transform_alpha_angle = magnetometer_mounting_transform_alpha_angle
-        self.magnetometer_mounting_transform_beta_angle = magnetometer_mounting_transform_beta_angle
-        self.magnetometer_mounting_transform_gamma_angle = magnetometer_mounting_transform_gamma_angle
-        self.magnetometer_channel_1_offset = magnetometer_channel_1_offset
-        self.magnetometer_channel_2_offset = magnetometer_channel_2_offset
-        self.magnetometer_channel_3_offset = magnetometer_channel_3_offset
-        self.magnetometer_sensitivity_matrix_s11 = magnetometer_sensitivity_matrix_s11
-        self.magnetometer_sensitivity_matrix_s22 = magnetometer_sensitivity_matrix_s22
-        self.magnetometer_sensitivity_matrix_s33 = magnetometer_sensitivity_matrix_s33
-        self.magnetometer_sensitivity_matrix_s12 = magnetometer_sensitivity_matrix_s12
-        self.magnetometer_sensitivity_matrix_s13 = magnetometer_sensitivity_matrix_s13
-        self.magnetometer_sensitivity_matrix_s21 = magnetometer_sensitivity_matrix_s21
-        self.magnetometer_sensitivity_matrix_s23 = magnetometer_sensitivity_matrix_s23
-        self.magnetometer_sensitivity_matrix_s31 = magnetometer_sensitivity_matrix_s31
-        self.magnetometer_sensitivity_matrix_s32 = magnetometer_sensitivity_matrix_s32
+        self.mounting_alpha = mounting_alpha
+        self.mounting_beta = mounting_beta
+        self.mounting_gamma = mounting_gamma
+        self.channel_1_offset = channel_1_offset
+        self.channel_2_offset = channel_2_offset
+        self.channel_3_offset = channel_3_offset
+        self.sensitivity_s11 = sensitivity_s11
+        self.sensitivity_s22 = sensitivity_s22
+        self.sensitivity_s33 = sensitivity_s33
+        self.sensitivity_s12 = sensitivity_s12
+        self.sensitivity_s13 = sensitivity_s13
+        self.sensitivity_s21 = sensitivity_s21
+        self.sensitivity_s23 = sensitivity_s23
+        self.sensitivity_s31 = sensitivity_s31
+        self.sensitivity_s32 = sensitivity_s32
 
     @classmethod
     def from_physical(
         cls,
         *,
-        magnetometer_mounting_transform_alpha_angle_deg: float = 0.0,
-        magnetometer_mounting_transform_beta_angle_deg: float = 0.0,
-        magnetometer_mounting_transform_gamma_angle_deg: float = 0.0,
-        magnetometer_channel_1_offset_physical: float = 0.0,
-        magnetometer_channel_2_offset_physical: float = 0.0,
-        magnetometer_channel_3_offset_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s11_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s22_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s33_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s12_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s13_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s21_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s23_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s31_physical: float = 0.0,
-        magnetometer_sensitivity_matrix_s32_physical: float = 0.0,
+        mounting_alpha_deg: float = 0.0,
+        mounting_beta_deg: float = 0.0,
+        mounting_gamma_deg: float = 0.0,
+        channel_1_offset_physical: float = 0.0,
+        channel_2_offset_physical: float = 0.0,
+        channel_3_offset_physical: float = 0.0,
+        sensitivity_s11_physical: float = 0.0,
+        sensitivity_s22_physical: float = 0.0,
+        sensitivity_s33_physical: float = 0.0,
+        sensitivity_s12_physical: float = 0.0,
+        sensitivity_s13_physical: float = 0.0,
+        sensitivity_s21_physical: float = 0.0,
+        sensitivity_s23_physical: float = 0.0,
+        sensitivity_s31_physical: float = 0.0,
+        sensitivity_s32_physical: float = 0.0,
     ) -> MagnetometerConfiguration:
         """From physical values, raw ones where there is no scale. Raises `RangeError`."""
         self = _new(cls)
-        self.magnetometer_mounting_transform_alpha_angle_deg = magnetometer_mounting_transform_alpha_angle_deg
-        self.magnetometer_mounting_transform_beta_angle_deg = magnetometer_mounting_transform_beta_angle_deg
-        self.magnetometer_mounting_transform_gamma_angle_deg = magnetometer_mounting_transform_gamma_angle_deg
-        self.magnetometer_channel_1_offset_physical = magnetometer_channel_1_offset_physical
-        self.magnetometer_channel_2_offset_physical = magnetometer_channel_2_offset_physical
-        self.magnetometer_channel_3_offset_physical = magnetometer_channel_3_offset_physical
-        self.magnetometer_sensitivity_matrix_s11_physical = magnetometer_sensitivity_matrix_s11_physical
-        self.magnetometer_sensitivity_matrix_s22_physical = magnetometer_sensitivity_matrix_s22_physical
-        self.magnetometer_sensitivity_matrix_s33_physical = magnetometer_sensitivity_matrix_s33_physical
-        self.magnetometer_sensitivity_matrix_s12_physical = magnetometer_sensitivity_matrix_s12_physical
-        self.magnetometer_sensitivity_matrix_s13_physical = magnetometer_sensitivity_matrix_s13_physical
-        self.magnetometer_sensitivity_matrix_s21_physical = magnetometer_sensitivity_matrix_s21_physical
-        self.magnetometer_sensitivity_matrix_s23_physical = magnetometer_sensitivity_matrix_s23_physical
-        self.magnetometer_sensitivity_matrix_s31_physical = magnetometer_sensitivity_matrix_s31_physical
-        self.magnetometer_sensitivity_matrix_s32_physical = magnetometer_sensitivity_matrix_s32_physical
+        self.mounting_alpha_deg = mounting_alpha_deg
+        self.mounting_beta_deg = mounting_beta_deg
+        self.mounting_gamma_deg = mounting_gamma_deg
+        self.channel_1_offset_physical = channel_1_offset_physical
+        self.channel_2_offset_physical = channel_2_offset_physical
+        self.channel_3_offset_physical = channel_3_offset_physical
+        self.sensitivity_s11_physical = sensitivity_s11_physical
+        self.sensitivity_s22_physical = sensitivity_s22_physical
+        self.sensitivity_s33_physical = sensitivity_s33_physical
+        self.sensitivity_s12_physical = sensitivity_s12_physical
+        self.sensitivity_s13_physical = sensitivity_s13_physical
+        self.sensitivity_s21_physical = sensitivity_s21_physical
+        self.sensitivity_s23_physical = sensitivity_s23_physical
+        self.sensitivity_s31_physical = sensitivity_s31_physical
+        self.sensitivity_s32_physical = sensitivity_s32_physical
         return self
 
     @classmethod
@@ -342,21 +342,21 @@ class MagnetometerConfiguration(_base.Message):
         self = _new(cls)
         try:
             (
-                self.magnetometer_mounting_transform_alpha_angle,
-                self.magnetometer_mounting_transform_beta_angle,
-                self.magnetometer_mounting_transform_gamma_angle,
-                self.magnetometer_channel_1_offset,
-                self.magnetometer_channel_2_offset,
-                self.magnetometer_channel_3_offset,
-                self.magnetometer_sensitivity_matrix_s11,
-                self.magnetometer_sensitivity_matrix_s22,
-                self.magnetometer_sensitivity_matrix_s33,
-                self.magnetometer_sensitivity_matrix_s12,
-                self.magnetometer_sensitivity_matrix_s13,
-                self.magnetometer_sensitivity_matrix_s21,
-                self.magnetometer_sensitivity_matrix_s23,
-                self.magnetometer_sensitivity_matrix_s31,
-                self.magnetometer_sensitivity_matrix_s32,
+                self.mounting_alpha,
+                self.mounting_beta,
+                self.mounting_gamma,
+                self.channel_1_offset,
+                self.channel_2_offset,
+                self.channel_3_offset,
+                self.sensitivity_s11,
+                self.sensitivity_s22,
+                self.sensitivity_s33,
+                self.sensitivity_s12,
+                self.sensitivity_s13,
+                self.sensitivity_s21,
+                self.sensitivity_s23,
+                self.sensitivity_s31,
+                self.sensitivity_s32,
             ) = _unpack(data)
         except struct.error:
             raise _codec.length_error(cls, data) from None
@@ -366,254 +366,254 @@ class MagnetometerConfiguration(_base.Message):
         """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
         try:
             return _pack(
-                self.magnetometer_mounting_transform_alpha_angle,
-                self.magnetometer_mounting_transform_beta_angle,
-                self.magnetometer_mounting_transform_gamma_angle,
-                self.magnetometer_channel_1_offset,
-                self.magnetometer_channel_2_offset,
-                self.magnetometer_channel_3_offset,
-                self.magnetometer_sensitivity_matrix_s11,
-                self.magnetometer_sensitivity_matrix_s22,
-                self.magnetometer_sensitivity_matrix_s33,
-                self.magnetometer_sensitivity_matrix_s12,
-                self.magnetometer_sensitivity_matrix_s13,
-                self.magnetometer_sensitivity_matrix_s21,
-                self.magnetometer_sensitivity_matrix_s23,
-                self.magnetometer_sensitivity_matrix_s31,
-                self.magnetometer_sensitivity_matrix_s32,
+                self.mounting_alpha,
+                self.mounting_beta,
+                self.mounting_gamma,
+                self.channel_1_offset,
+                self.channel_2_offset,
+                self.channel_3_offset,
+                self.sensitivity_s11,
+                self.sensitivity_s22,
+                self.sensitivity_s33,
+                self.sensitivity_s12,
+                self.sensitivity_s13,
+                self.sensitivity_s21,
+                self.sensitivity_s23,
+                self.sensitivity_s31,
+                self.sensitivity_s32,
             )
         except _codec.REFUSED:
             raise _codec.range_error(self) from None
 
     @property
-    def magnetometer_mounting_transform_alpha_angle_deg(self) -> float:
+    def mounting_alpha_deg(self) -> float:
         """Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.magnetometer_mounting_transform_alpha_angle / 100
+        return self.mounting_alpha / 100
 
-    @magnetometer_mounting_transform_alpha_angle_deg.setter
-    def magnetometer_mounting_transform_alpha_angle_deg(self, value: float) -> None:
-        self.magnetometer_mounting_transform_alpha_angle = _codec.raw_value(
+    @mounting_alpha_deg.setter
+    def mounting_alpha_deg(self, value: float) -> None:
+        self.mounting_alpha = _codec.raw_value(
             value,
-            "magnetometer_mounting_transform_alpha_angle",
+            "mounting_alpha",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_mounting_transform_beta_angle_deg(self) -> float:
+    def mounting_beta_deg(self) -> float:
         """Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.magnetometer_mounting_transform_beta_angle / 100
+        return self.mounting_beta / 100
 
-    @magnetometer_mounting_transform_beta_angle_deg.setter
-    def magnetometer_mounting_transform_beta_angle_deg(self, value: float) -> None:
-        self.magnetometer_mounting_transform_beta_angle = _codec.raw_value(
+    @mounting_beta_deg.setter
+    def mounting_beta_deg(self, value: float) -> None:
+        self.mounting_beta = _codec.raw_value(
             value,
-            "magnetometer_mounting_transform_beta_angle",
+            "mounting_beta",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_mounting_transform_gamma_angle_deg(self) -> float:
+    def mounting_gamma_deg(self) -> float:
         """Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.magnetometer_mounting_transform_gamma_angle / 100
+        return self.mounting_gamma / 100
 
-    @magnetometer_mounting_transform_gamma_angle_deg.setter
-    def magnetometer_mounting_transform_gamma_angle_deg(self, value: float) -> None:
-        self.magnetometer_mounting_transform_gamma_angle = _codec.raw_value(
+    @mounting_gamma_deg.setter
+    def mounting_gamma_deg(self, value: float) -> None:
+        self.mounting_gamma = _codec.raw_value(
             value,
-            "magnetometer_mounting_transform_gamma_angle",
+            "mounting_gamma",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_channel_1_offset_physical(self) -> float:
+    def channel_1_offset_physical(self) -> float:
         """Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767."""
-        return self.magnetometer_channel_1_offset / 1000
+        return self.channel_1_offset / 1000
 
-    @magnetometer_channel_1_offset_physical.setter
-    def magnetometer_channel_1_offset_physical(self, value: float) -> None:
-        self.magnetometer_channel_1_offset = _codec.raw_value(
+    @channel_1_offset_physical.setter
+    def channel_1_offset_physical(self, value: float) -> None:
+        self.channel_1_offset = _codec.raw_value(
             value,
-            "magnetometer_channel_1_offset",
+            "channel_1_offset",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_channel_2_offset_physical(self) -> float:
+    def channel_2_offset_physical(self) -> float:
         """Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767."""
-        return self.magnetometer_channel_2_offset / 1000
+        return self.channel_2_offset / 1000
 
-    @magnetometer_channel_2_offset_physical.setter
-    def magnetometer_channel_2_offset_physical(self, value: float) -> None:
-        self.magnetometer_channel_2_offset = _codec.raw_value(
+    @channel_2_offset_physical.setter
+    def channel_2_offset_physical(self, value: float) -> None:
+        self.channel_2_offset = _codec.raw_value(
             value,
-            "magnetometer_channel_2_offset",
+            "channel_2_offset",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_channel_3_offset_physical(self) -> float:
+    def channel_3_offset_physical(self) -> float:
         """Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767."""
-        return self.magnetometer_channel_3_offset / 1000
+        return self.channel_3_offset / 1000
 
-    @magnetometer_channel_3_offset_physical.setter
-    def magnetometer_channel_3_offset_physical(self, value: float) -> None:
-        self.magnetometer_channel_3_offset = _codec.raw_value(
+    @channel_3_offset_physical.setter
+    def channel_3_offset_physical(self, value: float) -> None:
+        self.channel_3_offset = _codec.raw_value(
             value,
-            "magnetometer_channel_3_offset",
+            "channel_3_offset",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s11_physical(self) -> float:
+    def sensitivity_s11_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S11, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s11 / 1000
+        return self.sensitivity_s11 / 1000
 
-    @magnetometer_sensitivity_matrix_s11_physical.setter
-    def magnetometer_sensitivity_matrix_s11_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s11 = _codec.raw_value(
+    @sensitivity_s11_physical.setter
+    def sensitivity_s11_physical(self, value: float) -> None:
+        self.sensitivity_s11 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s11",
+            "sensitivity_s11",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s22_physical(self) -> float:
+    def sensitivity_s22_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S22, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s22 / 1000
+        return self.sensitivity_s22 / 1000
 
-    @magnetometer_sensitivity_matrix_s22_physical.setter
-    def magnetometer_sensitivity_matrix_s22_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s22 = _codec.raw_value(
+    @sensitivity_s22_physical.setter
+    def sensitivity_s22_physical(self, value: float) -> None:
+        self.sensitivity_s22 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s22",
+            "sensitivity_s22",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s33_physical(self) -> float:
+    def sensitivity_s33_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S33, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s33 / 1000
+        return self.sensitivity_s33 / 1000
 
-    @magnetometer_sensitivity_matrix_s33_physical.setter
-    def magnetometer_sensitivity_matrix_s33_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s33 = _codec.raw_value(
+    @sensitivity_s33_physical.setter
+    def sensitivity_s33_physical(self, value: float) -> None:
+        self.sensitivity_s33 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s33",
+            "sensitivity_s33",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s12_physical(self) -> float:
+    def sensitivity_s12_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S12, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s12 / 1000
+        return self.sensitivity_s12 / 1000
 
-    @magnetometer_sensitivity_matrix_s12_physical.setter
-    def magnetometer_sensitivity_matrix_s12_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s12 = _codec.raw_value(
+    @sensitivity_s12_physical.setter
+    def sensitivity_s12_physical(self, value: float) -> None:
+        self.sensitivity_s12 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s12",
+            "sensitivity_s12",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s13_physical(self) -> float:
+    def sensitivity_s13_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S13, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s13 / 1000
+        return self.sensitivity_s13 / 1000
 
-    @magnetometer_sensitivity_matrix_s13_physical.setter
-    def magnetometer_sensitivity_matrix_s13_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s13 = _codec.raw_value(
+    @sensitivity_s13_physical.setter
+    def sensitivity_s13_physical(self, value: float) -> None:
+        self.sensitivity_s13 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s13",
+            "sensitivity_s13",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s21_physical(self) -> float:
+    def sensitivity_s21_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S21, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s21 / 1000
+        return self.sensitivity_s21 / 1000
 
-    @magnetometer_sensitivity_matrix_s21_physical.setter
-    def magnetometer_sensitivity_matrix_s21_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s21 = _codec.raw_value(
+    @sensitivity_s21_physical.setter
+    def sensitivity_s21_physical(self, value: float) -> None:
+        self.sensitivity_s21 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s21",
+            "sensitivity_s21",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s23_physical(self) -> float:
+    def sensitivity_s23_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S23, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s23 / 1000
+        return self.sensitivity_s23 / 1000
 
-    @magnetometer_sensitivity_matrix_s23_physical.setter
-    def magnetometer_sensitivity_matrix_s23_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s23 = _codec.raw_value(
+    @sensitivity_s23_physical.setter
+    def sensitivity_s23_physical(self, value: float) -> None:
+        self.sensitivity_s23 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s23",
+            "sensitivity_s23",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s31_physical(self) -> float:
+    def sensitivity_s31_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S31, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s31 / 1000
+        return self.sensitivity_s31 / 1000
 
-    @magnetometer_sensitivity_matrix_s31_physical.setter
-    def magnetometer_sensitivity_matrix_s31_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s31 = _codec.raw_value(
+    @sensitivity_s31_physical.setter
+    def sensitivity_s31_physical(self, value: float) -> None:
+        self.sensitivity_s31 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s31",
+            "sensitivity_s31",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def magnetometer_sensitivity_matrix_s32_physical(self) -> float:
+    def sensitivity_s32_physical(self) -> float:
         """Magnetometer Sensitivity Matrix S32, as a physical value: -32.768 to 32.767.
         """
-        return self.magnetometer_sensitivity_matrix_s32 / 1000
+        return self.sensitivity_s32 / 1000
 
-    @magnetometer_sensitivity_matrix_s32_physical.setter
-    def magnetometer_sensitivity_matrix_s32_physical(self, value: float) -> None:
-        self.magnetometer_sensitivity_matrix_s32 = _codec.raw_value(
+    @sensitivity_s32_physical.setter
+    def sensitivity_s32_physical(self, value: float) -> None:
+        self.sensitivity_s32 = _codec.raw_value(
             value,
-            "magnetometer_sensitivity_matrix_s32",
+            "sensitivity_s32",
             (1, 0, 1000),
             -32768,
             32767,

@@ -22,9 +22,9 @@ class QuaternionCovariance(_base.Message):
     """
 
     __slots__ = (
-        "quaternion_covariance_q1_rms",
-        "quaternion_covariance_q2_rms",
-        "quaternion_covariance_q3_rms",
+        "q1_rms",
+        "q2_rms",
+        "q3_rms",
     )
 
     NODE = "cubeacp"
@@ -36,47 +36,47 @@ class QuaternionCovariance(_base.Message):
     TABLE = 120
     FIELDS = (
         _base.FieldInfo(
-            "quaternion_covariance_q1_rms",
+            "q1_rms",
             "Quaternion Covariance - Q1 RMS",
             0,
             16,
             "int",
-            physical="quaternion_covariance_q1_rms_physical",
+            physical="q1_rms_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "quaternion_covariance_q2_rms",
+            "q2_rms",
             "Quaternion Covariance - Q2 RMS",
             16,
             16,
             "int",
-            physical="quaternion_covariance_q2_rms_physical",
+            physical="q2_rms_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "quaternion_covariance_q3_rms",
+            "q3_rms",
             "Quaternion Covariance - Q3 RMS",
             32,
             16,
             "int",
-            physical="quaternion_covariance_q3_rms_physical",
+            physical="q3_rms_physical",
             scale=(1, 0, 1000),
         ),
     )
 
-    quaternion_covariance_q1_rms: int
+    q1_rms: int
     """Quaternion Covariance - Q1 RMS: bits 0 to 15, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
     Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
     """
-    quaternion_covariance_q2_rms: int
+    q2_rms: int
     """Quaternion Covariance - Q2 RMS: bits 16 to 31, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
     Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
     """
-    quaternion_covariance_q3_rms: int
+    q3_rms: int
     """Quaternion Covariance - Q3 RMS: bits 32 to 47, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
@@ -86,27 +86,27 @@ class QuaternionCovariance(_base.Message):
     def __init__(
         self,
         *,
-        quaternion_covariance_q1_rms: int = 0,
-        quaternion_covariance_q2_rms: int = 0,
-        quaternion_covariance_q3_rms: int = 0,
+        q1_rms: int = 0,
+        q2_rms: int = 0,
+        q3_rms: int = 0,
     ) -> None:
-        self.quaternion_covariance_q1_rms = quaternion_covariance_q1_rms
-        self.quaternion_covariance_q2_rms = quaternion_covariance_q2_rms
-        self.quaternion_covariance_q3_rms = quaternion_covariance_q3_rms
+        self.q1_rms = q1_rms
+        self.q2_rms = q2_rms
+        self.q3_rms = q3_rms
 
     @classmethod
     def from_physical(
         cls,
         *,
-        quaternion_covariance_q1_rms_physical: float = 0.0,
-        quaternion_covariance_q2_rms_physical: float = 0.0,
-        quaternion_covariance_q3_rms_physical: float = 0.0,
+        q1_rms_physical: float = 0.0,
+        q2_rms_physical: float = 0.0,
+        q3_rms_physical: float = 0.0,
     ) -> QuaternionCovariance:
         """From physical values, raw ones where there is no scale. Raises `RangeError`."""
         self = _new(cls)
-        self.quaternion_covariance_q1_rms_physical = quaternion_covariance_q1_rms_physical
-        self.quaternion_covariance_q2_rms_physical = quaternion_covariance_q2_rms_physical
-        self.quaternion_covariance_q3_rms_physical = quaternion_covariance_q3_rms_physical
+        self.q1_rms_physical = q1_rms_physical
+        self.q2_rms_physical = q2_rms_physical
+        self.q3_rms_physical = q3_rms_physical
         return self
 
     @classmethod
@@ -114,11 +114,7 @@ class QuaternionCovariance(_base.Message):
         """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
         self = _new(cls)
         try:
-            (
-                self.quaternion_covariance_q1_rms,
-                self.quaternion_covariance_q2_rms,
-                self.quaternion_covariance_q3_rms,
-            ) = _unpack(data)
+            self.q1_rms, self.q2_rms, self.q3_rms = _unpack(data)
         except struct.error:
             raise _codec.length_error(cls, data) from None
         return self
@@ -126,55 +122,33 @@ class QuaternionCovariance(_base.Message):
     def to_bytes(self) -> bytes:
         """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
         try:
-            return _pack(
-                self.quaternion_covariance_q1_rms,
-                self.quaternion_covariance_q2_rms,
-                self.quaternion_covariance_q3_rms,
-            )
+            return _pack(self.q1_rms, self.q2_rms, self.q3_rms)
         except _codec.REFUSED:
             raise _codec.range_error(self) from None
 
     @property
-    def quaternion_covariance_q1_rms_physical(self) -> float:
+    def q1_rms_physical(self) -> float:
         """Quaternion Covariance - Q1 RMS, as a physical value: -32.768 to 32.767."""
-        return self.quaternion_covariance_q1_rms / 1000
+        return self.q1_rms / 1000
 
-    @quaternion_covariance_q1_rms_physical.setter
-    def quaternion_covariance_q1_rms_physical(self, value: float) -> None:
-        self.quaternion_covariance_q1_rms = _codec.raw_value(
-            value,
-            "quaternion_covariance_q1_rms",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
+    @q1_rms_physical.setter
+    def q1_rms_physical(self, value: float) -> None:
+        self.q1_rms = _codec.raw_value(value, "q1_rms", (1, 0, 1000), -32768, 32767)
 
     @property
-    def quaternion_covariance_q2_rms_physical(self) -> float:
+    def q2_rms_physical(self) -> float:
         """Quaternion Covariance - Q2 RMS, as a physical value: -32.768 to 32.767."""
-        return self.quaternion_covariance_q2_rms / 1000
+        return self.q2_rms / 1000
 
-    @quaternion_covariance_q2_rms_physical.setter
-    def quaternion_covariance_q2_rms_physical(self, value: float) -> None:
-        self.quaternion_covariance_q2_rms = _codec.raw_value(
-            value,
-            "quaternion_covariance_q2_rms",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
+    @q2_rms_physical.setter
+    def q2_rms_physical(self, value: float) -> None:
+        self.q2_rms = _codec.raw_value(value, "q2_rms", (1, 0, 1000), -32768, 32767)
 
     @property
-    def quaternion_covariance_q3_rms_physical(self) -> float:
+    def q3_rms_physical(self) -> float:
         """Quaternion Covariance - Q3 RMS, as a physical value: -32.768 to 32.767."""
-        return self.quaternion_covariance_q3_rms / 1000
+        return self.q3_rms / 1000
 
-    @quaternion_covariance_q3_rms_physical.setter
-    def quaternion_covariance_q3_rms_physical(self, value: float) -> None:
-        self.quaternion_covariance_q3_rms = _codec.raw_value(
-            value,
-            "quaternion_covariance_q3_rms",
-            (1, 0, 1000),
-            -32768,
-            32767,
-        )
+    @q3_rms_physical.setter
+    def q3_rms_physical(self, value: float) -> None:
+        self.q3_rms = _codec.raw_value(value, "q3_rms", (1, 0, 1000), -32768, 32767)

@@ -27,7 +27,7 @@ class SetDetumblingControlParameters(_base.Message):
     __slots__ = (
         "detumbling_spin_gain",
         "detumbling_damping_gain",
-        "reference_spin_rate",
+        "spin_rate",
         "fast_bdot_detumbling_gain",
     )
 
@@ -49,13 +49,13 @@ class SetDetumblingControlParameters(_base.Message):
             "float",
         ),
         _base.FieldInfo(
-            "reference_spin_rate",
+            "spin_rate",
             "Reference spin rate",
             64,
             16,
             "int",
             unit="deg/s",
-            physical="reference_spin_rate_deg_per_s",
+            physical="spin_rate_deg_per_s",
             scale=(1, 0, 1000),
             below=0,
         ),
@@ -82,7 +82,7 @@ class SetDetumblingControlParameters(_base.Message):
 
     Note ACP-163 (open): Gains have no units.
     """
-    reference_spin_rate: int
+    spin_rate: int
     """Reference spin rate: bits 64 to 79, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
 
@@ -105,12 +105,12 @@ class SetDetumblingControlParameters(_base.Message):
         *,
         detumbling_spin_gain: float = 0.0,
         detumbling_damping_gain: float = 0.0,
-        reference_spin_rate: int = 0,
+        spin_rate: int = 0,
         fast_bdot_detumbling_gain: float = 0.0,
     ) -> None:
         self.detumbling_spin_gain = detumbling_spin_gain
         self.detumbling_damping_gain = detumbling_damping_gain
-        self.reference_spin_rate = reference_spin_rate
+        self.spin_rate = spin_rate
         self.fast_bdot_detumbling_gain = fast_bdot_detumbling_gain
 
     @classmethod
@@ -119,14 +119,14 @@ class SetDetumblingControlParameters(_base.Message):
         *,
         detumbling_spin_gain: float = 0.0,
         detumbling_damping_gain: float = 0.0,
-        reference_spin_rate_deg_per_s: float = 0.0,
+        spin_rate_deg_per_s: float = 0.0,
         fast_bdot_detumbling_gain: float = 0.0,
     ) -> SetDetumblingControlParameters:
         """From physical values, raw ones where there is no scale. Raises `RangeError`."""
         self = _new(cls)
         self.detumbling_spin_gain = detumbling_spin_gain
         self.detumbling_damping_gain = detumbling_damping_gain
-        self.reference_spin_rate_deg_per_s = reference_spin_rate_deg_per_s
+        self.spin_rate_deg_per_s = spin_rate_deg_per_s
         self.fast_bdot_detumbling_gain = fast_bdot_detumbling_gain
         return self
 
@@ -138,7 +138,7 @@ class SetDetumblingControlParameters(_base.Message):
             (
                 self.detumbling_spin_gain,
                 self.detumbling_damping_gain,
-                self.reference_spin_rate,
+                self.spin_rate,
                 self.fast_bdot_detumbling_gain,
             ) = _unpack(data)
         except struct.error:
@@ -158,7 +158,7 @@ class SetDetumblingControlParameters(_base.Message):
             frame = _pack(
                 self.detumbling_spin_gain,
                 self.detumbling_damping_gain,
-                self.reference_spin_rate,
+                self.spin_rate,
                 self.fast_bdot_detumbling_gain,
             )
             total = (
@@ -171,15 +171,15 @@ class SetDetumblingControlParameters(_base.Message):
             raise _codec.range_error(self) from None
 
     @property
-    def reference_spin_rate_deg_per_s(self) -> float:
+    def spin_rate_deg_per_s(self) -> float:
         """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s."""
-        return self.reference_spin_rate / 1000
+        return self.spin_rate / 1000
 
-    @reference_spin_rate_deg_per_s.setter
-    def reference_spin_rate_deg_per_s(self, value: float) -> None:
-        self.reference_spin_rate = _codec.raw_value(
+    @spin_rate_deg_per_s.setter
+    def spin_rate_deg_per_s(self, value: float) -> None:
+        self.spin_rate = _codec.raw_value(
             value,
-            "reference_spin_rate",
+            "spin_rate",
             (1, 0, 1000),
             -32768,
             32767,

@@ -24,9 +24,9 @@ class SetMagnetorquerOutput(_base.Message):
     """
 
     __slots__ = (
-        "commanded_x_magnetorquer_duty_cycle",
-        "commanded_y_magnetorquer_duty_cycle",
-        "commanded_z_magnetorquer_duty_cycle",
+        "x_duty_cycle",
+        "y_duty_cycle",
+        "z_duty_cycle",
     )
 
     NODE = "cubeacp"
@@ -38,35 +38,35 @@ class SetMagnetorquerOutput(_base.Message):
     TABLE = 81
     FIELDS = (
         _base.FieldInfo(
-            "commanded_x_magnetorquer_duty_cycle",
+            "x_duty_cycle",
             "Commanded X Magnetorquer duty cycle",
             0,
             16,
             "int",
-            physical="commanded_x_magnetorquer_duty_cycle_physical",
+            physical="x_duty_cycle_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "commanded_y_magnetorquer_duty_cycle",
+            "y_duty_cycle",
             "Commanded Y Magnetorquer duty cycle",
             16,
             16,
             "int",
-            physical="commanded_y_magnetorquer_duty_cycle_physical",
+            physical="y_duty_cycle_physical",
             scale=(1, 0, 1000),
         ),
         _base.FieldInfo(
-            "commanded_z_magnetorquer_duty_cycle",
+            "z_duty_cycle",
             "Commanded Z Magnetorquer duty cycle",
             32,
             16,
             "int",
-            physical="commanded_z_magnetorquer_duty_cycle_physical",
+            physical="z_duty_cycle_physical",
             scale=(1, 0, 1000),
         ),
     )
 
-    commanded_x_magnetorquer_duty_cycle: int
+    x_duty_cycle: int
     """Commanded X Magnetorquer duty cycle: bits 0 to 15, raw -32768 to 32767; physical
     `raw = value*1000.0`, -32.768 to 32.767.
 
@@ -74,7 +74,7 @@ class SetMagnetorquerOutput(_base.Message):
 
     Note ACP-031 (likely): Duty cycle: unit and range are not given.
     """
-    commanded_y_magnetorquer_duty_cycle: int
+    y_duty_cycle: int
     """Commanded Y Magnetorquer duty cycle: bits 16 to 31, raw -32768 to 32767; physical
     `raw = value*1000.0`, -32.768 to 32.767.
 
@@ -82,7 +82,7 @@ class SetMagnetorquerOutput(_base.Message):
 
     Note ACP-031 (likely): Duty cycle: unit and range are not given.
     """
-    commanded_z_magnetorquer_duty_cycle: int
+    z_duty_cycle: int
     """Commanded Z Magnetorquer duty cycle: bits 32 to 47, raw -32768 to 32767; physical
     `raw = value*1000.0`, -32.768 to 32.767.
 
@@ -94,27 +94,27 @@ class SetMagnetorquerOutput(_base.Message):
     def __init__(
         self,
         *,
-        commanded_x_magnetorquer_duty_cycle: int = 0,
-        commanded_y_magnetorquer_duty_cycle: int = 0,
-        commanded_z_magnetorquer_duty_cycle: int = 0,
+        x_duty_cycle: int = 0,
+        y_duty_cycle: int = 0,
+        z_duty_cycle: int = 0,
     ) -> None:
-        self.commanded_x_magnetorquer_duty_cycle = commanded_x_magnetorquer_duty_cycle
-        self.commanded_y_magnetorquer_duty_cycle = commanded_y_magnetorquer_duty_cycle
-        self.commanded_z_magnetorquer_duty_cycle = commanded_z_magnetorquer_duty_cycle
+        self.x_duty_cycle = x_duty_cycle
+        self.y_duty_cycle = y_duty_cycle
+        self.z_duty_cycle = z_duty_cycle
 
     @classmethod
     def from_physical(
         cls,
         *,
-        commanded_x_magnetorquer_duty_cycle_physical: float = 0.0,
-        commanded_y_magnetorquer_duty_cycle_physical: float = 0.0,
-        commanded_z_magnetorquer_duty_cycle_physical: float = 0.0,
+        x_duty_cycle_physical: float = 0.0,
+        y_duty_cycle_physical: float = 0.0,
+        z_duty_cycle_physical: float = 0.0,
     ) -> SetMagnetorquerOutput:
         """From physical values, raw ones where there is no scale. Raises `RangeError`."""
         self = _new(cls)
-        self.commanded_x_magnetorquer_duty_cycle_physical = commanded_x_magnetorquer_duty_cycle_physical
-        self.commanded_y_magnetorquer_duty_cycle_physical = commanded_y_magnetorquer_duty_cycle_physical
-        self.commanded_z_magnetorquer_duty_cycle_physical = commanded_z_magnetorquer_duty_cycle_physical
+        self.x_duty_cycle_physical = x_duty_cycle_physical
+        self.y_duty_cycle_physical = y_duty_cycle_physical
+        self.z_duty_cycle_physical = z_duty_cycle_physical
         return self
 
     @classmethod
@@ -122,11 +122,7 @@ class SetMagnetorquerOutput(_base.Message):
         """The message in a frame of exactly 6 bytes. Raises `LengthError`."""
         self = _new(cls)
         try:
-            (
-                self.commanded_x_magnetorquer_duty_cycle,
-                self.commanded_y_magnetorquer_duty_cycle,
-                self.commanded_z_magnetorquer_duty_cycle,
-            ) = _unpack(data)
+            self.x_duty_cycle, self.y_duty_cycle, self.z_duty_cycle = _unpack(data)
         except struct.error:
             raise _codec.length_error(cls, data) from None
         return self
@@ -134,57 +130,53 @@ class SetMagnetorquerOutput(_base.Message):
     def to_bytes(self) -> bytes:
         """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
         try:
-            return _pack(
-                self.commanded_x_magnetorquer_duty_cycle,
-                self.commanded_y_magnetorquer_duty_cycle,
-                self.commanded_z_magnetorquer_duty_cycle,
-            )
+            return _pack(self.x_duty_cycle, self.y_duty_cycle, self.z_duty_cycle)
         except _codec.REFUSED:
             raise _codec.range_error(self) from None
 
     @property
-    def commanded_x_magnetorquer_duty_cycle_physical(self) -> float:
+    def x_duty_cycle_physical(self) -> float:
         """Commanded X Magnetorquer duty cycle, as a physical value: -32.768 to 32.767.
         """
-        return self.commanded_x_magnetorquer_duty_cycle / 1000
+        return self.x_duty_cycle / 1000
 
-    @commanded_x_magnetorquer_duty_cycle_physical.setter
-    def commanded_x_magnetorquer_duty_cycle_physical(self, value: float) -> None:
-        self.commanded_x_magnetorquer_duty_cycle = _codec.raw_value(
+    @x_duty_cycle_physical.setter
+    def x_duty_cycle_physical(self, value: float) -> None:
+        self.x_duty_cycle = _codec.raw_value(
             value,
-            "commanded_x_magnetorquer_duty_cycle",
+            "x_duty_cycle",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def commanded_y_magnetorquer_duty_cycle_physical(self) -> float:
+    def y_duty_cycle_physical(self) -> float:
         """Commanded Y Magnetorquer duty cycle, as a physical value: -32.768 to 32.767.
         """
-        return self.commanded_y_magnetorquer_duty_cycle / 1000
+        return self.y_duty_cycle / 1000
 
-    @commanded_y_magnetorquer_duty_cycle_physical.setter
-    def commanded_y_magnetorquer_duty_cycle_physical(self, value: float) -> None:
-        self.commanded_y_magnetorquer_duty_cycle = _codec.raw_value(
+    @y_duty_cycle_physical.setter
+    def y_duty_cycle_physical(self, value: float) -> None:
+        self.y_duty_cycle = _codec.raw_value(
             value,
-            "commanded_y_magnetorquer_duty_cycle",
+            "y_duty_cycle",
             (1, 0, 1000),
             -32768,
             32767,
         )
 
     @property
-    def commanded_z_magnetorquer_duty_cycle_physical(self) -> float:
+    def z_duty_cycle_physical(self) -> float:
         """Commanded Z Magnetorquer duty cycle, as a physical value: -32.768 to 32.767.
         """
-        return self.commanded_z_magnetorquer_duty_cycle / 1000
+        return self.z_duty_cycle / 1000
 
-    @commanded_z_magnetorquer_duty_cycle_physical.setter
-    def commanded_z_magnetorquer_duty_cycle_physical(self, value: float) -> None:
-        self.commanded_z_magnetorquer_duty_cycle = _codec.raw_value(
+    @z_duty_cycle_physical.setter
+    def z_duty_cycle_physical(self, value: float) -> None:
+        self.z_duty_cycle = _codec.raw_value(
             value,
-            "commanded_z_magnetorquer_duty_cycle",
+            "z_duty_cycle",
             (1, 0, 1000),
             -32768,
             32767,

@@ -29,9 +29,9 @@ class SetStarTrackerConfiguration(_base.Message):
     """
 
     __slots__ = (
-        "star_tracker_mounting_transform_alpha_angle",
-        "star_tracker_mounting_transform_beta_angle",
-        "star_tracker_mounting_transform_gamma_angle",
+        "mounting_alpha",
+        "mounting_beta",
+        "mounting_gamma",
         "star_tracker_exposure_time",
         "star_tracker_analog_gain",
         "star_tracker_detection_threshold",
@@ -40,7 +40,7 @@ class SetStarTrackerConfiguration(_base.Message):
         "detection_timeout_duration",
         "maximum_star_pixel",
         "minimum_star_pixel",
-        "star_tracker_error_margin",
+        "error_margin",
         "star_tracker_delay_time",
         "star_tracker_centroid_x",
         "star_tracker_centroid_y",
@@ -50,11 +50,11 @@ class SetStarTrackerConfiguration(_base.Message):
         "p1_tangential_distortion_coefficient",
         "p2_tangential_distortion_coefficient",
         "star_tracking_window_width",
-        "star_tracking_margin",
-        "star_validation_margin",
+        "tracking_margin",
+        "validation_margin",
         "star_tracking_module_enable",
         "star_tracking_location_prediction_enable",
-        "star_tracking_search_width",
+        "search_width",
     )
 
     NODE = "cubeacp"
@@ -67,33 +67,33 @@ class SetStarTrackerConfiguration(_base.Message):
     TABLE = 188
     FIELDS = (
         _base.FieldInfo(
-            "star_tracker_mounting_transform_alpha_angle",
+            "mounting_alpha",
             "StarTracker Mounting Transform Alpha Angle",
             0,
             16,
             "int",
             unit="deg",
-            physical="star_tracker_mounting_transform_alpha_angle_deg",
+            physical="mounting_alpha_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "star_tracker_mounting_transform_beta_angle",
+            "mounting_beta",
             "StarTracker Mounting Transform Beta Angle",
             16,
             16,
             "int",
             unit="deg",
-            physical="star_tracker_mounting_transform_beta_angle_deg",
+            physical="mounting_beta_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "star_tracker_mounting_transform_gamma_angle",
+            "mounting_gamma",
             "StarTracker Mounting Transform Gamma Angle",
             32,
             16,
             "int",
             unit="deg",
-            physical="star_tracker_mounting_transform_gamma_angle_deg",
+            physical="mounting_gamma_deg",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
@@ -135,13 +135,13 @@ class SetStarTrackerConfiguration(_base.Message):
         _base.FieldInfo("maximum_star_pixel", "Maximum Star Pixel", 120, 8, "uint"),
         _base.FieldInfo("minimum_star_pixel", "Minimum Star Pixel", 128, 8, "uint"),
         _base.FieldInfo(
-            "star_tracker_error_margin",
+            "error_margin",
             "Star Tracker Error Margin",
             136,
             8,
             "uint",
             unit="%",
-            physical="star_tracker_error_margin_percent",
+            physical="error_margin_percent",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
@@ -216,21 +216,21 @@ class SetStarTrackerConfiguration(_base.Message):
             "uint",
         ),
         _base.FieldInfo(
-            "star_tracking_margin",
+            "tracking_margin",
             "Star Tracking Margin",
             392,
             8,
             "uint",
-            physical="star_tracking_margin_physical",
+            physical="tracking_margin_physical",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
-            "star_validation_margin",
+            "validation_margin",
             "Star Validation Margin",
             400,
             8,
             "uint",
-            physical="star_validation_margin_physical",
+            physical="validation_margin_physical",
             scale=(1, 0, 100),
         ),
         _base.FieldInfo(
@@ -248,29 +248,29 @@ class SetStarTrackerConfiguration(_base.Message):
             "bool",
         ),
         _base.FieldInfo(
-            "star_tracking_search_width",
+            "search_width",
             "Star Tracking Search Width",
             416,
             8,
             "uint",
-            physical="star_tracking_search_width_physical",
+            physical="search_width_physical",
             scale=(1, 0, 5),
         ),
     )
 
-    star_tracker_mounting_transform_alpha_angle: int
+    mounting_alpha: int
     """StarTracker Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
     Note ACP-157 (open): Mounting angles: order of rotation.
     """
-    star_tracker_mounting_transform_beta_angle: int
+    mounting_beta: int
     """StarTracker Mounting Transform Beta Angle: bits 16 to 31, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
     Note ACP-157 (open): Mounting angles: order of rotation.
     """
-    star_tracker_mounting_transform_gamma_angle: int
+    mounting_gamma: int
     """StarTracker Mounting Transform Gamma Angle: bits 32 to 47, raw -32768 to 32767;
     physical `raw*0.01`, -327.68 to 327.67 deg.
 
@@ -325,7 +325,7 @@ class SetStarTrackerConfiguration(_base.Message):
 
     Fewest pixels of a star.
     """
-    star_tracker_error_margin: int
+    error_margin: int
     """Star Tracker Error Margin: bits 136 to 143, raw 0 to 255; physical `raw*0.01`, 0
     to 2.55 %.
 
@@ -383,7 +383,7 @@ class SetStarTrackerConfiguration(_base.Message):
     Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star
     tracking.
     """
-    star_tracking_margin: int
+    tracking_margin: int
     """Star Tracking Margin: bits 392 to 399, raw 0 to 255; physical `raw/100.0`, 0 to
     2.55.
 
@@ -392,7 +392,7 @@ class SetStarTrackerConfiguration(_base.Message):
     Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star
     tracking.
     """
-    star_validation_margin: int
+    validation_margin: int
     """Star Validation Margin: bits 400 to 407, raw 0 to 255; physical `raw/100.0`, 0 to
     2.55.
 
@@ -406,7 +406,7 @@ class SetStarTrackerConfiguration(_base.Message):
     Note ACP-147 (certain): Star tracker fields: Star Tracker, StarTracker, Star
     tracking.
     """
-    star_tracking_search_width: int
+    search_width: int
     """Star Tracking Search Width: bits 416 to 423, raw 0 to 255; physical `raw/5.0`, 0
     to 51.
 
@@ -416,9 +416,9 @@ class SetStarTrackerConfiguration(_base.Message):
     def __init__(
         self,
         *,
-        star_tracker_mounting_transform_alpha_angle: int = 0,
-        star_tracker_mounting_transform_beta_angle: int = 0,
-        star_tracker_mounting_transform_gamma_angle: int = 0,
+        mounting_alpha: int = 0,
+        mounting_beta: int = 0,
+        mounting_gamma: int = 0,
         star_tracker_exposure_time: int = 0,
         star_tracker_analog_gain: int = 0,
         star_tracker_detection_threshold: int = 0,
@@ -427,7 +427,7 @@ class SetStarTrackerConfiguration(_base.Message):
         detection_timeout_duration: int = 0,
         maximum_star_pixel: int = 0,
         minimum_star_pixel: int = 0,
-        star_tracker_error_margin: int = 0,
+        error_margin: int = 0,
         star_tracker_delay_time: int = 0,
         star_tracker_centroid_x: float = 0.0,
         star_tracker_centroid_y: float = 0.0,
@@ -437,15 +437,15 @@ class SetStarTrackerConfiguration(_base.Message):
         p1_tangential_distortion_coefficient: float = 0.0,
         p2_tangential_distortion_coefficient: float = 0.0,
         star_tracking_window_width: int = 0,
-        star_tracking_margin: int = 0,
-        star_validation_margin: int = 0,
+        tracking_margin: int = 0,
+        validation_margin: int = 0,
         star_tracking_module_enable: bool = False,
         star_tracking_location_prediction_enable: bool = False,
-        star_tracking_search_width: int = 0,
+        search_width: int = 0,
     ) -> None:
-        self.star_tracker_mounting_transform_alpha_angle = star_tracker_mounting_transform_alpha_angle
-        self.star_tracker_mounting_transform_beta_angle = star_tracker_mounting_transform_beta_angle
-        self.star_tracker_mounting_transform_gamma_angle = star_tracker_mounting_transform_gamma_angle
+        self.mounting_alpha = mounting_alpha
+        self.mounting_beta = mounting_beta
+        self.mounting_gamma = mounting_gamma
         self.star_tracker_exposure_time = star_tracker_exposure_time
         self.star_tracker_analog_gain = star_tracker_analog_gain
         self.star_tracker_detection_threshold = star_tracker_detection_threshold
@@ -454,7 +454,7 @@ class SetStarTrackerConfiguration(_base.Message):
         self.detection_timeout_duration = detection_timeout_duration
         self.maximum_star_pixel = maximum_star_pixel
         self.minimum_star_pixel = minimum_star_pixel
-        self.star_tracker_error_margin = star_tracker_error_margin
+        self.error_margin = error_margin
         self.star_tracker_delay_time = star_tracker_delay_time
         self.star_tracker_centroid_x = star_tracker_centroid_x
         self.star_tracker_centroid_y = star_tracker_centroid_y
@@ -464,19 +464,19 @@ class SetStarTrackerConfiguration(_base.Message):
         self.p1_tangential_distortion_coefficient = p1_tangential_distortion_coefficient
         self.p2_tangential_distortion_coefficient = p2_tangential_distortion_coefficient
         self.star_tracking_window_width = star_tracking_window_width
-        self.star_tracking_margin = star_tracking_margin
-        self.star_validation_margin = star_validation_margin
+        self.tracking_margin = tracking_margin
+        self.validation_margin = validation_margin
         self.star_tracking_module_enable = star_tracking_module_enable
         self.star_tracking_location_prediction_enable = star_tracking_location_prediction_enable
-        self.star_tracking_search_width = star_tracking_search_width
+        self.search_width = search_width
 
     @classmethod
     def from_physical(
         cls,
         *,
-        star_tracker_mounting_transform_alpha_angle_deg: float = 0.0,
-        star_tracker_mounting_transform_beta_angle_deg: float = 0.0,
-        star_tracker_mounting_transform_gamma_angle_deg: float = 0.0,
+        mounting_alpha_deg: float = 0.0,
+        mounting_beta_deg: float = 0.0,
+        mounting_gamma_deg: float = 0.0,
         star_tracker_exposure_time: int = 0,
         star_tracker_analog_gain: int = 0,
         star_tracker_detection_threshold: int = 0,
@@ -485,7 +485,7 @@ class SetStarTrackerConfiguration(_base.Message):
         detection_timeout_duration: int = 0,
         maximum_star_pixel: int = 0,
         minimum_star_pixel: int = 0,
-        star_tracker_error_margin_percent: float = 0.0,
+        error_margin_percent: float = 0.0,
         star_tracker_delay_time: int = 0,
         star_tracker_centroid_x: float = 0.0,
         star_tracker_centroid_y: float = 0.0,
@@ -495,17 +495,17 @@ class SetStarTrackerConfiguration(_base.Message):
         p1_tangential_distortion_coefficient: float = 0.0,
         p2_tangential_distortion_coefficient: float = 0.0,
         star_tracking_window_width: int = 0,
-        star_tracking_margin_physical: float = 0.0,
-        star_validation_margin_physical: float = 0.0,
+        tracking_margin_physical: float = 0.0,
+        validation_margin_physical: float = 0.0,
         star_tracking_module_enable: bool = False,
         star_tracking_location_prediction_enable: bool = False,
-        star_tracking_search_width_physical: float = 0.0,
+        search_width_physical: float = 0.0,
     ) -> SetStarTrackerConfiguration:
         """From physical values, raw ones where there is no scale. Raises `RangeError`."""
         self = _new(cls)
-        self.star_tracker_mounting_transform_alpha_angle_deg = star_tracker_mounting_transform_alpha_angle_deg
-        self.star_tracker_mounting_transform_beta_angle_deg = star_tracker_mounting_transform_beta_angle_deg
-        self.star_tracker_mounting_transform_gamma_angle_deg = star_tracker_mounting_transform_gamma_angle_deg
+        self.mounting_alpha_deg = mounting_alpha_deg
+        self.mounting_beta_deg = mounting_beta_deg
+        self.mounting_gamma_deg = mounting_gamma_deg
         self.star_tracker_exposure_time = star_tracker_exposure_time
         self.star_tracker_analog_gain = star_tracker_analog_gain
         self.star_tracker_detection_threshold = star_tracker_detection_threshold
@@ -514,7 +514,7 @@ class SetStarTrackerConfiguration(_base.Message):
         self.detection_timeout_duration = detection_timeout_duration
         self.maximum_star_pixel = maximum_star_pixel
         self.minimum_star_pixel = minimum_star_pixel
-        self.star_tracker_error_margin_percent = star_tracker_error_margin_percent
+        self.error_margin_percent = error_margin_percent
         self.star_tracker_delay_time = star_tracker_delay_time
         self.star_tracker_centroid_x = star_tracker_centroid_x
         self.star_tracker_centroid_y = star_tracker_centroid_y
@@ -524,11 +524,11 @@ class SetStarTrackerConfiguration(_base.Message):
         self.p1_tangential_distortion_coefficient = p1_tangential_distortion_coefficient
         self.p2_tangential_distortion_coefficient = p2_tangential_distortion_coefficient
         self.star_tracking_window_width = star_tracking_window_width
-        self.star_tracking_margin_physical = star_tracking_margin_physical
-        self.star_validation_margin_physical = star_validation_margin_physical
+        self.tracking_margin_physical = tracking_margin_physical
+        self.validation_margin_physical = validation_margin_physical
         self.star_tracking_module_enable = star_tracking_module_enable
         self.star_tracking_location_prediction_enable = star_tracking_location_prediction_enable
-        self.star_tracking_search_width_physical = star_tracking_search_width_physical
+        self.search_width_physical = search_width_physical
         return self
 
     @classmethod
@@ -537,9 +537,9 @@ class SetStarTrackerConfiguration(_base.Message):
         self = _new(cls)
         try:
             (
-                self.star_tracker_mounting_transform_alpha_angle,
-                self.star_tracker_mounting_transform_beta_angle,
-                self.star_tracker_mounting_transform_gamma_angle,
+                self.mounting_alpha,
+                self.mounting_beta,
+                self.mounting_gamma,
                 self.star_tracker_exposure_time,
                 self.star_tracker_analog_gain,
                 self.star_tracker_detection_threshold,
@@ -548,7 +548,7 @@ class SetStarTrackerConfiguration(_base.Message):
                 self.detection_timeout_duration,
                 self.maximum_star_pixel,
                 self.minimum_star_pixel,
-                self.star_tracker_error_margin,
+                self.error_margin,
                 self.star_tracker_delay_time,
                 self.star_tracker_centroid_x,
                 self.star_tracker_centroid_y,
@@ -558,10 +558,10 @@ class SetStarTrackerConfiguration(_base.Message):
                 self.p1_tangential_distortion_coefficient,
                 self.p2_tangential_distortion_coefficient,
                 self.star_tracking_window_width,
-                self.star_tracking_margin,
-                self.star_validation_margin,
+                self.tracking_margin,
+                self.validation_margin,
                 v51,
-                self.star_tracking_search_width,
+                self.search_width,
             ) = _unpack(data)
         except struct.error:
             raise _codec.length_error(cls, data) from None
@@ -590,9 +590,9 @@ class SetStarTrackerConfiguration(_base.Message):
                 self.star_tracking_location_prediction_enable,
             ]
             frame = _pack(
-                self.star_tracker_mounting_transform_alpha_angle,
-                self.star_tracker_mounting_transform_beta_angle,
-                self.star_tracker_mounting_transform_gamma_angle,
+                self.mounting_alpha,
+                self.mounting_beta,
+                self.mounting_gamma,
                 self.star_tracker_exposure_time,
                 self.star_tracker_analog_gain,
                 self.star_tracker_detection_threshold,
@@ -601,7 +601,7 @@ class SetStarTrackerConfiguration(_base.Message):
                 self.detection_timeout_duration,
                 self.maximum_star_pixel,
                 self.minimum_star_pixel,
-                self.star_tracker_error_margin,
+                self.error_margin,
                 self.star_tracker_delay_time,
                 self.star_tracker_centroid_x,
                 self.star_tracker_centroid_y,
@@ -611,10 +611,10 @@ class SetStarTrackerConfiguration(_base.Message):
                 self.p1_tangential_distortion_coefficient,
                 self.p2_tangential_distortion_coefficient,
                 self.star_tracking_window_width,
-                self.star_tracking_margin,
-                self.star_validation_margin,
+                self.tracking_margin,
+                self.validation_margin,
                 v51,
-                self.star_tracking_search_width,
+                self.search_width,
             )
             total = (
                 self.star_tracker_centroid_x
@@ -630,106 +630,94 @@ class SetStarTrackerConfiguration(_base.Message):
             raise _codec.range_error(self) from None
 
     @property
-    def star_tracker_mounting_transform_alpha_angle_deg(self) -> float:
+    def mounting_alpha_deg(self) -> float:
         """StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67."""
-        return self.star_tracker_mounting_transform_alpha_angle / 100
+        return self.mounting_alpha / 100
 
-    @star_tracker_mounting_transform_alpha_angle_deg.setter
-    def star_tracker_mounting_transform_alpha_angle_deg(self, value: float) -> None:
-        self.star_tracker_mounting_transform_alpha_angle = _codec.raw_value(
+    @mounting_alpha_deg.setter
+    def mounting_alpha_deg(self, value: float) -> None:
+        self.mounting_alpha = _codec.raw_value(
             value,
-            "star_tracker_mounting_transform_alpha_angle",
+            "mounting_alpha",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def star_tracker_mounting_transform_beta_angle_deg(self) -> float:
+    def mounting_beta_deg(self) -> float:
         """StarTracker Mounting Transform Beta Angle in deg: -327.68 to 327.67."""
-        return self.star_tracker_mounting_transform_beta_angle / 100
+        return self.mounting_beta / 100
 
-    @star_tracker_mounting_transform_beta_angle_deg.setter
-    def star_tracker_mounting_transform_beta_angle_deg(self, value: float) -> None:
-        self.star_tracker_mounting_transform_beta_angle = _codec.raw_value(
+    @mounting_beta_deg.setter
+    def mounting_beta_deg(self, value: float) -> None:
+        self.mounting_beta = _codec.raw_value(
             value,
-            "star_tracker_mounting_transform_beta_angle",
+            "mounting_beta",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def star_tracker_mounting_transform_gamma_angle_deg(self) -> float:
+    def mounting_gamma_deg(self) -> float:
         """StarTracker Mounting Transform Gamma Angle in deg: -327.68 to 327.67."""
-        return self.star_tracker_mounting_transform_gamma_angle / 100
+        return self.mounting_gamma / 100
 
-    @star_tracker_mounting_transform_gamma_angle_deg.setter
-    def star_tracker_mounting_transform_gamma_angle_deg(self, value: float) -> None:
-        self.star_tracker_mounting_transform_gamma_angle = _codec.raw_value(
+    @mounting_gamma_deg.setter
+    def mounting_gamma_deg(self, value: float) -> None:
+        self.mounting_gamma = _codec.raw_value(
             value,
-            "star_tracker_mounting_transform_gamma_angle",
+            "mounting_gamma",
             (1, 0, 100),
             -32768,
             32767,
         )
 
     @property
-    def star_tracker_error_margin_percent(self) -> float:
+    def error_margin_percent(self) -> float:
         """Star Tracker Error Margin in %: 0 to 2.55."""
-        return self.star_tracker_error_margin / 100
+        return self.error_margin / 100
 
-    @star_tracker_error_margin_percent.setter
-    def star_tracker_error_margin_percent(self, value: float) -> None:
-        self.star_tracker_error_margin = _codec.raw_value(
-            value,
-            "star_tracker_error_margin",
-            (1, 0, 100),
-            0,
-            255,
-        )
+    @error_margin_percent.setter
+    def error_margin_percent(self, value: float) -> None:
+        self.error_margin = _codec.raw_value(value, "error_margin", (1, 0, 100), 0, 255)
 
     @property
-    def star_tracking_margin_physical(self) -> float:
+    def tracking_margin_physical(self) -> float:
         """Star Tracking Margin, as a physical value: 0 to 2.55."""
-        return self.star_tracking_margin / 100
+        return self.tracking_margin / 100
 
-    @star_tracking_margin_physical.setter
-    def star_tracking_margin_physical(self, value: float) -> None:
-        self.star_tracking_margin = _codec.raw_value(
+    @tracking_margin_physical.setter
+    def tracking_margin_physical(self, value: float) -> None:
+        self.tracking_margin = _codec.raw_value(
             value,
-            "star_tracking_margin",
+            "tracking_margin",
             (1, 0, 100),
             0,
             255,
         )
 
     @property
-    def star_validation_margin_physical(self) -> float:
+    def validation_margin_physical(self) -> float:
         """Star Validation Margin, as a physical value: 0 to 2.55."""
-        return self.star_validation_margin / 100
+        return self.validation_margin / 100
 
-    @star_validation_margin_physical.setter
-    def star_validation_margin_physical(self, value: float) -> None:
-        self.star_validation_margin = _codec.raw_value(
+    @validation_margin_physical.setter
+    def validation_margin_physical(self, value: float) -> None:
+        self.validation_margin = _codec.raw_value(
             value,
-            "star_validation_margin",
+            "validation_margin",
             (1, 0, 100),
             0,
             255,
         )
 
     @property
-    def star_tracking_search_width_physical(self) -> float:
+    def search_width_physical(self) -> float:
         """Star Tracking Search Width, as a physical value: 0 to 51."""
-        return self.star_tracking_search_width / 5
+        return self.search_width / 5
 
-    @star_tracking_search_width_physical.setter
-    def star_tracking_search_width_physical(self, value: float) -> None:
-        self.star_tracking_search_width = _codec.raw_value(
-            value,
-            "star_tracking_search_width",
-            (1, 0, 5),
-            0,
-            255,
-        )
+    @search_width_physical.setter
+    def search_width_physical(self, value: float) -> None:
+        self.search_width = _codec.raw_value(value, "search_width", (1, 0, 5), 0, 255)

@@ -103,7 +103,7 @@ def file(link: Link, words: Words) -> str:
         blocks = procedure.blocks
         said += [row("block", offset=at, bytes=data) for at, data in blocks]
     elif isinstance(procedure, FileList):
-        known = procedure._step("list.information").fields
+        known = procedure._form.information.fields
         for entry in procedure.entries:
             facts = entry._asdict().items()
             said.append(row("entry", **{k: v for k, v in facts if k in known}))
