@@ -146,7 +146,7 @@ def _read(node: Node, field: Field, frame: int) -> int | bytes:
     value = 0
     for here, index, count in _runs(field.at, field.bits, *field.orders(node)):
         value |= (frame >> here & (1 << count) - 1) << index
-    if field.type == "int" and value >> (field.bits - 1):
+    if field.signed and value >> (field.bits - 1):
         value -= 1 << field.bits
     return value
 

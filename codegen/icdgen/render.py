@@ -15,6 +15,7 @@ from icdgen.errors import UserError
 
 if TYPE_CHECKING:
     from jinja2 import BaseLoader, Environment
+    from jinja2.runtime import Context
 
 
 class Named(Protocol):
@@ -48,6 +49,7 @@ class Renderer:
             keep_trailing_newline=True,
             auto_reload=False,
         )
+        self._environment.context_class = _context_class()
 
     @classmethod
     def of(cls, backend: Named, override: Path | None = None) -> Renderer:
@@ -105,6 +107,21 @@ def _where(error: Exception, template: str) -> str:
             found = f"{file}:{trace.tb_lineno}"
         trace = trace.tb_next
     return found
+
+
+def _context_class() -> type[Context]:
+    from jinja2.runtime import Context, Macro
+
+    class PlainContext(Context):
+        """Calls functions as they are: none of those that templates are given asks for the context, and they are called often."""
+
+        def call(
+            self, function: Callable[..., object], /, *args: object, _loop_vars: object = None, _block_vars: object = None,
+            **named: object,
+        ) -> object:  # fmt: skip
+            return function(self.eval_ctx, *args, **named) if type(function) is Macro else function(*args, **named)
+
+    return PlainContext
 
 
 def _loader(own: list[Path], shipped: Path, looked_at: dict[Path, str]) -> BaseLoader:

@@ -40,7 +40,7 @@ const icdgenCodec = (() => {
     for (const [byte, shift, bits, at] of field.pieces) {
       value |= BigInt((frame[byte] >> shift) & ((1 << bits) - 1)) << BigInt(at);
     }
-    return field.type === "int" ? BigInt.asIntN(field.bits, value) : value;
+    return field.signed ? BigInt.asIntN(field.bits, value) : value;
   }
 
   function write(field, frame, raw) {
@@ -56,8 +56,8 @@ const icdgenCodec = (() => {
 
   /** Smallest and largest raw value of a field that is not a byte array. */
   function range(field) {
-    const top = 1n << BigInt(field.bits - (field.type === "int" ? 1 : 0));
-    return [field.type === "int" ? -top : 0n, top - 1n];
+    const top = 1n << BigInt(field.bits - (field.signed ? 1 : 0));
+    return [field.signed ? -top : 0n, top - 1n];
   }
 
   /** Throws a CodecError unless the field can hold the raw value. */

@@ -88,14 +88,15 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
 
   function bare(index, talking, data) {
     if (!data.length) throw new Error("there are no bytes");
+    const given = `${data.length} byte${data.length === 1 ? "" : "s"}`;
     const withId = byId(index, talking, data);
     const plain = byLength(index, talking, data);
     if (withId.length) {
-      const one = decided(withId, `${data.length} bytes that begin with the id ${withId[0].id}`);
+      const one = decided(withId, `${given} beginning with the id ${withId[0].id}`);
       const others = plain.filter((other) => other.key !== one.key);
       return noted(one, `id ${one.id} removed`, ...(others.length ? [`without an id in front it could be ${named(others)}`] : []));
     }
-    if (plain.length) return noted({ ...decided(plain, `${data.length} bytes without an id`), id: null }, "found by its length alone");
+    if (plain.length) return noted({ ...decided(plain, `${given} without an id`), id: null }, "found by its length alone");
     throw whyNone(index, talking, data);
   }
 
@@ -240,7 +241,7 @@ const icdgenRecognize = ((frames, pasted, stream, packets) => {
   const noted = (one, ...remarks) => ({ ...one, remarks: [...one.remarks, ...remarks] });
   /** The readings by name, the first few of them; one that has two directions once. */
   function named(found) {
-    const every = [...new Set(found.map((one) => one.message))];
+    const every = [...new Set(found.map((one) => (one.what === "acknowledge" ? `an acknowledge of ${one.message}` : one.message)))];
     return every.slice(0, 3).join(", or ") + (every.length > 3 ? `, or one of ${every.length - 3} others` : "");
   }
 

@@ -39,7 +39,42 @@ MIXED = """\
 icdgen: 1
 node: {name: mixed, title: Mixed order, byte_order: little, bit_order: msb0}
 include: [shared.yaml]
+enums:
+  - name: Signed Narrow
+    members:
+      - {value: -1, name: Backwards}
+      - {value: 0, name: Nowhere}
+      - {value: 3, name: Forwards}
+  - name: Signed Wide
+    members:
+      - {value: -9223372036854775808, name: Least}
+      - {value: 9223372036854775807, name: Most}
+  - name: Signed Word
+    members:
+      - {value: -40000, name: Below}
+      - {value: -7, name: Seven Below}
+  - name: Signed Ends
+    members:
+      - {value: -128, name: First}
+      - {value: 127, name: Last}
 messages:
+  - name: Signs
+    id: 9
+    kind: telemetry
+    length: 40
+    fields:
+      - {at: 0, bits: 3, name: Three, type: enum, enum: Signed Narrow}
+      - {at: 3, bits: 8, name: Crossing, type: enum, enum: Signed Narrow, byte_order: big}
+      - {at: 16, bits: 8, name: Byte, type: enum, enum: Signed Ends, const: -128}
+      - {at: 24, bits: 8, name: Narrow Byte, type: enum, enum: Signed Narrow}
+      - {at: 32, bits: 64, name: Whole, type: enum, enum: Signed Wide}
+      - {at: 96, bits: 64, name: Turned, type: enum, enum: Signed Wide, byte_order: big}
+      - {at: 163, bits: 17, name: Odd, type: enum, enum: Signed Word, special: [{value: -65536, meaning: none}]}
+      - {at: 192, bits: 32, name: Word, type: enum, enum: Signed Word}
+      - {at: 224, bits: 24, name: Three Bytes, type: enum, enum: Signed Word, byte_order: big}
+      - {at: 248, bits: 8, name: Last Byte, type: enum, enum: Signed Ends}
+      - {at: 256, bits: 16, name: Half, type: enum, enum: Signed Narrow}
+      - {at: 280, bits: 33, name: Lengthy, type: enum, enum: Signed Word}
   - name: Mixed
     id: 7
     kind: telecommand

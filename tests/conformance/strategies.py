@@ -118,23 +118,27 @@ def _uses_all(names: dict, enums: list[dict], id: int | list[int]) -> dict:
     """A message with a field of each enumeration, so that none is unused."""
     fields, at = [], 3
     for number, enum in enumerate(enums):
-        bits = max(m["value"] for m in enum["members"]).bit_length() or 1
+        bits = _needed(enum)
         fields.append({"at": at, "bits": bits, "name": f"user {number}", "type": "enum", "enum": enum["name"]})
         at += bits
     return {**names, "kind": "telemetry", "id": id, "length": (at + 7) // 8, "fields": fields}
 
 
+def _needed(enum: dict) -> int:
+    """Bits of the narrowest field that holds every member; a negative one makes all of them signed."""
+    values = [member["value"] for member in enum["members"]]
+    signed = min(values) < 0
+    return max((~value if value < 0 else value).bit_length() + signed for value in values) or 1
+
+
 @st.composite
 def _enum(draw, names: Names, name: str) -> dict:
     bits = draw(st.sampled_from((1, 2, 3, 4, 7, 8, 9, 16, 31, 32, 33, 63, 64)))
-    values = draw(
-        st.lists(
-            st.integers(0, (1 << bits) - 1) | st.integers(0, min(5, (1 << bits) - 1)),
-            min_size=1,
-            max_size=6,
-            unique=True,
-        )
+    low, high = draw(
+        st.sampled_from(((0, (1 << bits) - 1), (0, (1 << bits) - 1), (-(1 << bits - 1), (1 << bits - 1) - 1)))
     )
+    near = st.integers(max(low, -5), min(5, high))
+    values = draw(st.lists(st.integers(low, high) | near, min_size=1, max_size=6, unique=True))
     return {"name": name, "members": [{"value": value, **names.one("member")} for value in values]}
 
 
@@ -207,8 +211,7 @@ def _field(draw, enums: list[dict]) -> dict:
         return {"bits": 8 * draw(st.integers(1, 12)), "type": kind}
     if kind == "enum":
         enum = draw(st.sampled_from(enums))
-        needed = max(m["value"] for m in enum["members"]).bit_length() or 1
-        return {"bits": draw(st.integers(needed, 64)), "type": kind, "enum": enum["name"]}
+        return {"bits": draw(st.integers(_needed(enum), 64)), "type": kind, "enum": enum["name"]}
     bits = draw(st.integers(1, 64) | st.sampled_from((1, 7, 8, 9, 15, 16, 17, 24, 31, 32, 33, 53, 54, 63, 64)))
     field: dict = {"bits": bits, "type": kind}
     if draw(st.booleans()):

@@ -62,7 +62,7 @@ def compare(node: str, messages: list[Definition], testee: Answering, frames: in
                 value = raw[name]
                 if isinstance(value, int) and value.bit_length() > part["bits"]:
                     into.impossible += 1
-                elif not _same(said["raw"][name], _plain(value, part), part["bits"]):
+                elif not _same(said["raw"][name], value, part):
                     into.differences.append(f"{about}: {name} is {said['raw'][name]!r}, the library says {value!r}")
         for name, bits in said["physical"].items():
             if name in physical:
@@ -97,21 +97,19 @@ def _double(bits: str) -> float:
     return struct.unpack(">d", bytes.fromhex(bits))[0]
 
 
-def _same(ours: object, theirs: object, bits: int) -> bool:
-    """Equal, or both not a number: Python does not keep the bits of a signalling one."""
-    if isinstance(theirs, list):
-        return isinstance(ours, list) and all(_same(*pair, bits) for pair in zip(ours, theirs, strict=True))
+def _same(ours: object, theirs: object, part: dict) -> bool:
+    """Whether a testee's raw value is the library's. Of text a library keeps what stands before a NUL."""
+    if part["type"] in ("bytes", "text"):
+        wide = isinstance(theirs, int)  # some read bytes as one number
+        data = theirs.to_bytes(part["bits"] // 8, "little") if wide else bytes(theirs)  # type: ignore
+        mine = bytes.fromhex(str(ours))
+        return mine == data or (part["type"] == "text" and mine.startswith(data + b"\0"))
+    if isinstance(theirs, (list, tuple)):
+        return isinstance(ours, list) and all(_same(*pair, part) for pair in zip(ours, theirs, strict=True))
     if isinstance(theirs, float) and isinstance(ours, str):
-        code = {16: "e", 32: "f", 64: "d"}[bits]
+        code = {16: "e", 32: "f", 64: "d"}[part["bits"]]
         value = struct.unpack(f">{code}", bytes.fromhex(ours))[0]
-        return struct.pack(">d", value) == struct.pack(">d", theirs) or (value != value and theirs != theirs)
+        return struct.pack(">d", value) == struct.pack(">d", theirs) or (
+            value != value and theirs != theirs
+        )  # both NaN
     return ours == theirs
-
-
-def _plain(value: object, part: dict) -> object:
-    """A library's value as a testee says it: some read bytes as a list, or as one wide number."""
-    if part["type"] == "bytes":
-        if isinstance(value, int):
-            return value.to_bytes(part["bits"] // 8, "little").hex()
-        return bytes(value).hex()  # type: ignore[call-overload]
-    return list(value) if isinstance(value, tuple) else value

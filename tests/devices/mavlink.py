@@ -46,4 +46,7 @@ def _read(dialect: Any, message: Any, data: bytes) -> dict[str, object]:
     crc = dialect.x25crc(head + data)
     crc.accumulate(bytes([message.crc_extra]))
     found = dialect.MAVLink(None).decode(bytearray(b"\xfd" + head + data + struct.pack("<H", crc.crc)))
-    return {name: getattr(found, name) for name in message.ordered_fieldnames}
+    names = message.ordered_fieldnames
+    return {
+        name: getattr(found, f"_{name}_raw", getattr(found, name)) for name in names
+    }  # of text its bytes, up to a NUL

@@ -105,6 +105,21 @@ def test_a_dry_run_writes_nothing(folder):
     assert not (folder / "icd").exists()
 
 
+def test_a_dry_run_says_what_an_update_would_change_in_an_icd_that_is_there(folder):
+    icdgen("import", "pump.txt", cwd=folder)
+    path = folder / "icd" / "pump.yaml"
+    assert "pump.yaml: unchanged" in icdgen("import", "pump.txt", "--dry-run", cwd=folder).stdout
+    changed = path.read_text(encoding="utf-8").replace("bits: 16", "bits: 15", 1)
+    path.write_text(changed, encoding="utf-8")
+    result = icdgen("import", "pump.txt", "--dry-run", cwd=folder)
+    assert (result.returncode, result.stderr) == (0, "")
+    assert "pump.yaml: would be updated with --update; " in result.stdout
+    assert "bits `15` -> `16`" in result.stdout
+    result = icdgen("import", "pump.txt", "--dry-run", "--update", cwd=folder)
+    assert "pump.yaml: would be updated; " in result.stdout
+    assert path.read_text(encoding="utf-8") == changed
+
+
 def test_findings_as_json(folder):
     result = icdgen("import", "pump.txt", "--format", "json", "--dry-run", cwd=folder)
     data = json.loads(result.stdout)

@@ -139,7 +139,14 @@ def test_bits_that_a_cell_names_are_held_with_their_field(tmp_path):
         ("Scale", "1e-7", "raw*1e-7", None),
         ("Scale", "2^-20", "raw/1048576", None),
         ("Scale", "1/256", "raw/256", None),
-        ("Scale", "0.25 °C/LSB", "raw*0.25", "°C"),
+        ("Scale", "0.25 °C/LSB", "raw*0.25", "C"),
+        ("Unit", "°C", None, "C"),
+        ("Unit", "\u2103", None, "C"),
+        ("Unit", "degC", None, "C"),
+        ("Unit", "10 \u2126", "raw*10", "ohm"),
+        ("Unit", "\u03a9", None, "ohm"),
+        ("Unit", "\u00b5A", None, "uA"),
+        ("Unit", "\u03bcs", None, "us"),
         ("Scale", "LSB = 0.5 dps", "raw*0.5", "dps"),
     ],
 )
@@ -148,6 +155,36 @@ def test_a_factor_is_a_factor_wherever_it_stands(tmp_path, heading, cell, formul
     _, tree = read(tmp_path, f"5 Telemetry\n\nState (0x21)\n\n{table}")
     field = tree["messages"][0]["fields"][0]
     assert (field.get("formula"), field.get("unit")) == (formula, unit)
+
+
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        ("0\tMode\n1-2\tSpeed\n3\tRange", [(0, 8, "Mode"), (8, 16, "Speed"), (24, 8, "Range")]),
+        ("0\tMode\n1\tSpeed\n3\tRange", [(0, 8, "Mode"), (8, 16, "Speed"), (24, 8, "Range")]),
+    ],
+)
+def test_bytes_and_what_they_mean_are_fields(tmp_path, rows, expected):
+    table = f"Byte\tMeaning\n{rows}\n"
+    result, tree = read(tmp_path, f"5 Telemetry\n\nState (0x21)\n\nLength: 4 bytes\n\n{table}")
+    assert [(f["at"], f["bits"], f["name"]) for f in tree["messages"][0]["fields"]] == expected
+    assert found(result, "IMP026")
+    assert bool(found(result, "IMP038")) == ("-" not in rows)
+
+
+def test_the_last_byte_without_a_length_and_what_stands_around_a_lost_one_are_not_guessed(tmp_path):
+    text = "5 Telemetry\n\nState (0x21)\n\nByte\tMeaning\n0\tMode\n1\tSpeed\n3\tRange\n"
+    result, tree = read(tmp_path, text)
+    assert [f["name"] for f in tree["messages"][0]["fields"]] == ["Mode", "Speed"]
+    assert len(found(result, "IMP023")) == 1
+    result, tree = read(tmp_path, text.replace("1\tSpeed", "?\tSpeed"))
+    assert any("Mode" in message and "3 bytes up to the next one" in message for message in found(result, "IMP038"))
+
+
+def test_a_unit_that_is_not_built_in_is_declared_with_its_sign_in_letters(tmp_path):
+    table = "Offset (bits)\tLength (bits)\tName\tType\tUnit\n0\t16\tA\tINT\tk\u03a9\n"
+    _, tree = read(tmp_path, f"5 Telemetry\n\nState (0x21)\n\n{table}")
+    assert tree["units"] == [{"symbol": "k\u03a9", "identifier": "kohm", "quantity": "not stated"}]
 
 
 @pytest.mark.parametrize("cell", ["10^-3 T", "0.1 to 0.5", "see 3.1", "sqrt(raw)"])

@@ -136,6 +136,7 @@ protocol:
 loggable: [{bit: 1, id: 200}]
 enums:
   - {name: E, members: [{value: 0, name: A}, {value: 700, name: B}]}
+  - {name: Way, members: [{value: -1, name: Down}, {value: 1, name: Up}]}
 messages:
   - name: F
     id: 200
@@ -144,13 +145,13 @@ messages:
     fields:
       - {at: 0, bits: 3, name: a, type: uint}
       - {at: 3, bits: 11, name: b, type: int, formula: raw*0.1+7}
-      - {at: 14, bits: 2, name: c, type: int}
+      - {at: 14, bits: 2, name: c, type: enum, enum: Way}
       - {at: 16, bits: 32, name: d, type: float}
       - {at: 48, bits: 64, name: e, type: uint, formula: raw*0.001}
       - {at: 112, bits: 64, name: f, type: float}
       - {at: 176, bits: 16, name: g, type: enum, enum: E}
       - {at: 192, bits: 24, name: h, type: bytes}
-      - {at: 216, bits: 17, name: i, type: uint}
+      - {at: 216, bits: 17, name: i, type: enum, enum: Way}
       - {at: 233, bits: 23, name: j, type: int, unit: deg, formula: raw/7.0}
       - {at: 256, bits: 32, name: k, type: text}
 """

@@ -46,7 +46,8 @@ def test_columns_have_the_smallest_native_type(package):
                 assert columns[info.attribute].shape == (3, info.bits // 8)
                 continue
             size = 1 if info.type == "bool" else next(size for size in (8, 16, 32, 64) if size >= info.bits) // 8
-            assert kind == numpy.dtype(f"{WIDTHS[info.type]}{'' if info.type == 'bool' else size}"), info
+            letter = "i" if info.signed else WIDTHS[info.type]
+            assert kind == numpy.dtype(f"{letter}{'' if info.type == 'bool' else size}"), info
 
 
 @pytest.fixture(scope="module")

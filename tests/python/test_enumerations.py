@@ -36,6 +36,18 @@ def test_unknown_values_are_kept(mode, value):
     assert json.dumps({"mode": unknown}) == f'{{"mode": {value}}}'
 
 
+@pytest.mark.parametrize(
+    ("value", "name"), [(-1, "UNKNOWN_MINUS_1"), (-(1 << 63), f"UNKNOWN_MINUS_{1 << 63}"), (2, "UNKNOWN_2")]
+)
+def test_unknown_values_of_a_signed_enumeration_are_kept(odd, value, name):
+    signed = odd.module("odd").Signed
+    assert (signed(value), signed(value).name, signed(value).is_known) == (value, name, False)
+    assert pickle.loads(pickle.dumps(signed(value))) == value
+    for beyond in (1 << 63, -(1 << 63) - 1):
+        with pytest.raises(ValueError):
+            signed(beyond)
+
+
 def test_unknown_bytes_are_made_once(mode):
     assert mode(200) is mode(200)
 

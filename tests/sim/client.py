@@ -8,7 +8,7 @@ from icdgen import codec
 from icdgen.icd.model import CONFIGURATION, Message
 from icdgen.link.ports import open_port
 from icdgen.protocol import crc, programs, transfer
-from icdgen.sim.values import fresh
+from icdgen.sim.values import allowed_values
 from tests.sim.device import FAST, ICD, download, hasty
 from tests.sim.reference import Session
 
@@ -50,7 +50,7 @@ def every_frame(client: Session) -> None:
 def every_setting(client: Session) -> None:
     for message in client.known.telecommands.values():
         if message.kind == CONFIGURATION:
-            raw = fresh(message) | {f.name: 1 for f in message.fields if f.type == "uint" and f.const is None}
+            raw = allowed_values(message) | {f.name: 1 for f in message.fields if f.type == "uint" and f.const is None}
             data = codec.encode(ICD.node(message.node), message, raw)
             outcome = send(client, message, data)
             if outcome["event"] != "done" or get(client, message) != data:
@@ -92,7 +92,7 @@ def done(client: Session, name: str, procedure):
 def every_telecommand(client: Session) -> None:
     others = [m for m in client.known.telecommands.values() if m.kind != CONFIGURATION]
     for message in sorted(others, key=lambda m: m.expects_reset):
-        data = codec.encode(ICD.node(message.node), message, fresh(message))
+        data = codec.encode(ICD.node(message.node), message, allowed_values(message))
         if message.expects_reset:
             reset(client, message, data)
         elif message.acknowledge:

@@ -12,7 +12,7 @@ import pytest
 from icdgen import codec
 from icdgen.icd.model import CONFIGURATION
 from icdgen.protocol.client import Request
-from icdgen.sim.values import fresh
+from icdgen.sim.values import allowed_values
 from tests.sim.device import FAST, ICD, session, simulator
 
 WAYS = [("--tcp", "0"), ("--udp", "0"), ("--pty",)]
@@ -41,7 +41,7 @@ def test_every_telecommand_is_taken_and_every_configuration_reads_back_what_was_
         for message in client.known.telecommands.values():
             if message.expects_reset:
                 continue
-            raw = fresh(message)
+            raw = allowed_values(message)
             if message.kind == CONFIGURATION:
                 data = bytearray(byte % 251 + 1 for byte in range(message.length))
                 raw = codec.decode(ICD.node(message.node), message, bytes(data))
@@ -141,7 +141,7 @@ def test_a_reset_starts_the_boot_program_and_its_telecommand_the_application():
     with session("--boot", "60000") as client:
         reset = next(m for m in client.known.telecommands.values() if m.expects_reset)
         client.telecommand(client.known.telecommands[17], bytes(6))
-        data = codec.encode(ICD.node(reset.node), reset, fresh(reset))
+        data = codec.encode(ICD.node(reset.node), reset, allowed_values(reset))
         assert client.telecommand(reset, data)["event"] == "done"
         assert client.identify()[0]["node_type"] == ICD.node("bootloader").node_type
         start = ICD.protocol_of(ICD.node("bootloader"))["program_start"]["message"]
@@ -193,7 +193,10 @@ def test_unsolicited_logs_come_as_they_are_configured():
         role = ICD.protocol_of(client.node)["unsolicited_log"]["configured_by"]
         message = next(m for m in client.known.telecommands.values() if m.name == role["message"])
         bit = min(client.known.mask.bits)
-        raw = fresh(message) | {role["fields"]["mask"]: bytes([1 << bit]) + bytes(9), role["fields"]["period"]: 1}
+        raw = allowed_values(message) | {
+            role["fields"]["mask"]: bytes([1 << bit]) + bytes(9),
+            role["fields"]["period"]: 1,
+        }
         client.telecommand(message, codec.encode(client.node, message, raw))
         events += client.listen(client.now + 3500)
         assert {e["event"] for e in events} == {"log"} and len(events) >= 2

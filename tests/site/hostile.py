@@ -46,7 +46,7 @@ ICD = {
                 {"at": 88, "bits": 64, "name": ENDLESS, "identifier": "endless", "type": "float"},
                 {"at": 152, "bits": 32, "name": "__proto__", "type": "float"},
                 {"at": 184, "bits": 16, "name": "constructor", "type": "bytes"},
-                {"at": 200, "bits": 64, "name": ENDLESS + "text", "identifier": "label", "type": "text"},
+                {"at": 200, "bits": 64, "name": ENDLESS[:-4] + "text", "identifier": "label", "type": "text"},
             ],
         },
         {"name": "aux", "identifier": "aux message", "id": 7, "kind": "telecommand", "length": 0, "summary": MARKUP},

@@ -240,8 +240,8 @@ def test_hostile_texts_are_shown_and_do_nothing(browser, strange):
     with opened(browser, top, "hostile/index_.html") as page:
         text = page.inner_text("main")
         assert "<script>document.title" in text and "{{ 7*7 }}" in text and "&lt;" in text
-        page.fill("#frame", "ff" * 25)
+        page.fill("#frame", "ff" * 33)
         assert page.input_value("#raw-1") == "18446744073709551615"
         assert page.input_value("#raw-5") == "0xFFFFFFFF" and page.input_value("#raw-6") == "FF FF"
         page.fill("#search", "endless")
-        assert len(results(page)) == 3
+        assert len(results(page)) >= 3

@@ -85,7 +85,7 @@ def import_(
         with _progress() as progress:
             result, trees = run.run(manual, vocabulary, progress, jobs, descriptions, pages)
         if not explore:
-            run.aim(result, trees, out, update)
+            run.aim(result, trees, out, update, dry_run)
     except Findings as error:
         _refuse(error, manual, form)
         sys.exit(1)
@@ -123,8 +123,7 @@ def _say(result: Result, dry_run: bool) -> None:
         say(console.report(result))
     if not result.targets:
         return
-    lines = console.files(result)
-    say("\n".join(line.replace(": written;", ": would be written;") if dry_run else line for line in lines))
+    say("\n".join(console.files(result, dry_run)))
     if not dry_run:
         _next_step(result)
 

@@ -12,29 +12,35 @@ from icdgen.describe.comments import Comment, field_comment, message_comment
 from icdgen.describe.constants import Constant, constants
 from icdgen.describe.enums import EnumDescription, enum_widths
 from icdgen.describe.named import Named
-from icdgen.describe.storage import Storage, holding
+from icdgen.describe.storage import Storage, holding, storage_of
 from icdgen.icd.identifiers import Identifier
 from icdgen.icd.model import Enum, Field, Icd, Message, Node
 
 
 class FieldDescription(Named[Field]):
-    """A field of ``message``."""
+    """A field of ``message``.
+
+    Made by the ten thousand, and each asked for its names at once: what these need is worked out at the beginning.
+    """
+
+    storage: Storage
+    """The integer that holds the raw value (the bits of a float); of an enumeration, that of its type. None of bytes."""
+    steps: steps.Steps | None
+    """How the physical value is computed; None where that is the raw value."""
+    physical_name: str
+    """``estimated_roll_angle_deg``"""
 
     def __init__(self, field: Field, message: MessageDescription, enum: EnumDescription | None) -> None:
         super().__init__(field, message.node.vocabulary, f"field `{field.name}` of `{message.model.name}`")
         self.message, self.enum = message, enum
-
-    @cached_property
-    def storage(self) -> Storage:
-        """The integer that holds the raw value (the bits of a float); of an enumeration, that of its type. None of bytes."""
-        if self.enum is not None:
-            return self.enum.storage
-        return Storage(holding(self.model.bits), self.model.signed)
+        self.storage = enum.storage if enum is not None else storage_of(field.bits, field.signed)
+        self.steps = steps.steps(field)
+        self.physical_name = f"{self.name}_{self.unit_name}"
 
     @property
     def is_narrow(self) -> bool:
         """Whether `storage` holds raw values that the field can't."""
-        return self.model.type in ("uint", "int", "enum") and self.model.bits != self.storage.bits
+        return self.model.bits != self.storage.bits and self.model.type in ("uint", "int", "enum")
 
     @property
     def fresh(self) -> int:
@@ -50,11 +56,6 @@ class FieldDescription(Named[Field]):
     def pieces(self) -> tuple[layout.Piece, ...]:
         """The runs of bits of the frame that make up a number."""
         return layout.pieces(self.model, self.message.node)
-
-    @cached_property
-    def steps(self) -> steps.Steps | None:
-        """How the physical value is computed; None where that is the raw value."""
-        return steps.steps(self.model)
 
     @property
     def is_text(self) -> bool:
@@ -73,23 +74,20 @@ class FieldDescription(Named[Field]):
             return "text"
         return self.model.unit.identifier if self.model.unit else "physical"
 
-    @property
-    def physical_name(self) -> str:
-        """``estimated_roll_angle_deg``"""
-        return f"{self.name}_{self.unit_name}"
-
     @cached_property
     def bounds(self) -> tuple[Bound, ...]:
         """The limits, one by one."""
         return bounds(self.model.limits)
 
-    @cached_property
+    @property
     def constants(self) -> tuple[Constant, ...]:
         """The only valid value, values with a meaning, limits: all by name."""
-        field, vocabulary = self.model, self.message.node.vocabulary
-        if field.const is None and not field.special and field.limits is None:
-            return ()
-        return tuple(constants(field, self.name, self.physical_name, vocabulary))
+        field = self.model
+        return () if field.const is None and not field.special and field.limits is None else self._constants
+
+    @cached_property
+    def _constants(self) -> tuple[Constant, ...]:
+        return tuple(constants(self.model, self.name, self.physical_name, self.message.node.vocabulary))
 
     @cached_property
     def comment(self) -> Comment:

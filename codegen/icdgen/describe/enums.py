@@ -6,7 +6,7 @@ from functools import cached_property
 
 from icdgen.describe.comments import Comment, enum_comment, member_comment
 from icdgen.describe.named import Named
-from icdgen.describe.storage import Storage, holding
+from icdgen.describe.storage import Storage, holding, needed
 from icdgen.icd.model import Enum, Icd, Member, Node
 
 
@@ -15,7 +15,7 @@ def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
     found: dict[tuple[str, str], int] = {}
     for node in icd.nodes:
         for enum in node.enums:
-            bits = max((member.value.bit_length() for member in enum.members), default=1)
+            bits = max((needed(member.value, enum.signed) for member in enum.members), default=1)
             found[enum.node, enum.name] = max(found.get((enum.node, enum.name), 1), bits)
         for message in node.messages:
             for field in message.fields:
@@ -30,7 +30,7 @@ class EnumDescription(Named[Enum]):
 
     def __init__(self, enum: Enum, node: Node, bits: int) -> None:
         super().__init__(enum, node.vocabulary, f"enumeration `{enum.name}`")
-        self.node, self.storage = node, Storage(holding(bits))
+        self.node, self.storage = node, Storage(holding(bits), enum.signed)
 
     @cached_property
     def members(self) -> tuple[MemberDescription, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -37,12 +38,7 @@ class Acceptance(NamedTuple):
         )
 
 
-class Sorted(NamedTuple):
-    """The changes that nobody accepted, those that somebody did, and the entries that are about nothing."""
-
-    open: list[Change]
-    accepted: list[tuple[Change, Acceptance]]
-    stale: list[Acceptance]
+Accepted = tuple[Change, Acceptance]
 
 
 def find(start: Path) -> Path | None:
@@ -79,19 +75,21 @@ def _unknown(entry: Acceptance) -> Finding:
     return Finding("ICD010", f"there is no rule {quote(entry.code)}", entry.place, help)
 
 
-def sort(changes: list[Change], entries: list[Acceptance]) -> Sorted:
-    """Each change goes to the first entry that covers it."""
-    result = Sorted([], [], [])
+def sort(
+    changes: Iterable[Change], entries: Sequence[Acceptance]
+) -> tuple[list[Change], list[Accepted], list[Acceptance]]:
+    """The changes that nobody accepted, the others with the first entry that covers each, and the entries that cover nothing."""
+    open_: list[Change] = []
+    accepted: list[Accepted] = []
     used: set[int] = set()
     for change in changes:
-        found = [(number, entry) for number, entry in enumerate(entries) if entry.covers(change)]
-        used.update(number for number, _ in found)
-        if found:
-            result.accepted.append((change, found[0][1]))
+        covering = [entry for entry in entries if entry.covers(change)]
+        used.update(map(id, covering))
+        if covering:
+            accepted.append((change, covering[0]))
         else:
-            result.open.append(change)
-    result.stale.extend(entry for number, entry in enumerate(entries) if number not in used)
-    return result
+            open_.append(change)
+    return open_, accepted, [entry for entry in entries if id(entry) not in used]
 
 
 def about_stale(entry: Acceptance) -> Finding:

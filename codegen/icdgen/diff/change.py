@@ -49,13 +49,28 @@ class Change:
         return self.new or self.old
 
     @property
+    def kind(self) -> str:
+        """In a word: ``addition``, or how bad it is."""
+        return "addition" if self.addition else self.severity
+
+    @property
+    def places(self) -> list[Place]:
+        """Where it was and where it is."""
+        return [place for place in (self.old, self.new) if place is not None]
+
+    @property
     def certainty(self) -> str:
-        """How sure the match is, in a word; empty where there is nothing to doubt."""
-        return certainty(self.sure)
+        """How sure it is that old and new are the same thing, in a word; empty for a match by name."""
+        if self.sure >= 1:
+            return ""
+        return "certain" if self.sure >= CERTAIN else "likely" if self.sure >= LIKELY else "uncertain"
 
-
-def certainty(sure: float) -> str:
-    """``certain``, ``likely`` or ``uncertain``; empty for a match by name."""
-    if sure >= 1:
-        return ""
-    return "certain" if sure >= CERTAIN else "likely" if sure >= LIKELY else "uncertain"
+    @property
+    def notes(self) -> list[str]:
+        """What is said below a change: consequences, how sure the match is, decisions about the manual."""
+        said = list(self.details)
+        if self.certainty:
+            said.append(f"That old and new are the same thing is {self.certainty} ({self.sure:.0%}).")
+        if self.errata:
+            said.append(f"Because erratum {', '.join(self.errata)}.")
+        return said

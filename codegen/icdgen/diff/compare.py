@@ -40,9 +40,6 @@ class Comparison:
     changes: list[Change]
     context: Context
 
-    def of_layer(self, layer: str) -> list[Change]:
-        return [change for change in self.changes if change.layer == layer]
-
 
 def compare(old: Icd, new: Icd) -> Comparison:
     """Everything that differs between two sound sets of ICDs. Order, formatting and spelling of formulas are no difference."""

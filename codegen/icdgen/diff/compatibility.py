@@ -9,7 +9,7 @@ from icdgen.diff.changes.numbers import is_wider
 from icdgen.diff.compare import Comparison
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind
 from icdgen.diff.similar import same_sense
-from icdgen.diff.wording import some
+from icdgen.diff.wording import read_as, some
 from icdgen.icd.formula import RAW
 from icdgen.icd.model import Field, Message
 from icdgen.icd.rules.wording import quote
@@ -36,6 +36,11 @@ class Direction(NamedTuple):
     frames: tuple[Frame, ...]
     total: int
     general: tuple[str, ...]
+
+    @property
+    def worst_first(self) -> list[Frame]:
+        """The frames, those first that are not understood at all."""
+        return sorted(self.frames, key=lambda frame: frame.verdict != NO)
 
 
 Judge = Callable[[MessagePair], tuple[str, tuple[str, ...]]]
@@ -121,7 +126,7 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     """How much of what is sent the reader understands."""
     if sent.length != reader.length:
         return NO, (f"{sent.length} bytes come, {reader.length} are expected",)
-    absent = [p.any for p in pair.fields if not p.both and (p.before if reader is pair.old else p.after) is not None]
+    absent = [p.any for p in pair.parts if not p.both and (p.before if reader is pair.old else p.after) is not None]
     wrong = [(p, why) for p in pair.kept if (why := _misread(p))]
     if not absent and not wrong:
         return YES, ()
@@ -146,7 +151,7 @@ def _misread(pair: FieldPair) -> str:
     if not pair.same_bits:
         return "other bits"
     if kind(old) != kind(new):
-        return f"read as {new.type}, or as {old.type}"
+        return f"read as {read_as(new)}, or as {read_as(old)}"
     if (old.scale or RAW) != (new.scale or RAW):
         return "another formula"
     if (old.unit.symbol if old.unit else "") != (new.unit.symbol if new.unit else ""):
@@ -165,7 +170,7 @@ def _new_obeys_old(pair: MessagePair) -> tuple[str, tuple[str, ...]]:
     old, new = pair.old, pair.new
     if old.length != new.length:
         return NO, (f"{old.length} bytes are sent, {new.length} are expected",)
-    found = [(one, *_disobeyed(one)) for one in pair.fields]
+    found = [(one, *_disobeyed(one)) for one in pair.parts]
     reasons = _together((one.any.name, why) for one, why, _ in found if why)
     return (NO if any(refused for *_, refused in found) else PARTLY if reasons else YES), tuple(reasons)
 

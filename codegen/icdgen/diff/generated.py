@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -23,6 +23,7 @@ from icdgen.diff.pairs import (
 )
 from icdgen.icd.located import Map
 from icdgen.icd.model import TELEMETRY, Enum, Field, Icd, Message, Node
+from icdgen.naming import camel
 
 LANGUAGES = ("c", "python", "rust")
 
@@ -35,7 +36,6 @@ class Name(NamedTuple):
     stem: str = ""
 
 
-Types = Callable[[str, Node, Message, Field], str]
 NOTHING, NODES, OWNERS = range(3)  # what is called by its old name
 Names = dict[int, tuple[Name, ...]]  # id(pair) -> names
 
@@ -43,15 +43,12 @@ Names = dict[int, tuple[Name, ...]]  # id(pair) -> names
 class Generated:
     """Names of the pairs whose names may have changed: all others keep theirs.
 
-    ``under_old_owners`` are those of the new things if the message or enumeration that holds them, and their node, had kept
-    their old names: a field's names are not said to change only because its message has another name.
+    What has an owner is compared as if its message or enumeration, and their node, had kept their old names: a field's names are
+    not said to change only because its message has another name.
     """
 
     def __init__(self, match: Match, changed: Iterable[DeclaredPair]) -> None:
         self._match, self._changed = match, list(changed)
-
-    def _cut(self, side: int, old_names: int = NOTHING) -> _Cut:
-        return _Cut(self._match, side, self._kept, old_names)
 
     @cached_property
     def _kept(self) -> set[int]:
@@ -68,59 +65,41 @@ class Generated:
     @cached_property
     def everything(self) -> Names:
         """Old names of everything in messages and enumerations in which anything differs."""
-        kept = {id(one) for pair in self._changed for one in (pair, *pair.parts)}
-        cut = _Cut(self._match, 0, kept)
-        return cut.names(cut.icd)
-
-    @cached_property
-    def old(self) -> Names:
-        return self._before.names(self._before.icd)
+        return _Cut(self._match, 0, {id(one) for pair in self._changed for one in (pair, *pair.parts)}).names
 
     @cached_property
     def _before(self) -> _Cut:
-        return self._cut(0)
+        return _Cut(self._match, 0, self._kept)
 
     @cached_property
-    def new(self) -> Names:
-        cut = self._cut(1)
-        return cut.names(cut.icd)
+    def _after(self) -> _Cut:
+        return _Cut(self._match, 1, self._kept)
 
     @cached_property
-    def _nodes_keep_names(self) -> bool:
-        return all(node.old.name == node.new.name for node in self._match.nodes if node.both)
-
-    @cached_property
-    def _at_home(self) -> Names:
-        if self._nodes_keep_names:
-            return self.new
-        cut = self._cut(1, NODES)
-        return cut.names(cut.icd)
-
-    @cached_property
-    def under_old_owners(self) -> Names:
-        owners: list[DeclaredPair] = [*self._match.messages.values(), *self._match.enums.values()]
-        if not self._nodes_keep_names:
-            return self._under_old_owners.names(self._under_old_owners.icd)
-        renamed = [pair for pair in owners if pair.both and is_called_otherwise(pair)]
-        if not renamed:
-            return self.new
-        those = self._kept & {id(one) for pair in renamed for one in (pair, *pair.parts)}
-        cut = _Cut(self._match, 1, those, OWNERS)
-        rest = {key: names for key, names in self.new.items() if key not in those}
-        return rest | {key: names for key, names in cut.names(cut.icd).items() if key in those}
+    def _in_old_nodes(self) -> _Cut:
+        if all(node.old.name == node.new.name for node in self._match.nodes if node.both):
+            return self._after
+        return _Cut(self._match, 1, self._kept, NODES)
 
     @cached_property
     def _under_old_owners(self) -> _Cut:
-        return self._cut(1, OWNERS)
+        owners: list[DeclaredPair] = [*self._match.messages.values(), *self._match.enums.values()]
+        if any(pair.both and is_called_otherwise(pair) for pair in owners):
+            return _Cut(self._match, 1, self._kept, OWNERS)
+        return self._in_old_nodes
 
-    @cached_property
-    def _types(self) -> tuple[Types, Types]:
-        return _types(self._before.icd), _types(self._under_old_owners.icd)
+    @property
+    def old(self) -> Names:
+        return self._before.names
+
+    @property
+    def new(self) -> Names:
+        return self._after.names
 
     def renamed(self, pair: IdentifiedPair) -> list[tuple[Name | None, Name | None]]:
         """Old and new name of everything that is generated for the pair, where they differ. Its parts are left out."""
-        after = self._at_home if isinstance(pair, MessagePair | EnumPair) else self.under_old_owners
-        old, new = self.old.get(id(pair), ()), after.get(id(pair), ())
+        after = self._in_old_nodes if isinstance(pair, MessagePair | EnumPair) else self._under_old_owners
+        old, new = self.old.get(id(pair), ()), after.names.get(id(pair), ())
         if old == new:
             return []
         real = dict(zip(new, self.new.get(id(pair), ()), strict=False))
@@ -138,15 +117,8 @@ class Generated:
         """Language, old and new type of the raw value, where they differ."""
         if not _is_sound(pair.old) or not _is_sound(pair.new):
             return []
-        message_old, message_new = pair.owner.old, self._under_old_owners.messages[id(pair.owner)]
-        field_new = self._under_old_owners.fields[id(pair)]
-        found = []
-        for language in LANGUAGES:
-            before = self._types[0](language, pair.owner.old_node, message_old, pair.old)
-            after = self._types[1](language, pair.owner.new_node, message_new, field_new)
-            if before != after:
-                found.append((language, before, after))
-        return found
+        types = ((one, self._before.type_of(one, pair), self._under_old_owners.type_of(one, pair)) for one in LANGUAGES)
+        return [(language, before, after) for language, before, after in types if before != after]
 
 
 def is_called_otherwise(pair: IdentifiedPair) -> bool:
@@ -202,9 +174,9 @@ def _texts(samples: list[FieldPair], side: int) -> list[list[tuple[str, str]]]:
         message = Message("Samples", TELEMETRY, 0, tuple(own), node="samples")
         icd = Icd((Node("samples", "", "", "little", "lsb0", (message,), (), vocabulary=vocabulary),))
         for language in LANGUAGES:
-            for _, text, _, source in backends.get(language).identifiers(icd):
-                if id(source) in found:
-                    found[id(source)].append((language, text))
+            for one in backends.get(language).identifiers(icd):
+                if id(one.source) in found:
+                    found[id(one.source)].append((language, one.text))
     return list(found.values())
 
 
@@ -233,10 +205,7 @@ class _Cut:
         self.fields: dict[int, Field] = {}
         icd = match.new if side else match.old
         names = {one.name: self.name_of(pair) for pair in match.nodes if (one := self.side_of(pair)) is not None}
-        nodes = []
-        for node in icd.nodes:
-            enums = tuple(self.enum(enum, names) for enum in node.enums)
-            nodes.append((node, enums))
+        nodes = [(node, tuple(self.enum(enum, names) for enum in node.enums)) for node in icd.nodes]
         self.icd = Icd(
             tuple(
                 replace(
@@ -273,7 +242,7 @@ class _Cut:
 
     def enum(self, enum: Enum, names: dict[str, str]) -> Enum:
         pair = self.match.enums.get(id(enum))
-        members = {id(self.side_of(p)): p for p in pair.members} if pair is not None else {}
+        members = {id(self.side_of(p)): p for p in pair.parts} if pair is not None else {}
         kept = [m for m in enum.members if id(m) in members and id(members[id(m)]) in self.kept]
         own = tuple(self.marked(m, members[id(m)]) for m in kept)
         made = self.marked(enum, pair, members=own, node=names.get(enum.node, enum.node))
@@ -282,7 +251,7 @@ class _Cut:
 
     def message(self, message: Message, names: dict[str, str]) -> Message:
         pair = self.match.messages[id(message)]
-        fields = {id(self.side_of(p)): p for p in pair.fields}
+        fields = {id(self.side_of(p)): p for p in pair.parts}
         own = []
         for one in message.fields:
             if id(fields[id(one)]) not in self.kept or not _is_sound(one):
@@ -295,13 +264,16 @@ class _Cut:
         self.messages[id(pair)] = made
         return made
 
-    def names(self, icd: Icd) -> Names:
+    @cached_property
+    def names(self) -> Names:
+        """Those of everything that was kept."""
         found: dict[int, dict[Name, None]] = {}
         types: dict[int, str] = {}  # Rust: id(pair) -> name of the type
         for language in LANGUAGES:
             stems: dict[str, str | None] = {}  # scope -> stem of its names, None if they are no names
-            for scope, text, _, source in backends.get(language).identifiers(icd):
-                pair = self.marks.get(id(source)) if source is not None else None
+            for one in backends.get(language).identifiers(self.icd):
+                scope, text = one.scope, one.text
+                pair = self.marks.get(id(one.source)) if one.source is not None else None
                 if pair is None or not text.isidentifier():
                     continue
                 stem = stems.get(scope, "?")
@@ -319,6 +291,23 @@ class _Cut:
                 found.setdefault(id(pair), {})[Name(language, text, stem)] = None
         return {key: tuple(names) for key, names in found.items()}
 
+    def type_of(self, language: str, pair: FieldPair) -> str:
+        """The type of the field's raw value in a language."""
+        from icdgen.backends.c import types as c
+        from icdgen.backends.rust import names as rust
+        from icdgen.describe import describe
+
+        message, field = self.messages[id(pair.owner)], self.fields[id(pair)]
+        if field.type == "enum" and field.enum is None:
+            return f"u{field.bits}" if language == "rust" else "int"
+        one = next(one for one in describe(self.icd).message(message).fields if one.model is field)
+        if language == "rust":
+            return rust.raw_type(one)
+        if language == "c":
+            return f"uint8_t[{field.bits // 8}]" if field.is_bytes else c.type_of(one)
+        plain = {"uint": "int", "enum": "int", "text": "bytes"}.get(field.type, field.type)
+        return camel(one.enum.words) if one.enum is not None else plain
+
 
 def _sort(name: Name) -> tuple[str, bool]:
     """Names of one language, and in C those at file scope, correspond in their order. Members come first: they are short."""
@@ -333,29 +322,3 @@ def _stem(language: str, scope: str) -> str | None:
         return ""
     owner = scope.removeprefix("members of ")
     return owner.removesuffix("_t").lower() if language == "c" else owner.rpartition(".")[2]
-
-
-# Types
-
-
-def _types(cut: Icd) -> Types:
-    """A function that tells the type of a field's raw value in a language."""
-    from icdgen.backends.c.types import type_of
-    from icdgen.backends.rust.names import raw_type
-    from icdgen.describe import describe
-    from icdgen.naming import camel
-
-    description = describe(cut)
-
-    def of(language: str, node: Node, message: Message, field: Field) -> str:
-        if field.type == "enum" and field.enum is None:
-            return f"u{field.bits}" if language == "rust" else "int"
-        one = next(one for one in description.message(message).fields if one.model is field)
-        if language == "python":
-            plain = {"uint": "int", "enum": "int", "text": "bytes"}.get(field.type, field.type)
-            return camel(one.enum.words) if one.enum is not None else plain
-        if language == "rust":
-            return raw_type(one)
-        return f"uint8_t[{field.bits // 8}]" if field.is_bytes else type_of(one)
-
-    return of

@@ -6,7 +6,7 @@ Everything here is symmetric: from new to old the same pairs are found.
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Generic, Protocol, TypeVar
@@ -39,6 +39,7 @@ class _Named(Protocol):
 Thing = TypeVar("Thing")
 Named = TypeVar("Named", bound=_Named)
 Declared = TypeVar("Declared", Enum, Message)
+Paired = TypeVar("Paired", EnumPair, MessagePair)
 Two = tuple[Thing, Thing, float]  # old, new, and how sure it is that they are the same
 Sides = tuple[list[Thing], list[Thing]]  # of old and new
 Score = Callable[[Thing, Thing], float]
@@ -48,19 +49,29 @@ Keys = Callable[[Thing], Iterable[object]]
 def match(old: Icd, new: Icd) -> Match:
     """Both ICDs side by side."""
     found = Match(old, new)
-    nodes, left = _by_name(old.nodes, new.nodes)
-    nodes += _alike(*left, _node_score, SAME_NODE, _node_keys)
-    found.nodes = [NodePair(one, other, sure) for one, other, sure in nodes]
-    found.nodes += [NodePair(one, None) for one in left[0] if not _taken(nodes, 0, one)]
-    found.nodes += [NodePair(None, one) for one in left[1] if not _taken(nodes, 1, one)]
-    _enums(found)
-    _messages(found)
+    found.nodes = [NodePair(*pair) for pair in _side_by_side(old.nodes, new.nodes, _renamed_nodes)]
+    for node, enum in _paired(found.nodes, EnumPair, lambda node: node.enums, _enum_rank, _ENUMS_LIKELY, _members):
+        node.enums.append(enum)
+        found.enums.update((id(one), enum) for one in (enum.before, enum.after) if one is not None)
+    for node, pair in _paired(found.nodes, MessagePair, lambda node: node.messages, _rank, _MESSAGES_LIKELY, _fields):
+        node.messages.append(pair)
+        found.messages.update((id(one), pair) for one in (pair.before, pair.after) if one is not None)
     _in_order(found)
     return found
 
 
-def _taken(pairs: Iterable[Two[Node]], side: int, one: Node) -> bool:
-    return any(pair[side] is one for pair in pairs)
+def _side_by_side(
+    old: Iterable[Named],
+    new: Iterable[Named],
+    likely: Callable[[list[Two[Named]], list[Named], list[Named]], list[Two[Named]]],
+) -> list[tuple[Named | None, Named | None, float]]:
+    """Pairs of equal names, ``likely`` ones of what is left, then what is only on one side."""
+    pairs, left = _by_name(old, new)
+    if all(left):
+        pairs += likely(pairs, *left)
+    taken = {id(one) for pair in pairs for one in pair[:2]}
+    gone, come = ([one for one in side if id(one) not in taken] for side in left)
+    return [*pairs, *((one, None, 1.0) for one in gone), *((None, one, 1.0) for one in come)]
 
 
 def _by_name(old: Iterable[Named], new: Iterable[Named]) -> tuple[list[Two[Named]], Sides[Named]]:
@@ -108,6 +119,10 @@ def _alike(
     return pairs
 
 
+def _renamed_nodes(known: list[Two[Node]], old: list[Node], new: list[Node]) -> list[Two[Node]]:
+    return _alike(old, new, _node_score, SAME_NODE, _node_keys)
+
+
 def _node_keys(node: Node) -> frozenset[object]:
     return frozenset((m.name, m.kind, m.ids) for m in node.messages)
 
@@ -139,43 +154,41 @@ class _Left(Generic[Declared]):
         return frozenset((m.value, m.name) for m in self.one.members)
 
 
-# Enumerations
-
-
-def _enums(found: Match) -> None:
-    scores = [(_moved_enum, _name), (_renamed_enum, _member_keys)]
-    _pair_up(found, lambda node: node.enums, lambda enum: enum.name, scores, SAME_ENUM, _add_enum)
-
-
-def _pair_up(
-    found: Match,
+def _paired(
+    nodes: list[NodePair],
+    kind: Callable[..., Paired],
     declared: Callable[[Node], Sequence[Declared]],
     rank: Callable[[Declared], Any],
-    scores: Iterable[tuple[Score[_Left[Declared]], Keys[_Left[Declared]]]],
-    least: float,
-    add: Callable[[Match, NodePair, NodePair, Declared | None, Declared | None, float], None],
-) -> None:
-    """Pairs what nodes declare: by name within a node, then by each of the scores."""
+    likely: Iterable[tuple[Score[_Left[Declared]], Keys[_Left[Declared]], float]],
+    parts: Callable[[Paired], list[Any]],
+) -> Iterator[tuple[NodePair, Paired]]:
+    """Pairs of what nodes declare, each with the node of its new side: by name within a node, then by each of the scores."""
+
+    def made(home: NodePair, node: NodePair, old: object, new: object, sure: float = 1.0) -> tuple[NodePair, Paired]:
+        elsewhere = home is not node
+        pair = kind(old, new, sure, old_node=home.before or home.any, new_node=node.any, is_of_another_node=elsewhere)
+        if not pair.both or pair.changed:
+            pair.parts = parts(pair)
+        return node, pair
+
     left_old: list[_Left[Declared]] = []
     left_new: list[_Left[Declared]] = []
-    for node in found.nodes:
-        sides = [declared(side) if side is not None else () for side in (node.before, node.after)]
-        pairs, (old, new) = _by_name(*sides)
-        for one, other, sure in pairs:
-            add(found, node, node, one, other, sure)
+    for node in nodes:
+        pairs, (old, new) = _by_name(
+            *(declared(side) if side is not None else () for side in (node.before, node.after))
+        )
+        yield from (made(node, node, *pair) for pair in pairs)
         left_old += [_Left(node, one) for one in sorted(old, key=rank)]
         left_new += [_Left(node, one) for one in sorted(new, key=rank)]
-    for score, keys in scores:
+    for score, keys, least in likely:
         taken: set[_Left[Declared]] = set()
         for mine, theirs, sure in _alike(left_old, left_new, score, least, keys):
-            add(found, mine.home, theirs.home, mine.one, theirs.one, sure)
+            yield made(mine.home, theirs.home, mine.one, theirs.one, sure)
             taken |= {mine, theirs}
         left_old = [left for left in left_old if left not in taken]
         left_new = [left for left in left_new if left not in taken]
-    for left in left_old:
-        add(found, left.home, left.home, left.one, None, 1.0)
-    for left in left_new:
-        add(found, left.home, left.home, None, left.one, 1.0)
+    yield from (made(left.home, left.home, left.one, None) for left in left_old)
+    yield from (made(left.home, left.home, None, left.one) for left in left_new)
 
 
 def _name(left: _Left[Any]) -> Iterable[object]:
@@ -196,41 +209,31 @@ def _renamed_enum(one: _Left[Enum], other: _Left[Enum]) -> float:
     return 0.85 * overlap(one.members, other.members) + 0.15 * likeness(one.one.name, other.one.name)
 
 
-def _add_enum(found: Match, home: NodePair, node: NodePair, old: Enum | None, new: Enum | None, sure: float) -> None:
-    pair = EnumPair(old, new, sure, old_node=_old_home(home), new_node=node.any, is_of_another_node=home is not node)
-    if old is None or new is None or pair.changed:
-        pair.members = list(_members(pair))
-    node.enums.append(pair)
-    found.enums.update((id(enum), pair) for enum in (old, new) if enum is not None)
+def _enum_rank(enum: Enum) -> str:
+    return enum.name
 
 
-def _old_home(node: NodePair) -> Node:
-    """The node as it was, or as it is if it came."""
-    return node.any if node.before is None else node.before
+_ENUMS_LIKELY = ((_moved_enum, _name, SAME_ENUM), (_renamed_enum, _member_keys, SAME_ENUM))
 
 
-def _members(pair: EnumPair) -> Iterable[MemberPair]:
+def _members(pair: EnumPair) -> list[MemberPair]:
     old = list(pair.before.members) if pair.before else []
     new = list(pair.after.members) if pair.after else []
+    found: list[MemberPair] = []
     keys: tuple[Callable[[Member], object], ...] = (lambda m: (m.value, m.name), lambda m: m.name, lambda m: m.value)
     for key in keys:
         for one in list(old):
             twins = [m for m in old if key(m) == key(one)]
             others = [m for m in new if key(m) == key(one)]
             if len(others) == 1 and len(twins) == 1:
-                yield MemberPair(one, others[0], owner=pair)
+                found.append(MemberPair(one, others[0], owner=pair))
                 old.remove(one)
                 new.remove(others[0])
-    yield from (MemberPair(one, None, owner=pair) for one in old)
-    yield from (MemberPair(None, one, owner=pair) for one in new)
+    found += [MemberPair(one, None, owner=pair) for one in old]
+    return found + [MemberPair(None, one, owner=pair) for one in new]
 
 
 # Messages
-
-
-def _messages(found: Match) -> None:
-    scores = [(_moved_message, _name), (_renamed_message, _message_keys)]
-    _pair_up(found, lambda node: node.messages, _rank, scores, SAME_MESSAGE, _add_message)
 
 
 def _rank(message: Message) -> object:
@@ -279,29 +282,17 @@ def _layouts_alike(one: _Left[Message], other: _Left[Message]) -> float:
     return 0.75 if one.one.length == other.one.length else 0.0
 
 
-def _add_message(
-    found: Match, home: NodePair, node: NodePair, old: Message | None, new: Message | None, sure: float
-) -> None:
-    pair = MessagePair(old, new, sure, old_node=_old_home(home), new_node=node.any, is_of_another_node=home is not node)
-    if old is None or new is None or pair.changed:
-        pair.fields = _fields(pair)
-    node.messages.append(pair)
-    found.messages.update((id(message), pair) for message in (old, new) if message is not None)
+_MESSAGES_LIKELY = ((_moved_message, _name, SAME_MESSAGE), (_renamed_message, _message_keys, SAME_MESSAGE))
 
 
 # Fields
 
 
 def _fields(pair: MessagePair) -> list[FieldPair]:
-    rows_old = sorted(pair.before.fields, key=_place) if pair.before else []
-    rows_new = sorted(pair.after.fields, key=_place) if pair.after else []
-    pairs, (old, new) = _by_name(rows_old, rows_new)
-    if old and new:
-        pairs += _renamed_fields(pair, pairs, old, new)
-    found = [FieldPair(one, other, sure, owner=pair) for one, other, sure in pairs]
-    taken = {id(one) for old_one, new_one, _ in pairs for one in (old_one, new_one)}
-    found += [FieldPair(one, None, owner=pair) for one in old if id(one) not in taken]
-    found += [FieldPair(None, one, owner=pair) for one in new if id(one) not in taken]
+    old = sorted(pair.before.fields, key=_place) if pair.before else []
+    new = sorted(pair.after.fields, key=_place) if pair.after else []
+    pairs = _side_by_side(old, new, lambda known, *left: _renamed_fields(pair, known, *left))
+    found = [FieldPair(*one, owner=pair) for one in pairs]
     return sorted(found, key=lambda p: _place(p.old if p.before is not None else p.new))
 
 

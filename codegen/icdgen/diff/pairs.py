@@ -18,6 +18,7 @@ _SHOWN = {"at": ("offset",), "formula": ("scale",), "table": ("source",), "sourc
 
 
 Thing = TypeVar("Thing", bound=Node | Message | Field | Enum | Member)
+Part = TypeVar("Part")
 Row = TypeVar("Row")
 
 
@@ -64,12 +65,16 @@ class SideBySide(Generic[Thing]):
 
 
 @dataclass(eq=False)
-class _DeclaredPair(SideBySide[Thing]):
-    """What a node declares: ``old_node`` and ``new_node`` are where; the same where it is only on one side."""
+class _DeclaredPair(SideBySide[Thing], Generic[Thing, Part]):
+    """What a node declares: ``old_node`` and ``new_node`` are where; the same where it is only on one side.
+
+    ``parts`` are its fields or members.
+    """
 
     old_node: Node = field(kw_only=True)
     new_node: Node = field(kw_only=True)
     is_of_another_node: bool = field(kw_only=True)  # another node declares it now
+    parts: list[Part] = field(default_factory=list)
 
     @property
     def node(self) -> Node:
@@ -113,32 +118,20 @@ class FieldPair(SideBySide[Field]):
 
 
 @dataclass(eq=False)
-class EnumPair(_DeclaredPair[Enum]):
-    members: list[MemberPair] = field(default_factory=list)
-
+class EnumPair(_DeclaredPair[Enum, MemberPair]):
     @cached_property
     def changed(self) -> bool:
         return self.before != self.after or self.has_another_vocabulary
-
-    @property
-    def parts(self) -> Sequence[MemberPair]:
-        return self.members
 
     def where(self) -> Where:
         return Where(self.node.name, enum=self.any.name)
 
 
 @dataclass(eq=False)
-class MessagePair(_DeclaredPair[Message]):
-    fields: list[FieldPair] = field(default_factory=list)
-
+class MessagePair(_DeclaredPair[Message, FieldPair]):
     @cached_property
     def changed(self) -> bool:
         return self.before != self.after or self.reordered or self.has_another_vocabulary
-
-    @property
-    def parts(self) -> Sequence[FieldPair]:
-        return self.fields
 
     def where(self) -> Where:
         return Where(self.node.name, message=self.any.name)
@@ -146,15 +139,15 @@ class MessagePair(_DeclaredPair[Message]):
     @property
     def kept(self) -> list[FieldPair]:
         """Fields that are in both, in the order of the old frame."""
-        return [pair for pair in self.fields if pair.both]
+        return [pair for pair in self.parts if pair.both]
 
     @property
     def lost(self) -> list[FieldPair]:
-        return [pair for pair in self.fields if pair.after is None]
+        return [pair for pair in self.parts if pair.after is None]
 
     @property
     def gained(self) -> list[FieldPair]:
-        return [pair for pair in self.fields if pair.before is None]
+        return [pair for pair in self.parts if pair.before is None]
 
     @property
     def reordered(self) -> bool:
@@ -176,10 +169,6 @@ class NodePair(SideBySide[Node]):
 
     def where(self) -> Where:
         return Where(self.any.name)
-
-    def places(self, keys: tuple[str, ...]) -> Places:
-        old, new = _head(self.before), _head(self.after)
-        return at(old, keys) if old is not None else None, at(new, keys) if new is not None else None
 
 
 DeclaredPair = MessagePair | EnumPair
@@ -225,7 +214,9 @@ def kind(one: Field) -> str:
     """How the bits are read: as an unsigned or signed number, as a float, as bytes."""
     if one.is_bytes:
         return "bytes"
-    return "unsigned" if one.type in ("uint", "enum", "bool") else one.type
+    if one.type in ("uint", "int", "enum", "bool"):
+        return "int" if one.signed else "unsigned"
+    return one.type
 
 
 def differing(
@@ -239,22 +230,14 @@ def differing(
 
 
 def place_of(thing: object, keys: tuple[str, ...]) -> Place | None:
+    """Where the first key stands that is there, of a node in its head; the thing itself if none is."""
     source = getattr(thing, "source", None)
-    return at(source, keys) if isinstance(source, Map) else None
-
-
-def at(source: Map, keys: tuple[str, ...]) -> Place:
-    """Where the first key stands that is there; the mapping itself if none is."""
+    if isinstance(thing, Node) and isinstance(source, Map):
+        source = source.get("node") or source
+    if not isinstance(source, Map):
+        return None
     for key in keys:
         for name in (key, *_SHOWN.get(key, ())):
             if name in source.spots:
                 return source.at(name)
     return source.place
-
-
-def _head(node: Node | None) -> Map | None:
-    source = getattr(node, "source", None)
-    if not isinstance(source, Map):
-        return None
-    head = source.get("node")
-    return head if isinstance(head, Map) else source

@@ -30,7 +30,6 @@ class Report:
     stale: list[Acceptance]
     directions: tuple[Direction, ...]
     step: Step
-    texts: dict[str, str]
     uses: Sequence[Use] | None = None  # None: nobody asked
 
     def of_layer(self, layer: str) -> list[Change]:
@@ -41,6 +40,10 @@ class Report:
         found = Counter(change.layer for change in self.changes)
         return {layer: found[layer] for layer in LAYERS}
 
+    def additions(self, layer: str) -> int:
+        """How many of the layer's changes are additions."""
+        return sum(1 for change in self.of_layer(layer) if change.addition)
+
     def fails(self, asked: Sequence[str]) -> list[Change]:
         """Changes of the layers asked for; additions only if they are asked for too."""
         return [c for c in self.changes if c.layer in asked and (not c.addition or ADDITIONS in asked)] + [
@@ -50,22 +53,15 @@ class Report:
 
 def _placed(change: Change, old: Side, new: Side) -> Change:
     """With places as a user knows them; those of errata in their overlays."""
-    places = []
-    for side, place in ((old, change.old), (new, change.new)):
-        erratum = change.where.erratum
-        places.append(side.erratum(erratum) if erratum else side.place(place))
-    old_place, new_place = places
-    return (
-        change if (change.old, change.new) == (old_place, new_place) else replace(change, old=old_place, new=new_place)
-    )
+    if erratum := change.where.erratum:
+        return replace(change, old=old.erratum(erratum), new=new.erratum(erratum))
+    places = old.place(change.old), new.place(change.new)
+    return change if places == (change.old, change.new) else replace(change, old=places[0], new=places[1])
 
 
 def make(old: Side, new: Side, acceptances: Sequence[Acceptance] = ()) -> Report:
     """Compares two sides."""
     comparison = compare(old.icd, new.icd)
     comparison.changes = [_placed(change, old, new) for change in comparison.changes]
-    found = sort(comparison.changes, list(acceptances))
-    return Report(
-        old, new, comparison, found.open, found.accepted, found.stale, directions(comparison), step(comparison.changes),
-        {**old.texts, **new.texts},
-    )  # fmt: skip
+    sorted_changes = sort(comparison.changes, acceptances)
+    return Report(old, new, comparison, *sorted_changes, directions(comparison), step(comparison.changes))

@@ -46,6 +46,16 @@ class Use(NamedTuple):
     text: str  # the line
     changes: tuple[Change, ...]
 
+    @property
+    def codes(self) -> list[str]:
+        """Kinds of the changes, each once."""
+        return list(dict.fromkeys(change.code for change in self.changes))
+
+    @property
+    def messages(self) -> list[str]:
+        """What the changes say, each once."""
+        return list(dict.fromkeys(change.message for change in self.changes))
+
 
 class _Wanted(NamedTuple):
     stem: str

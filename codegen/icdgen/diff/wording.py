@@ -49,10 +49,15 @@ def formula(scale: Scale | None) -> str:
 
 
 def type_of(field: Field) -> str:
-    """``16-bit int``, ``enum Mode of 4 bits``"""
+    """``16-bit int``, ``4-bit enum Mode``, ``4-bit signed enum Mode``"""
     if field.type == "enum":
-        return f"{field.bits}-bit enum {field.enum.name if field.enum else '?'}"
+        return f"{field.bits}-bit {'signed ' if field.signed else ''}enum {field.enum.name if field.enum else '?'}"
     return "bool" if field.type == "bool" and field.bits == 1 else f"{field.bits}-bit {field.type}"
+
+
+def read_as(field: Field) -> str:
+    """``int``, ``enum``, ``signed enum``"""
+    return f"signed {field.type}" if field.type == "enum" and field.signed else field.type
 
 
 def ids(values: Iterable[int | None]) -> str:

@@ -28,8 +28,7 @@ class Scale(NamedTuple):
     offset: Fraction = Fraction(0)
 
     def __hash__(self) -> int:
-        factor, offset = self  # a fraction's own hash is a modular inverse
-        return hash((factor.numerator, factor.denominator, offset.numerator, offset.denominator))
+        return hash((self[0].as_integer_ratio(), self[1].as_integer_ratio()))  # a fraction's own is a modular inverse
 
     def physical(self, raw: int | Fraction) -> Fraction:
         a, b = self.factor, self.offset  # put together in one step: it is done for each value of each vector

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple, Protocol
+from dataclasses import dataclass
+from typing import Protocol
 
 from icdgen.icd.located import Map
 from icdgen.icd.model import Icd
 
 
-class Identifier(NamedTuple):
+@dataclass(
+    slots=True, eq=False, repr=False
+)  # frozen, or a tuple, it would take twice as long to make: there are very many
+class Identifier:
     """A name that generated code declares. Two equal names in one scope clash."""
 
     scope: str  # "members of struct demo_foo_t"

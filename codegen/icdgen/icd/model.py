@@ -73,6 +73,11 @@ class Enum:
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
+    @property
+    def signed(self) -> bool:
+        """Whether every field of it is in two's complement: one of its values is negative."""
+        return any(member.value < 0 for member in self.members)
+
 
 @dataclass(frozen=True, slots=True)
 class Special:
@@ -125,7 +130,8 @@ class Field:
 
     @property
     def signed(self) -> bool:
-        return self.type == "int"
+        """Whether it is in two's complement."""
+        return self.type == "int" or (self.enum is not None and self.enum.signed)
 
     @property
     def fresh(self) -> int | bytes:
@@ -135,12 +141,12 @@ class Field:
     @property
     def raw_min(self) -> int:
         """Smallest raw value of an integer, enum or bool field."""
-        return -(1 << (self.bits - 1)) if self.type == "int" else 0
+        return -(1 << (self.bits - 1)) if self.signed else 0
 
     @property
     def raw_max(self) -> int:
         """Largest raw value of an integer, enum or bool field."""
-        return (1 << (self.bits - (self.type == "int"))) - 1
+        return (1 << (self.bits - self.signed)) - 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from icdgen.diagnostics import Finding, Place
-from icdgen.icd import remedies
 from icdgen.icd.located import Map, Seq
 
 PATH = Path(__file__).with_name("schema.json")
@@ -90,6 +88,8 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
         words = " or ".join(_TYPES.get(one, one) for one in ([wanted] if isinstance(wanted, str) else wanted))
         message = f"{what} must be {words}, not {_describe(error.instance)}"
     elif name in ("enum", "const"):
+        from icdgen.icd import remedies
+
         message = f"{what} cannot be {_describe(error.instance)}"
         help = remedies.of_value(str(path[-1]) if path else "", error.instance) or help
     elif name in ("minimum", "maximum"):
@@ -114,6 +114,10 @@ def _explain(error: Any, tree: Map, path: list[Any], owner: Map, place: Place) -
 
 
 def _unknown_key(key: str, known: list[str], place: Place) -> Finding:
+    import difflib
+
+    from icdgen.icd import remedies
+
     close = difflib.get_close_matches(key, known, 1)
     help = remedies.of_key(key, known)
     help = help or f"did you mean `{close[0]}`?" if help or close else "known keys: " + ", ".join(known)

@@ -110,8 +110,6 @@ class _Builder:
         import yaml
         from yaml import events
 
-        from icdgen.icd import remedies
-
         if "\0" in self.text:
             place = _after(self.name, self.text[: self.text.index("\0")])
             return None, [Finding("ICD001", "the file holds a NUL character", place, "remove it")]
@@ -169,6 +167,8 @@ class _Builder:
                     stack.append((container, key, key_spot))
                     container, key = value, None
         except yaml.YAMLError as error:
+            from icdgen.icd import remedies
+
             mark = getattr(error, "problem_mark", None)
             place = Place(self.name, mark.line + 1, mark.column + 1) if mark else self.unprintable()
             problem = getattr(error, "problem", None) or getattr(error, "reason", None) or "the text cannot be read"

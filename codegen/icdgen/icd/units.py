@@ -82,14 +82,6 @@ byte        byte            information
 bit/s       bit_per_s       data rate
 """
 
-# Spellings that mean one of the above; used only to say what the writer probably meant.
-SPELLINGS = {
-    "°": "deg", "degree": "deg", "degrees": "deg", "deg/sec": "deg/s", "RPM": "rpm", "meter": "m", "metre": "m",
-    "meters": "m", "seconds": "s", "sec": "s", "milliseconds": "ms", "msec": "ms", "percentage": "%", "percent": "%",
-    "°C": "C", "degC": "C", "Nm": "N.m", "kg.m2": "kg.m^2", "kg.m²": "kg.m^2", "A.m2": "A.m^2", "A.m²": "A.m^2",
-    "Am2": "A.m^2", "µT": "uT", "Ohm": "ohm", "bytes": "byte", "bits": "bit",
-}  # fmt: skip
-
 
 def _standard() -> dict[str, Unit]:
     rows = (line.split(None, 2) for line in _TABLE.strip().splitlines())
@@ -97,3 +89,17 @@ def _standard() -> dict[str, Unit]:
 
 
 STANDARD = _standard()
+
+# Signs for one of the above that mean nothing else: an import writes the unit itself.
+SIGNS = {
+    "°C": "C", "° C": "C", "degC": "C", "deg C": "C", "\u2103": "C", "\u03a9": "ohm", "\u2126": "ohm", "Ohm": "ohm",
+    **{micro + unit[1:]: unit for unit in STANDARD if unit.startswith("u") for micro in ("\u00b5", "\u03bc")},
+}  # fmt: skip
+
+# Spellings that mean one of the above; used only to say what the writer probably meant.
+SPELLINGS = SIGNS | {
+    "°": "deg", "degree": "deg", "degrees": "deg", "deg/sec": "deg/s", "RPM": "rpm", "meter": "m", "metre": "m",
+    "meters": "m", "seconds": "s", "sec": "s", "milliseconds": "ms", "msec": "ms", "percentage": "%", "percent": "%",
+    "Nm": "N.m", "kg.m2": "kg.m^2", "kg.m²": "kg.m^2", "A.m2": "A.m^2", "A.m²": "A.m^2",
+    "Am2": "A.m^2", "bytes": "byte", "bits": "bit",
+}  # fmt: skip

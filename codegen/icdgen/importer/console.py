@@ -73,8 +73,8 @@ def _many(kind: str, count: int) -> str:
     return kind + "s"
 
 
-def files(result: Result) -> list[str]:
-    """What each file holds, and what changed in it."""
+def files(result: Result, dry: bool = False) -> list[str]:
+    """What each file holds, and what changed in it; what would, if none was written (``dry``)."""
     lines = []
     for target in result.targets:
         tree = target.tree
@@ -86,6 +86,8 @@ def files(result: Result) -> list[str]:
             f"{count(len(enums), 'enumeration')} with {count(members, 'member')}"
         )
         state = "written" if target.changes is None else "unchanged" if target.same else "updated"
+        if dry and state != "unchanged":
+            state = f"would be {state}{' with --update' if target.refused else ''}"
         lines.append(f"{target.path}: {state}; {what}")
         lines += [f"  {change}" for change in target.changes or ()]
     return lines

@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from icdgen.icd.fmt.emit import Spelled
-from icdgen.icd.units import SPELLINGS, STANDARD
+from icdgen.icd.units import SIGNS, SPELLINGS, STANDARD
 from icdgen.importer.document import Document, Table, Trouble
 from icdgen.importer.parts import NodeParts
 from icdgen.importer.profile import Profile
@@ -14,6 +14,9 @@ from icdgen.importer.understand.model import Listed, ReadEnum, ReadField, ReadMe
 from icdgen.importer.words import squeezed, table_name
 
 NOT_STATED = "not stated"
+_SAID = str.maketrans(
+    {"\u03a9": "ohm", "\u2126": "ohm", "\u00b5": "u", "\u03bc": "u", "°": "deg"}
+)  # signs in identifiers
 
 
 def tree(node: NodeParts, document: Document, profile: Profile, prose: bool, troubles: list[Trouble]) -> dict[str, Any]:
@@ -111,7 +114,7 @@ def _field(one: ReadField, prose: bool) -> dict[str, Any]:
         made["enum"] = one.enum
     said = one.described
     if said.unit:
-        made["unit"] = said.unit
+        made["unit"] = SIGNS.get(said.unit, said.unit)
     if said.formula:
         made["formula"] = said.formula
     if said.formula_for:
@@ -132,7 +135,7 @@ def _units(node: NodeParts, troubles: list[Trouble]) -> list[dict[str, Any]]:
             symbol = field.described.unit
             if not symbol or symbol in STANDARD or symbol in SPELLINGS or symbol in made:
                 continue
-            name = "_".join(re.findall("[a-z0-9]+", symbol.casefold())) or "unit"
+            name = "_".join(re.findall("[a-z0-9]+", symbol.translate(_SAID).casefold())) or "unit"
             while name in taken:
                 name += "_"
             taken.add(name)

@@ -27,6 +27,7 @@ class Target:
     tree: dict[str, Any]
     changes: list[str] | None = None
     same: bool = False
+    refused: bool = False  # one is there, and was not to be updated
 
 
 @dataclass
@@ -102,10 +103,11 @@ def _first_cells(table: Table) -> list[str]:
     return next(([c for c in cells if c] for cells in rows if any(cells)), [])
 
 
-def aim(result: Result, trees: dict[str, dict[str, Any]], out: Path, over: bool) -> None:
-    """Prepares the files. Raises `UserError` where one exists and ``over`` does not allow to update it."""
+def aim(result: Result, trees: dict[str, dict[str, Any]], out: Path, over: bool, dry: bool = False) -> None:
+    """Prepares the files. Raises `UserError` where one exists and ``over`` does not allow to update it, unless none will
+    be written anyway (``dry``)."""
     taken = [out / f"{name}.yaml" for name in trees if os.path.lexists(out / f"{name}.yaml")]
-    if taken and not over:
+    if taken and not over and not dry:
         raise UserError(
             f"{', '.join(str(p) for p in taken)} already there",
             "--update lays the manual over them and keeps errata, identifiers and summaries; or choose another --out",
@@ -122,7 +124,7 @@ def aim(result: Result, trees: dict[str, dict[str, Any]], out: Path, over: bool)
         except UnicodeDecodeError:
             raise UserError(f"{path} is not UTF-8", "save it as UTF-8, or move it away") from None
         made = update.update(old, str(path), tree)
-        result.targets.append(Target(path, made.text, tree, made.changes, made.text == old))
+        result.targets.append(Target(path, made.text, tree, made.changes, made.text == old, not over))
 
 
 def write(result: Result) -> None:

@@ -112,7 +112,7 @@ class _Reader:
             return pa.float32() if column.field.bits == 32 else pa.float64()
         if column.kind == "enum":
             self.members = {m.value: m.name for m in column.field.enum.members}  # type: ignore[union-attr]
-            if column.field.bits > 8:
+            if column.field.bits > 8 or column.field.signed:
                 return pa.dictionary(pa.int32(), pa.string())
             self.names = pa.array(self._named(range(1 << column.field.bits)))
             return pa.dictionary(pa.uint8(), pa.string())

@@ -133,14 +133,15 @@ def _bare(icd: Icd, speakers: Sequence[Speaker], data: bytes, message: Message |
         return of_message(icd, speakers[0], message, data)
     if not data:
         raise BadLength("there are no bytes", 1, 0, "give a frame")
+    given = f"{len(data)} byte{'' if len(data) == 1 else 's'}"
     with_id, plain = match.by_id(speakers, data), match.by_length(speakers, data)
     if with_id:
-        one = match.decided(with_id, f"{len(data)} bytes that begin with the id {with_id[0].id}")
+        one = match.decided(with_id, f"{given} beginning with the id {with_id[0].id}")
         others = [other for other in plain if other.key != one.key]
         note = [f"without an id in front it could be {match.named(others)}"] if others else []
         return one.noted(f"id {one.id} removed", *note)
     if plain:
-        one = match.decided(plain, f"{len(data)} bytes without an id")
+        one = match.decided(plain, f"{given} without an id")
         return replace(one, id=None).noted("found by its length alone")
     raise match.why_none(speakers, data)
 

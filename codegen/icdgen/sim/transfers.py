@@ -50,14 +50,14 @@ class Transfers:
         self.telecommands: dict[str, tuple[str, Callable[[int, Raw], None]]] = {}
         self.frames: dict[str, list[tuple[str, Callable[[int], Raw]]]] = {}
         self.steps = form.steps
-        for step, take in self._takers():
+        for step, take in self._telecommand_handlers():
             if step in self.steps:
                 self.telecommands[self.steps[step].message.name] = step, take
-        for step, give in self._givers():
+        for step, give in self._frame_values():
             if step in self.steps:
                 self.frames.setdefault(self.steps[step].message.name, []).append((step, give))
 
-    def _takers(self) -> Iterator[tuple[str, Callable[[int, Raw], None]]]:
+    def _telecommand_handlers(self) -> Iterator[tuple[str, Callable[[int, Raw], None]]]:
         yield "list.reset", self._reset_list
         yield "list.advance", self._advance
         yield "download.load", self._load
@@ -69,7 +69,7 @@ class Transfers:
         yield "erase.request", self._erase
         yield "format.request", self._format
 
-    def _givers(self) -> Iterator[tuple[str, Callable[[int], Raw]]]:
+    def _frame_values(self) -> Iterator[tuple[str, Callable[[int], Raw]]]:
         yield "list.information", self._information
         yield "download.ready", self._ready
         yield "upload.initiated", lambda now: {"busy": self._is_busy("upload.initiate", now)}

@@ -17,7 +17,9 @@ class Values:
     def __init__(self, icd: Icd, node: Node) -> None:
         self.icd = icd
         self.messages = {m.name: m for m in icd.messages_of(node)}
-        self.frames = {m.name: self.encode(m, fresh(m)) for m in self.messages.values() if m.telemetry_id is not None}
+        self.frames = {
+            m.name: self.encode(m, allowed_values(m)) for m in self.messages.values() if m.telemetry_id is not None
+        }
 
     def frame(self, message: Message) -> bytes:
         """The frame as it is now."""
@@ -49,18 +51,18 @@ class Values:
                 yield inner, part.at // 8, part.at // 8 + inner.length
 
 
-def fresh(message: Message) -> dict[str, int | bytes]:
+def allowed_values(message: Message) -> dict[str, int | bytes]:
     """Values that the ICD allows, 0 where it does."""
-    return {field.name: _fresh(field) for field in message.fields}
+    return {field.name: _allowed_value(field) for field in message.fields}
 
 
-def _fresh(field: Field) -> int | bytes:
+def _allowed_value(field: Field) -> int | bytes:
     if field.is_bytes:
         return bytes(field.bits // 8)
     for raw in _candidates(field):
         if field.raw_min <= raw <= field.raw_max and not violations(field, raw):
             return raw
-    return field.const or 0
+    return field.fresh
 
 
 def _candidates(field: Field) -> Iterable[int]:

@@ -73,7 +73,7 @@ def values(field: Field) -> list[int | bytes]:
 def _numbers(field: Field) -> Iterator[int]:
     low, high = field.raw_min, field.raw_max
     yield from (0, low, high)
-    if field.type == "int":
+    if field.signed:
         yield from (-1, 1, low + 1)
     for pattern in _DISTINCT:
         value = pattern >> (64 - field.bits)

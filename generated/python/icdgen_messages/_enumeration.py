@@ -26,13 +26,14 @@ class OpenEnum(IntEnum):
 
     @classmethod
     def _missing_(cls, value: object) -> object:
-        if not isinstance(value, int) or not 0 <= value < 1 << 64:
+        low, high = (-(1 << 63), 1 << 63) if is_signed(cls) else (0, 1 << 64)
+        if not isinstance(value, int) or not low <= value < high:
             return None
         self = int.__new__(cls, value)
-        self._name_ = f"UNKNOWN_{value:d}"
+        self._name_ = f"UNKNOWN_{'MINUS_' if value < 0 else ''}{abs(value)}"
         self._value_ = int(value)
         self.label = ""
-        if value < _KEPT:
+        if abs(value) < _KEPT:
             cls._value2member_map_[int(value)] = self
         return self
 
@@ -46,3 +47,8 @@ class OpenEnum(IntEnum):
     def is_known(self) -> bool:
         """Whether the manual lists the value."""
         return self.label != ""
+
+
+def is_signed(enum: type[OpenEnum]) -> bool:
+    """Whether its values are in two's complement: the manual lists a negative one."""
+    return any(member < 0 for member in enum.__members__.values())

@@ -13,7 +13,7 @@ from typing import (
     Union,
 )
 
-from ._enumeration import OpenEnum
+from ._enumeration import OpenEnum, is_signed
 
 Buffer = Union[bytes, bytearray, memoryview]
 EnumClass = type[OpenEnum]
@@ -63,6 +63,13 @@ class FieldInfo(NamedTuple):
     """``little`` or ``big``; empty where it is the message's."""
     bit_order: str = ""
     """``lsb0`` or ``msb0``; empty where it is the message's."""
+
+    @property
+    def signed(self) -> bool:
+        """Whether the raw value is in two's complement."""
+        if self.enum is not None:
+            return is_signed(self.enum)
+        return self.type == "int"
 
 
 class Message:

@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any, TypeVar
 
 from ._base import Buffer, FieldInfo, Message
-from ._enumeration import OpenEnum
+from ._enumeration import OpenEnum, is_signed
 from ._errors import LengthError, RangeError
 
 _E = TypeVar("_E", bound=OpenEnum)
@@ -41,6 +41,8 @@ def bit_table(*parts: tuple[int, int, Any]) -> tuple[Any, ...]:
     for shift, bits, kind in parts:
         if kind is signed:
             values = [signed(value, bits) for value in range(1 << bits)]
+        elif issubclass(kind, OpenEnum) and is_signed(kind):
+            values = [kind(signed(value, bits)) for value in range(1 << bits)]
         else:
             values = [kind(value) for value in range(1 << bits)]
         mask = (1 << bits) - 1
@@ -172,7 +174,7 @@ def range_error(message: Message) -> RangeError:
 
 def raw_range(info: FieldInfo) -> tuple[int, int]:
     """Smallest and largest raw value of a field that holds integers."""
-    if info.type == "int":
+    if info.signed:
         return -(1 << (info.bits - 1)), (1 << (info.bits - 1)) - 1
     return 0, (1 << info.bits) - 1
 

@@ -164,7 +164,7 @@ class _Decoder:
         start, size = info.at // 8, info.bits // 8
         if info.type in OCTETS:
             return self.rows[:, start : start + size]
-        code = {"int": "i", "float": "f"}.get(info.type, "u")
+        code = "i" if info.signed else "f" if info.type == "float" else "u"
         is_big = (info.byte_order or self.message.BYTE_ORDER) == "big"
         order = ">" if is_big else "<"
         kind = self.numpy.dtype(f"{order}{code}{size}")
@@ -184,7 +184,7 @@ class _Decoder:
 
     def _within(self, info: FieldInfo, byte: int, shift: int, bits: int, _: int) -> Any:
         column = self._byte(byte)
-        if info.type == "int":
+        if info.signed:
             column = (column << (8 - shift - bits)).view(self.numpy.int8)
             return column >> (8 - bits)
         if shift + bits < 8:
@@ -200,7 +200,7 @@ class _Decoder:
         size = next(size for size in (8, 16, 32, 64) if size >= info.bits)
         if info.type == "float":
             return total.astype(f"u{size // 8}").view(f"f{size // 8}")
-        if info.type != "int":
+        if not info.signed:
             return total.astype(f"u{size // 8}")
         spare = numpy.uint64(64 - info.bits)
         return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(

@@ -15,7 +15,7 @@ from icdgen.render import Renderer
 from tests.conformance.testees import RUNTIME, TEMPLATES
 
 MESSAGES = frozenset({"testee.h", "testee_line.h", "testee_line.c", "testee_messages.c"})  # the others need a protocol
-TYPES = {"bool": "TESTEE_BOOL", "bytes": "TESTEE_BYTES", "text": "TESTEE_BYTES", "int": "TESTEE_SIGNED"}
+TYPES = {"bool": "TESTEE_BOOL", "bytes": "TESTEE_BYTES", "text": "TESTEE_BYTES"}
 
 
 class Limit(NamedTuple):
@@ -51,10 +51,11 @@ class MessageRow(NamedTuple):
 
 
 class EnumRow(NamedTuple):
-    """An enumeration; ``most`` is the largest value that its type holds."""
+    """An enumeration; ``outside`` holds of a value that its type does not."""
 
     name: str
-    most: str
+    is_signed: bool
+    outside: str
 
 
 class Route(NamedTuple):
@@ -141,7 +142,7 @@ class _Rows:
         field, stem = one.model, names.stem(one.message)
         macros = [(constant.key, names.constant(one.message, constant.name)) for constant in one.constants]
         return FieldRow(
-            type=TYPES.get(field.type, "TESTEE_UNSIGNED"),
+            type="TESTEE_SIGNED" if field.signed else TYPES.get(field.type, "TESTEE_UNSIGNED"),
             member=one.name,
             size=field.bits // 8 if field.is_bytes else one.storage.bits // 8,
             name_of=f"{self.node.name}_{names.stem(one.enum)}_testee_name" if one.enum is not None else "",
@@ -155,4 +156,8 @@ class _Rows:
 
 
 def _enum(enum: EnumDescription) -> EnumRow:
-    return EnumRow(names.stem(enum), f"UINT{enum.storage.bits}_MAX")
+    bits, signed = enum.storage
+    outside = (
+        f"(int64_t)value < INT{bits}_MIN || (int64_t)value > INT{bits}_MAX" if signed else f"value > UINT{bits}_MAX"
+    )
+    return EnumRow(names.stem(enum), signed, outside)

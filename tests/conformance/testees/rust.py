@@ -76,7 +76,10 @@ class NodeEntry:
         }
         self.routes = [[self._route(*route) for route in routes] for routes in ways.values()]
         self.enums = [
-            EnumEntry(f"{crate}::{node.name}::enums::{names.type_name(enum)}", f"u{enum.storage.bits}")
+            EnumEntry(
+                f"{crate}::{node.name}::enums::{names.type_name(enum)}",
+                f"{'i' if enum.storage.signed else 'u'}{enum.storage.bits}",
+            )
             for enum in node.enums
         ]
         self.sums = [Dispatcher(way, way.capitalize(), f"u{id_bits}") for way, routes in ways.items() if routes]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from tests.importer.manuals.wild import MESSAGES, PROSE, REGISTERS, Wild, web
+from tests.importer.manuals.wild import MESSAGES, PROSE, REGISTERS, Wild, unit, web
 
 
 def typst(path: Path, text: str) -> None:
@@ -27,7 +27,7 @@ def _rows(message: dict) -> list[list[str]]:
     for one in message["fields"]:
         kind = {"uint": "uint", "int": "int"}[one["type"]] + str(one["bits"])
         factor = one.get("formula", "raw*1").removeprefix("raw*")
-        made.append([str(one["at"] // 8), str(one["bits"] // 8), one["name"], kind, one.get("unit", "-"), factor])
+        made.append([str(one["at"] // 8), str(one["bits"] // 8), one["name"], kind, unit(one), factor])
     return made
 
 

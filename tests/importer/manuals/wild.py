@@ -28,8 +28,8 @@ MESSAGES = [
         field(0, 8, "Mode"), field(8, 16, "Speed", unit="rpm"), field(24, 16, "Current", "int", unit="mA", formula="raw*10"),
         field(40, 32, "Uptime", unit="ms")]},
     {"name": "Temperatures", "id": 0x22, "kind": "telemetry", "length": 6, "fields": [
-        field(0, 16, "Winding", "int", unit="degC", formula="raw*0.01"),
-        field(16, 16, "Bridge", "int", unit="degC", formula="raw*0.01"),
+        field(0, 16, "Winding", "int", unit="C", formula="raw*0.01"),
+        field(16, 16, "Bridge", "int", unit="C", formula="raw*0.01"),
         field(32, 16, "Supply", unit="mV")]},
     {"name": "Limits", "id": 0x7F, "kind": "telemetry", "length": 5, "fields": [
         field(0, 8, "Profile"), field(8, 32, "Energy", unit="J")]},
@@ -59,13 +59,19 @@ class Wild:
     profile: str
 
 
-def _size(one: dict, name: str = "") -> str:
+def size(one: dict) -> str:
+    """The type and its width as sheets print them."""
     return {"uint": {8: "U8", 16: "U16", 32: "U32"}, "int": {8: "S8", 16: "S16", 32: "S32"}}[one["type"]][one["bits"]]
+
+
+def unit(one: dict) -> str:
+    """The unit as it is printed."""
+    return {"C": "degC"}.get(one.get("unit", "-"), one.get("unit", "-"))
 
 
 def _scaled(one: dict) -> str:
     factor = one.get("formula", "").removeprefix("raw*")
-    return f"{factor} {one.get('unit', '')}".strip() or "-"
+    return f"{factor} {unit(one).strip('-')}".strip() or "-"
 
 
 def platypus(path: Path, page: tuple[float, float], story: list, rules: str = "grid") -> None:
@@ -101,9 +107,7 @@ def sections(path: Path) -> None:
         rows = [["Offset", "Size", "Field", "Type", "Unit", "Scale"]]
         for one in message["fields"]:
             factor = one.get("formula", "raw*1").removeprefix("raw*")
-            rows.append(
-                [str(one["at"] // 8), str(one["bits"] // 8), one["name"], _size(one), one.get("unit", "-"), factor]
-            )
+            rows.append([str(one["at"] // 8), str(one["bits"] // 8), one["name"], size(one), unit(one), factor])
         story += [
             f"# 4.{index} {message['name']} (0x{message['id']:02X})",
             PROSE,
@@ -189,7 +193,7 @@ def two_heads(path: Path) -> None:
     for message in MESSAGES:
         rows = [["Position", "", "Length (bits)", "Name", "Type", "Unit"], ["Byte", "Bit", "", "", "", ""]]
         for one in message["fields"]:
-            rows.append([str(one["at"] // 8), "0", str(one["bits"]), one["name"], _size(one), _scaled(one)])
+            rows.append([str(one["at"] // 8), "0", str(one["bits"]), one["name"], size(one), _scaled(one)])
         spans = [("SPAN", (0, 0), (1, 0)), *(("SPAN", (i, 0), (i, 1)) for i in range(2, 6))]
         story += [f"# {message['name']} (0x{message['id']:02X})", (rows, spans, [40, 40, 70, 110, 60, 70])]
     platypus(path, A4, story)
@@ -223,7 +227,7 @@ def bare(path: Path) -> None:
         with pdf.table(borders_layout="NONE", col_widths=(15, 15, 30, 20, 20)) as table:
             table.row(["Start Byte", "Bytes", "Signal", "Data Type", "Scaling"])
             for one in message["fields"]:
-                table.row([str(one["at"] // 8), str(one["bits"] // 8), one["name"], _size(one), _scaled(one)])
+                table.row([str(one["at"] // 8), str(one["bits"] // 8), one["name"], size(one), _scaled(one)])
         pdf.ln(4)
     pdf.output(str(path))
 
@@ -262,7 +266,7 @@ def beside(path: Path) -> None:
     def cell(message: dict) -> list:
         rows = [["Offset", "Size", "Field", "Type", "Unit"]]
         for one in message["fields"]:
-            rows.append([str(one["at"] // 8), str(one["bits"] // 8), one["name"], _size(one), _scaled(one)])
+            rows.append([str(one["at"] // 8), str(one["bits"] // 8), one["name"], size(one), _scaled(one)])
         table = Table(rows, colWidths=[38, 32, 58, 36, 64], style=[("GRID", (0, 0), (-1, -1), 0.5, colors.black)])
         return [Paragraph(f"<b>{message['name']} (0x{message['id']:02X})</b>", style["BodyText"]), table]
 

@@ -57,7 +57,7 @@ def _from_bits(field: FieldDescription, wide: int, joined: bool) -> str:
         return cast(BITS, storage.bits) if joined and storage.bits != wide else BITS
     if not field.is_narrow:
         return f"icdgen_i{storage.bits}({cast(BITS, storage.bits) if storage.bits != wide else BITS})"
-    sign = mask(1 << (field.model.bits - 1), 64 if wide == 64 else storage.bits)
+    sign = mask(1 << (field.model.bits - 1), min(wide, storage.bits))
     extended = f"icdgen_extend{wide}({BITS}, {sign})"
     return extended if storage.bits == wide else cast(extended, storage.bits, True)
 

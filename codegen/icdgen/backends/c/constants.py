@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 from icdgen.backends.c import names
 from icdgen.backends.c.types import mask
 from icdgen.describe import EnumDescription, FieldDescription, MessageDescription
@@ -34,7 +37,18 @@ def initial(message: MessageDescription) -> list[str]:
     ]
 
 
-def of_enum(enum: EnumDescription) -> tuple[bool, str]:
-    """Whether the values of an enumeration must be macros, as not every `int` holds them; and the form of their literals."""
-    are_macros = any(one.model.value > _MAX_ENUMERATOR for one in enum.members)
-    return are_macros, "UINT64_C(%d)" if enum.storage.bits == 64 else "%du" if are_macros else "%d"
+def of_enum(enum: EnumDescription) -> tuple[bool, Callable[[int], str]]:
+    """Whether the values of an enumeration must be macros, as not every `int` holds them; and what spells their literals."""
+    are_macros = any(abs(one.model.value) > _MAX_ENUMERATOR for one in enum.members)
+    if enum.storage.signed:
+        return are_macros, partial(_signed, bits=enum.storage.bits if are_macros else 0)
+    form = "UINT64_C(%d)" if enum.storage.bits == 64 else "%du" if are_macros else "%d"
+    return are_macros, form.__mod__
+
+
+def _signed(value: int, bits: int) -> str:
+    """A literal of so many bits; of an `int` if 0."""
+    if bits and value == -(1 << bits - 1):
+        return f"INT{bits}_MIN"
+    text = f"INT64_C({value})" if bits == 64 else str(value)
+    return f"({text})" if value < 0 and bits else text

@@ -71,8 +71,9 @@ def _message(message: MessageDescription, linked: bool) -> Iterator[Identifier]:
         yield message.identifier(FILE, names.constant(message, end))
     for end in ("t", "init", "decode", "encode", *(("misfit",) if message.is_narrow else ())):
         yield message.identifier(FILE, f"{stem}_{end}")
+    members = f"members of {stem}_t"
     for field in message.fields:
-        yield field.identifier(f"members of {stem}_t", field.name)
+        yield field.identifier(members, field.name)
         for one in field.constants:
             yield field.identifier(FILE, names.constant(message, one.name))
         for end in _physical_names(field) if field.has_physical else ():

@@ -11,6 +11,7 @@ from icdgen.describe.comments import Comment
 
 WIDTH = 120
 
+_CAN_BE_MARKUP = re.compile(r"[\\@<&#%*_~[]")
 _MARKUP = re.compile(r"[\\@]|<(?=[A-Za-z/!?])|[&#%](?=[\w#:])|(?:(?<![^\s<{(\[,:;]))[*_~](?=\S)|\[(?=[^\]]*\][(\[:])")
 _COMMAND = re.compile(r"@file\Z|@note (?=Erratum |Note )")
 
@@ -31,7 +32,7 @@ def plain(text: str) -> str:
 def prose(text: str) -> str:
     """`plain` text for a documentation comment: only backticks are markup, nothing is a command or HTML to Doxygen or clang."""
     text = plain(text)
-    return text if text.replace(" ", "").isalnum() else _MARKUP.sub(r"\\\g<0>", text)
+    return _MARKUP.sub(r"\\\g<0>", text) if _CAN_BE_MARKUP.search(text) else text
 
 
 def _spelled(paragraph: str) -> str:

@@ -21,7 +21,7 @@ from icdgen.vectors.patterns import values
 from icdgen.vectors.settings import NEVER, Settings
 
 BYTES_IN_ROW, NUMBERS_IN_ROW = 16, 4
-TYPES = {"bool": "BOOL", "bytes": "BYTES", "text": "BYTES", "int": "SIGNED"}
+TYPES = {"bool": "BOOL", "bytes": "BYTES", "text": "BYTES"}
 
 
 class Accessors(NamedTuple):
@@ -147,7 +147,7 @@ class _Rows:
             stem=f"{names.stem(one.message)}_selftest_{one.name}",
             size=field.bits // 8 if is_bytes else storage.bits // 8,
             packed=(field.bits + 7) // 8,
-            type=f"ICDGEN_SELFTEST_{TYPES.get(field.type, 'UNSIGNED')}",
+            type=f"ICDGEN_SELFTEST_{'SIGNED' if field.signed else TYPES.get(field.type, 'UNSIGNED')}",
             fresh=_unsigned(one.fresh),
             unfit=list(map(_unsigned, unfit)),
             whole=_whole(one),

@@ -32,6 +32,8 @@ def integer(value: int) -> int | str:
 
 def _field(field: Field, node: Node) -> dict[str, object]:
     plan: dict[str, object] = {"name": field.name, "type": field.type, "bits": field.bits}
+    if field.signed:
+        plan["signed"] = True
     if field.is_bytes:
         plan["type"] = "bytes"
         if field.type == "text":

@@ -12,7 +12,7 @@ _TYPES = {
     "uint": "Unsigned integer of 1 to 64 bits.",
     "int": "Signed integer in two's complement.",
     "bool": "One bit: 1 is true.",
-    "enum": "Unsigned integer whose values have names. Values without a name are kept.",
+    "enum": "Integer whose values have names, unsigned unless one of them is negative. Values without a name are kept.",
     "float": "IEEE 754 number of 32 or 64 bits. Every NaN is kept as it is.",
     "bytes": "Whole bytes, in order.",
     "text": "ASCII characters in whole bytes, filled with NUL.",

@@ -126,8 +126,9 @@ class Packer:
             code = _INTEGERS[one.bits]
             self.items.append(_Item(byte, size, code.lower() if one.signed else code, own, own))
         else:
-            self.items.append(_Item(byte, size, _INTEGERS[one.bits], local, own))
-            if one.bits == 8:
+            code = _INTEGERS[one.bits]
+            self.items.append(_Item(byte, size, code.lower() if one.signed else code, local, own))
+            if one.bits == 8 and not one.signed:
                 rows = self._table("_BITS", "bit_table", f"(0, 8, {self._kind(field)})")
                 self._store(field, f"{rows}[{local}]")
             else:
@@ -185,10 +186,8 @@ class Packer:
             self.assign.append(f"{local} {'|=' if number else '='} {term}")
         if one.type == "float":
             self._store(field, f"_floats.float{one.bits}({local})")
-        elif one.signed:
-            self._store(field, f"_codec.signed({local}, {one.bits})")
         else:
-            self._assign(field, local)
+            self._assign(field, f"_codec.signed({local}, {one.bits})" if one.signed else local)
 
     def _keep_nans(self) -> None:
         if self.floats:

@@ -36,31 +36,34 @@ def _whole(field: FieldDescription, size: int) -> str:
     first = one.at // 8
     if size == 8:
         byte = f"bytes[{first}]"
-        if one.type == "enum":
-            return _enum(byte, size, field.storage.bits)
-        return byte if one.type == "uint" else f"i8::from_le_bytes([{byte}])"
-    kind = {"float": "f", "int": "i"}.get(one.type, "u")
+        value = f"i8::from_le_bytes([{byte}])" if one.signed else byte
+        return _enum(field, value, size) if one.type == "enum" else value
+    kind = "f" if one.type == "float" else "i" if one.signed else "u"
     value = f"{kind}{size}::from_{_order(field)}_bytes(take!(bytes[{first}; {size // 8}]))"
-    return _enum(value, size, field.storage.bits) if one.type == "enum" else value
+    return _enum(field, value, size) if one.type == "enum" else value
 
 
 def _order(field: FieldDescription) -> str:
     return "le" if field.byte_order == "little" else "be"
 
 
-def _enum(value: str, size: int, wider: int) -> str:
-    return f"Coded::from_raw({value})" if size == wider else f"Coded::from_raw(u{wider}::from({value}))"
+def _enum(field: FieldDescription, value: str, size: int) -> str:
+    storage = field.storage
+    wider = value if size == storage.bits else f"{'i' if storage.signed else 'u'}{storage.bits}::from({value})"
+    return f"Coded::from_raw({wider})"
 
 
 def _finished(field: FieldDescription, value: str, size: int) -> str:
     """The unsigned value of ``size`` bits as the field's type."""
     kind = field.model.type
-    if kind == "enum":
-        return _enum(value, size, field.storage.bits)
     if kind == "float":
         return f"f{size}::from_bits({value})"
-    if kind == "uint":
-        return value
+    value = _signed(field, value, size) if field.model.signed else value
+    return _enum(field, value, size) if kind == "enum" else value
+
+
+def _signed(field: FieldDescription, value: str, size: int) -> str:
+    """The unsigned value of ``size`` bits in two's complement."""
     unused = size - field.model.bits
     if size == 8:
         shifted = value if not unused else f"{_parenthesised(value)} << {unused}"
@@ -121,7 +124,7 @@ def writing(field: FieldDescription) -> list[str]:
     if len(row) > 1:
         lines.append(f"let value = {source};")
         source = "value"
-    if one.type == "int":
+    if one.signed:
         lines.append(f"let value = u{size}::from_le_bytes({source}.to_le_bytes());")
         source = "value"
     return lines + _put_pieces(row, source, size)
@@ -133,7 +136,7 @@ def _copied(first: int, count: int, source: str) -> str:
 
 def _put_whole(field: FieldDescription, source: str) -> list[str]:
     first, size, kind = field.model.at // 8, field.storage.bits, field.model.type
-    if size == 8 and kind != "int":
+    if size == 8 and not field.model.signed:
         return [f"bytes[{first}] = {source}{'.raw()' if kind == 'enum' else ''};"]
     to_bytes = f"to_{_order(field)}_bytes()"
     if kind == "enum":

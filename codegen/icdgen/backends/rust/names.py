@@ -16,6 +16,7 @@ RESERVED = frozenset("""
 
 # Those of them that cannot be written with `r#` either.
 NEVER = frozenset(("self", "Self", "super", "crate", "_"))
+_RAW = RESERVED - NEVER
 
 # Types and traits that the generated modules call by their bare name, in the scope where a message's type stands.
 USED_TYPES = ("Result", "Error", "Default", "Coded", "Scale", "Telemetry", "Telecommand")
@@ -37,7 +38,7 @@ def type_name(one: MessageDescription | EnumDescription | MemberDescription) -> 
 
 def field_name(field: FieldDescription) -> str:
     """``estimated_roll_angle``; ``r#type`` where the name is a keyword."""
-    return f"r#{field.name}" if field.name in RESERVED - NEVER else field.name
+    return f"r#{field.name}" if field.name in _RAW else field.name
 
 
 def catch_all(enum: EnumDescription) -> str:

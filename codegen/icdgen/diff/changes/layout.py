@@ -9,7 +9,7 @@ from icdgen.diff.moves import Move
 from icdgen.diff.pairs import FieldPair, MessagePair, NodePair, kind, orders
 from icdgen.diff.rule import Found, rule
 from icdgen.diff.where import Places
-from icdgen.diff.wording import bits, some, span, type_of
+from icdgen.diff.wording import bits, read_as, some, span, type_of
 from icdgen.icd.rules.wording import count, listing, quote
 from icdgen.icd.wire_ids import size
 
@@ -82,10 +82,10 @@ def read_otherwise(pair: FieldPair, ctx: Context) -> Iterator[Found]:
     details: tuple[str, ...] = ()
     if {kind(old), kind(new)} == {"unsigned", "int"} and old.bits == new.bits:
         half = 1 << (new.bits - 1)
-        first, last = (str(half), str(-half)) if new.type == "int" else (str(-half), str(half))
+        first, last = (str(half), str(-half)) if new.signed else (str(-half), str(half))
         details = (f"What was read as {first} is read as {last}.",)
     text = f"{quote(new.name)} is a {type_of(new)}, was a {type_of(old)}"
-    yield Found(text, ("type",), old.type, new.type, details)
+    yield Found(text, ("type",), read_as(old), read_as(new), details)
 
 
 @rule("DIF112", "node")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import groupby
 from typing import NamedTuple
 
 from icdgen.diff.change import Change
@@ -36,11 +37,6 @@ class Box(NamedTuple):
     key: str  # the same for the field's boxes in old and new
 
 
-class Tick(NamedTuple):
-    x: int
-    text: str
-
-
 class Link(NamedTuple):
     """From a field in the old strip to where it lies in the new one."""
 
@@ -56,7 +52,7 @@ class Row:
     frames: list[Box] = field(default_factory=list)
     boxes: list[Box] = field(default_factory=list)
     links: list[Link] = field(default_factory=list)
-    ticks: list[Tick] = field(default_factory=list)
+    ticks: list[tuple[int, int]] = field(default_factory=list)  # x, byte
 
     @property
     def is_new(self) -> bool:
@@ -65,41 +61,36 @@ class Row:
         return any(box.kind != "same" for box in self.boxes) or ends.get(OLD_Y) != ends.get(NEW_Y)
 
 
-class Rest(NamedTuple):
-    """Rows in which nothing changed."""
-
-    text: str
-
-
 class Drawing(NamedTuple):
-    """``parts`` are rows, and what stands for rows that are as before."""
+    """``parts`` are rows, and words that stand for rows that are as before."""
 
-    width: int
-    height: int
-    old_y: int
-    new_y: int
-    middle: int
-    parts: list[Row | Rest]
+    parts: list[Row | str]
     title: str
+    width: int = WIDTH
+    height: int = ROW_HEIGHT
+    old_y: int = OLD_Y + HEIGHT // 2
+    new_y: int = NEW_Y + HEIGHT // 2
+    middle: int = HEIGHT
 
 
-def draw(pair: MessagePair, changes: list[Change]) -> Drawing:
-    """The layouts of a message; one strip is empty where it is only in one ICD."""
-    kinds = {id(one): _kind(one, changes) for one in pair.fields}
+def draw(pair: MessagePair, changes: list[Change]) -> Drawing | None:
+    """The layouts of a message; one strip is empty where it is only in one ICD. None where no bit changed place or sense."""
+    kinds = {id(one): _kind(one, changes) for one in pair.parts}
     sides = tuple(message.length * 8 if message is not None else 0 for message in (pair.before, pair.after))
     rows = [Row() for _ in range((max(*sides, 1) + BITS - 1) // BITS)]
     for size, y in zip(sides, (OLD_Y, NEW_Y), strict=True):
         _frame(rows, size, y)
-    for number, one in enumerate(sorted(pair.fields, key=lambda p: p.any.at)):
+    for number, one in enumerate(sorted(pair.parts, key=lambda p: p.any.at)):
         before = _boxes(rows, one.old, OLD_Y, kinds[id(one)], f"f{number}") if one.before is not None else {}
         after = _boxes(rows, one.new, NEW_Y, kinds[id(one)], f"f{number}") if one.after is not None else {}
         for index in before.keys() & after.keys():
             if kinds[id(one)] != "same" or before[index].x != after[index].x:
                 rows[index].links.append(_link(before[index], after[index], kinds[id(one)], f"f{number}"))
     for number, row in enumerate(rows):
-        row.ticks = [Tick(LEFT + byte * 8 * CELL, str(number * BITS // 8 + byte)) for byte in range(BITS // 8)]
-    title = f"Bit layouts of {pair.any.name}, old above new"
-    return Drawing(WIDTH, ROW_HEIGHT, OLD_Y + HEIGHT // 2, NEW_Y + HEIGHT // 2, HEIGHT, _folded(rows), title)
+        row.ticks = [(LEFT + byte * 8 * CELL, number * BITS // 8 + byte) for byte in range(BITS // 8)]
+    if not any(row.is_new for row in rows):
+        return None
+    return Drawing(_folded(rows), f"Bit layouts of {pair.any.name}, old above new")
 
 
 def _kind(one: FieldPair, changes: list[Change]) -> str:
@@ -123,15 +114,13 @@ def _frame(rows: list[Row], size: int, y: int) -> None:
 def _boxes(rows: list[Row], one: Field, y: int, kind: str, key: str) -> dict[int, Box]:
     """A box for each row that the field reaches into."""
     found = {}
-    start, end = one.at, one.at + one.bits
-    while start < end and start // BITS < len(rows):
-        number = start // BITS
-        stop = min(end, (number + 1) * BITS)
-        width = (stop - start) * CELL
+    end = one.at + one.bits
+    for number in range(one.at // BITS, min(-(-end // BITS), len(rows))):
+        start = max(one.at, number * BITS)
+        width = (min(end, (number + 1) * BITS) - start) * CELL
         box = Box(LEFT + start % BITS * CELL, y, width, kind, _label(one.name, width), _title(one), key)
         rows[number].boxes.append(box)
         found[number] = box
-        start = stop
     return found
 
 
@@ -157,19 +146,13 @@ def _link(old: Box, new: Box, kind: str, key: str) -> Link:
     return Link(" ".join(f"{x:g},{y}" for x, y in corners), kind, key)
 
 
-def _folded(rows: list[Row]) -> list[Row | Rest]:
-    parts: list[Row | Rest] = []
-    first = None
-    for number in range(len(rows) + 1):
-        plain = number < len(rows) and not rows[number].is_new
-        if plain and first is None:
-            first = number
-        if not plain and first is not None:
-            if number - first > 1:
-                parts.append(Rest(f"bytes {first * BITS // 8} to {number * BITS // 8 - 1} are as before"))
-            else:
-                parts.append(rows[first])
-            first = None
-        if number < len(rows) and not plain:
-            parts.append(rows[number])
+def _folded(rows: list[Row]) -> list[Row | str]:
+    parts: list[Row | str] = []
+    for is_new, group in groupby(enumerate(rows), key=lambda one: one[1].is_new):
+        run = list(group)
+        if is_new or len(run) == 1:
+            parts += [row for _, row in run]
+        else:
+            first, last = run[0][0] * BITS // 8, (run[-1][0] + 1) * BITS // 8 - 1
+            parts.append(f"bytes {first} to {last} are as before")
     return parts

@@ -8,13 +8,12 @@ from icdgen.diagnostics import Finding, Place
 from icdgen.diff.accepted import about_stale
 from icdgen.diff.change import Change
 from icdgen.diff.report import Report
-from icdgen.diff.reports.groups import notes
 
 
 def of_change(change: Change) -> Finding:
     """At its place in the new ICD, or in the old one where it is gone from the new."""
     place = change.place or Place("icd")
-    return Finding(change.code, f"{change.layer}: {change.message}", place, " ".join(notes(change)), change.severity)
+    return Finding(change.code, f"{change.layer}: {change.message}", place, " ".join(change.notes), change.severity)
 
 
 def of_report(report: Report) -> Iterator[Finding]:
@@ -24,6 +23,5 @@ def of_report(report: Report) -> Iterator[Finding]:
     for use in report.uses or ():
         first = use.changes[0]
         severity = "error" if any(change.severity == "error" for change in use.changes) else "warning"
-        said = "; ".join(dict.fromkeys(change.message for change in use.changes))
         place = Place(use.file, use.line, use.column, len(use.name))
-        yield Finding(first.code, f"`{use.name}` is touched: {said}", place, "", severity)
+        yield Finding(first.code, f"`{use.name}` is touched: {'; '.join(use.messages)}", place, "", severity)

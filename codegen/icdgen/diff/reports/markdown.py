@@ -6,11 +6,10 @@ import re
 from collections.abc import Iterator
 
 from icdgen.diff.accepted import about_stale
-from icdgen.diff.change import Change
 from icdgen.diff.compatibility import Direction
 from icdgen.diff.layers import ABOUT, LAYERS, TEXT
 from icdgen.diff.report import Report
-from icdgen.diff.reports.groups import groups, notes
+from icdgen.diff.reports.groups import groups
 from icdgen.icd.rules.wording import count
 from icdgen.reports.excerpt import shown
 
@@ -52,8 +51,7 @@ def _summary(report: Report) -> Iterator[str]:
     yield "| layer | changes | additions | |"
     yield "|---|---:|---:|---|"
     for layer, number in report.counts().items():
-        additions = sum(1 for c in report.of_layer(layer) if c.addition)
-        yield f"| **{layer}** | {number} | {additions or ''} | {ABOUT[layer]} |"
+        yield f"| **{layer}** | {number} | {report.additions(layer) or ''} | {ABOUT[layer]} |"
     yield ""
     yield "| | | frames as before |"
     yield "|---|---|---|"
@@ -89,22 +87,13 @@ def _layer(report: Report, layer: str) -> Iterator[str]:
         yield f"**{said(group.title)}** ({said(group.about)}, {said(group.node)})"
         yield ""
         for change in group.changes:
-            yield from _change(change)
+            places = " → ".join(said(f"{place.file}:{place.line}") for place in change.places)
+            yield f"- {change.kind} `{change.code}` {said(change.message)} – {places}"
+            yield from (f"  - {said(note)}" for note in change.notes)
         yield ""
     if layer == TEXT:
         yield "</details>"
         yield ""
-
-
-def _change(change: Change) -> Iterator[str]:
-    kind = "addition" if change.addition else change.severity
-    yield f"- {kind} `{change.code}` {said(change.message)} – {_place(change)}"
-    for note in notes(change):
-        yield f"  - {said(note)}"
-
-
-def _place(change: Change) -> str:
-    return " → ".join(said(f"{place.file}:{place.line}") for place in (change.old, change.new) if place is not None)
 
 
 def _rest(report: Report) -> Iterator[str]:
@@ -112,7 +101,7 @@ def _rest(report: Report) -> Iterator[str]:
         yield f"### Uses in your sources: {len(report.uses)}"
         yield ""
         for use in report.uses:
-            codes = ", ".join(f"`{code}`" for code in dict.fromkeys(c.code for c in use.changes))
+            codes = ", ".join(f"`{code}`" for code in use.codes)
             yield f"- {said(f'{use.file}:{use.line}')} `{use.name}` ({codes})"
         yield ""
     if report.accepted:

@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterator
 
 from icdgen.diff.accepted import about_stale
 from icdgen.diff.change import Change
-from icdgen.diff.compatibility import NO, Direction
+from icdgen.diff.compatibility import Direction
 from icdgen.diff.layers import ABOUT, LAYERS, TEXT
 from icdgen.diff.report import Report
-from icdgen.diff.reports.groups import groups, notes
+from icdgen.diff.reports.groups import groups
 from icdgen.icd.rules.wording import count
 from icdgen.reports.excerpt import printable, shown
 
@@ -49,7 +49,7 @@ def report(report: Report, colour: bool = False, width: int | None = None, every
 
 def _summary(report: Report, paint: Paint) -> Iterator[str]:
     for layer, number in report.counts().items():
-        additions = sum(1 for c in report.of_layer(layer) if c.addition)
+        additions = report.additions(layer)
         extra = f" ({count(additions, 'addition')})" if additions else ""
         label = paint(layer, f"{layer:8}") if number else f"{layer:8}"
         yield f"  {label} {number:4}  {ABOUT[layer]}{extra}"
@@ -63,12 +63,11 @@ def _direction(direction: Direction, paint: Paint, width: int | None, everything
     for line in direction.general:
         yield from _wrapped(shown(line), width, "  ! ")
     most = len(direction.frames) if everything else MOST_FRAMES
-    frames = sorted(direction.frames, key=lambda f: f.verdict != NO)
-    for frame in frames[:most]:
+    for frame in direction.worst_first[:most]:
         head = f"  {paint(frame.verdict, f'{frame.verdict:6}')} {printable(frame.node)} {shown(frame.message)} ({frame.id})"
         yield f"{head}: {shown('; '.join(frame.reasons))}"
-    if len(frames) > most:
-        yield f"  ... and {len(frames) - most} more, which --all lists"
+    if len(direction.frames) > most:
+        yield f"  ... and {len(direction.frames) - most} more, which --all lists"
 
 
 def _layer(report: Report, layer: str, paint: Paint, width: int | None, everything: bool) -> Iterator[str]:
@@ -89,21 +88,14 @@ def _layer(report: Report, layer: str, paint: Paint, width: int | None, everythi
 
 
 def _change(change: Change, paint: Paint, width: int | None, explained: bool) -> Iterator[str]:
-    kind = "addition" if change.addition else change.severity
-    head = paint("note" if change.addition else change.severity, f"{kind}[{change.code}]")
-    lead = len(f"{kind}[{change.code}] ")
-    first, *rest = _wrapped(shown(change.message), width, _INDENT + " " * lead)
-    yield f"{_INDENT}{head} {first.lstrip()}"
+    label = f"{change.kind}[{change.code}]"
+    first, *rest = _wrapped(shown(change.message), width, _INDENT + " " * (len(label) + 1))
+    yield f"{_INDENT}{paint('note' if change.addition else change.severity, label)} {first.lstrip()}"
     yield from rest
-    for note in notes(change) if explained else ():
+    for note in change.notes if explained else ():
         yield from _wrapped(shown(note), width, _INDENT * 2)
-    yield f"{_INDENT * 2}{paint('place', printable(_places(change)))}"
-
-
-def _places(change: Change) -> str:
-    if change.old is None or change.new is None:
-        return str(change.place or "no file")
-    return f"{change.old} -> {change.new}"
+    places = " -> ".join(map(str, change.places)) or "no file"
+    yield f"{_INDENT * 2}{paint('place', printable(places))}"
 
 
 def _wrapped(text: str, width: int | None, indent: str) -> list[str]:
@@ -119,10 +111,10 @@ def _uses(report: Report, paint: Paint) -> Iterator[str]:
     yield paint("head", "uses in your sources") + (": none" if not report.uses else "")
     shown_before: set[str] = set()
     for use in report.uses:
-        codes = ", ".join(dict.fromkeys(change.code for change in use.changes))
-        yield f"  {paint('place', printable(f'{use.file}:{use.line}:{use.column}'))}: {use.name} ({codes})"
+        place = paint("place", printable(f"{use.file}:{use.line}:{use.column}"))
+        yield f"  {place}: {use.name} ({', '.join(use.codes)})"
         yield f"{_INDENT}{shown(use.text.strip())}"
-        for message in dict.fromkeys(change.message for change in use.changes):
+        for message in use.messages:
             if message not in shown_before:  # once is enough
                 shown_before.add(message)
                 yield f"{_INDENT}  {shown(message)}"

@@ -23,7 +23,6 @@ from icdgen.icd.rules import (  # noqa: F401  (importing a theme registers its r
     layout,
     limits,
     loggable,
-    pages,
     protocol,
     protocol_limits,
     protocol_meaning,
@@ -75,4 +74,6 @@ def explain(code: str) -> str:
     if rule is None:
         close = close_to(code.upper(), ALL)
         raise UnknownRule(f"there is no rule {code}" + (f"; did you mean {close}?" if close else ""))
+    from icdgen.icd.rules import pages
+
     return pages.text(rule.code, rule.severity, rule.page)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Set
 from dataclasses import replace
-from operator import is_
+from operator import attrgetter, is_
 from typing import NamedTuple
 
 from icdgen.icd.identifiers import Identifier
@@ -15,13 +17,20 @@ TWINS = frozenset(
     {"ICD050", "ICD051", "ICD052", "ICD053", "ICD054", "ICD057"}
 )  # rules about names that are there twice
 
+_TEXT = attrgetter("text")
+
 
 class Declared(NamedTuple):
-    """What one language declares."""
+    """What one language declares: hundreds of thousands of names, so that rules ask for those of some texts only."""
 
     language: str
     reserved: frozenset[str]
     identifiers: list[Identifier]
+    texts: Counter[str]  # in all scopes together
+
+    def spelled(self, texts: Set[str]) -> list[Identifier]:
+        """The identifiers that are one of these texts."""
+        return [one for one in self.identifiers if one.text in texts] if texts else []
 
 
 def declared(ctx: Context) -> list[Declared]:
@@ -30,7 +39,8 @@ def declared(ctx: Context) -> list[Declared]:
         icd = _sound(ctx)
         ctx.declared = []
         for one in ctx.languages if icd.nodes else ():
-            ctx.declared.append(Declared(one.name, one.reserved, list(one.identifiers(icd))))
+            identifiers = list(one.identifiers(icd))
+            ctx.declared.append(Declared(one.name, one.reserved, identifiers, Counter(map(_TEXT, identifiers))))
     return ctx.declared
 
 

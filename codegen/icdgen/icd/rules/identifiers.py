@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain, filterfalse
 
 from icdgen.diagnostics import Place
 from icdgen.icd.identifiers import Identifier
@@ -51,10 +52,9 @@ class _Clashes:
 @rule("ICD070")
 def not_reserved(ctx: Context) -> Iterator[Fault]:
     found = _Clashes()
-    for language, reserved, identifiers in declared(ctx):
-        for one in identifiers:
-            if one.text in reserved:
-                found.add(language, one)
+    for names in declared(ctx):
+        for one in names.spelled(names.reserved.intersection(names.texts)):
+            found.add(names.language, one)
     for one, _, texts in found:
         words = " and ".join(
             f"{quote(text)}, a {'header' if _is_file(text) else 'reserved word'} in {listing(langs)}"
@@ -67,14 +67,14 @@ def not_reserved(ctx: Context) -> Iterator[Fault]:
 def no_clash(ctx: Context) -> Iterator[Fault]:
     reported = {id(fault.owner) for code, fault in ctx.raised if code in TWINS}
     found = _Clashes()
-    for language, _, identifiers in declared(ctx):
+    for names in declared(ctx):
         seen: dict[tuple[str, str], Identifier] = {}
-        for one in identifiers:
+        for one in names.spelled({text for text, times in names.texts.items() if times > 1}):
             first = seen.setdefault((one.scope, one.text), one)
             if first is one or (first.source is None and one.source is None):
                 continue
             if not (reported and reported & {id(first.source), id(one.source)}):
-                found.add(language, one, first)
+                found.add(names.language, one, first)
     for one, other, texts in found:
         if other is None:
             continue
@@ -87,13 +87,19 @@ def no_clash(ctx: Context) -> Iterator[Fault]:
         yield Fault(one.source, place, message, "give one of them an `identifier:`, words to build the name from")
 
 
+def _is_name(text: str) -> bool:
+    text = text.removeprefix("r#")  # which makes a name of a keyword of Rust
+    return (text.isidentifier() and text.isascii()) or _is_file(text)
+
+
 @rule("ICD073", severity="warning")
 def is_distinct(ctx: Context) -> Iterator[Fault]:
-    for language, _, identifiers in declared(ctx):
+    for names in declared(ctx):
+        language = names.language
         most = next((getattr(one, "significant", 0) for one in ctx.languages if one.name == language), 0)
         seen: dict[tuple[str, str], Identifier] = {}
         told: set[int] = set()
-        for one in identifiers if most else ():
+        for one in names.spelled({text for text in names.texts if len(text) >= most}) if most else ():
             if _is_file(one.text):
                 continue
             first = seen.setdefault((one.scope, one.text[:most]), one)
@@ -125,11 +131,10 @@ def _is_file(text: str) -> bool:
 @rule("ICD072")
 def is_identifier(ctx: Context) -> Iterator[Fault]:
     found = _Clashes()
-    for language, _, identifiers in declared(ctx):
-        for one in identifiers:
-            text = one.text.removeprefix("r#")  # which makes a name of a keyword of Rust
-            if not ((text.isidentifier() and text.isascii()) or _is_file(text)):
-                found.add(language, one)
+    for names in declared(ctx):
+        odd = chain(filterfalse(str.isidentifier, names.texts), filterfalse(str.isascii, names.texts))
+        for one in names.spelled(set(filterfalse(_is_name, odd))):
+            found.add(names.language, one)
     for one, _, texts in found:
         each = ((quote(text) if text else "nothing", listing(langs)) for text, langs in texts.items())
         becomes = listing(f"{what} in {languages}" for what, languages in each)

@@ -12,13 +12,13 @@ FAR = 4  # lines of text between a caption and its table; more, and it is none
 Items = list[Table | Mark]
 
 
-def attached(items: Items, profile: Profile) -> list[Block]:
-    """Headings, text and tables, the tables with number and caption."""
+def attached(items: Items, profile: Profile, is_part: bool = False) -> list[Block]:
+    """Headings, text and tables, the tables with number and caption. ``is_part``: of a document cut off at both ends."""
     items = beside.parted(guessed.made(items), profile)
     captions = [i for i, item in enumerate(items) if isinstance(item, Mark) and item.kind == "caption"]
     after = {i: _table_from(items, i, 1) for i in captions}
     before = {i: _table_from(items, i, -1) for i in captions}
-    above = _stand_above(items, after, before)
+    above = _stand_above(items, after, before, is_part)
     owner: dict[int, int] = {}
     for i in captions if above else reversed(captions):
         target = (after if above else before)[i]
@@ -55,8 +55,12 @@ def _table_from(items: Items, index: int, step: int) -> int | None:
     return None
 
 
-def _stand_above(items: Items, after: dict[int, int | None], before: dict[int, int | None]) -> bool:
-    """Whether captions stand above their tables in this document: by distance on the page, then by number."""
+def _stand_above(items: Items, after: dict[int, int | None], before: dict[int, int | None], is_part: bool) -> bool:
+    """Whether captions stand above their tables in this document: so that each has one, else by distance on the page,
+    else by number. With prose between caption and table, the distance misleads."""
+    down_all, up_all = (None not in one.values() and len(set(one.values())) == len(one) for one in (after, before))
+    if down_all != up_all and not is_part:
+        return down_all
     nearer = 0
     for i in after:
         down, up = _distance(items, i, after[i], 1), _distance(items, i, before[i], -1)

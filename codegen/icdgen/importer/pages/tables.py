@@ -35,6 +35,7 @@ class Builder:
 
     profile: Profile
     known: frozenset[str]
+    is_part: bool = False  # whether only some pages of the document are read
     out: list[Draft | Mark] = field(default_factory=list)
 
     def run(self, items: list[Item]) -> list[Block]:
@@ -47,7 +48,8 @@ class Builder:
         for one in self.out:
             if isinstance(one, Draft) and one.loose:
                 self.cut(one)
-        return captions.attached([one.table if isinstance(one, Draft) else one for one in self.out], self.profile)
+        made = [one.table if isinstance(one, Draft) else one for one in self.out]
+        return captions.attached(made, self.profile, self.is_part)
 
     def piece(self, piece: Piece) -> None:
         draft = self.continued(piece)

@@ -50,7 +50,7 @@ def read(
             progress(len(pages), count, seen)
     _look_over(pages, document, name)
     made = flow.items(pages, profile)
-    document.blocks = tables.Builder(profile, _known(pages)).run(made)
+    document.blocks = tables.Builder(profile, _known(pages), is_part=only is not None).run(made)
     return document
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from icdgen.icd.units import SPELLINGS, STANDARD
-from icdgen.importer.document import Header, Table, Trouble
+from icdgen.importer.document import DOUBTFUL, Header, Table, Trouble
 from icdgen.importer.profile import Profile
 from icdgen.importer.understand import bitfields, counting, descriptions, formulas, numbers, types
 from icdgen.importer.understand.counting import Extent, Units
@@ -18,7 +18,7 @@ from icdgen.importer.words import folded, grows, number, tidy_unit
 
 MOST_BITS = 64  # of a number
 _NONE = ("", "-", "–", "n/a", "na", "none")
-_READABLE_UNIT = re.compile(r"(?:[^\W\d_]|[%°'\"′″‰(]|1\s*/|10\s*\^)[\w\s%°'\"′″‰^*/·.,()\[\]⁻⁺+-]*\Z")
+_READABLE_UNIT = re.compile(r"(?:[^\W\d_]|[%°℃'\"′″‰(]|1\s*/|10\s*\^)[\w\s%°'\"′″‰^*/·.,()\[\]⁻⁺+-]*\Z")
 _NAMED = re.compile(
     r"(?P<name>[^,;]+?)\s*[,;]\s*(?:unit:?\s*)?(?P<factor>[0-9]*\.?[0-9]+)?\s*(?P<unit>[^\W\d][^\s,;]*|[%°]\S*)\Z"
 )
@@ -59,6 +59,8 @@ def read(table: Table, profile: Profile, length: int | None, troubles: list[Trou
         for line in lines:  # beside ranges, a single position is one bit or one byte
             if line.width is None and not (line.type and line.type.bits):
                 line.width, line.units = 1, (line.units[0], line.units[0])
+    if len(lines) == len(found) and not {"bits", "bits_bytes", "type"} & set(header.roles):
+        _follow(lines, length, troubles)
     if "type" not in header.roles and lines:
         troubles.append(Trouble("IMP026", f"{table.title}: it prints no types", table.spot,
                                 "one bit is held as bool, the rest as uint; look at the page"))  # fmt: skip
@@ -92,6 +94,18 @@ def read(table: Table, profile: Profile, length: int | None, troubles: list[Trou
         return made
     made = [one for one in made if folded(one.name) not in profile.reserved]  # as in grids
     return _mirrored(made, length, table, profile, troubles)
+
+
+def _follow(lines: list[Line], length: int | None, troubles: list[Trouble]) -> None:
+    """Gives fields of a table without widths and types those that follow from the offsets of the next ones, in bytes."""
+    ends = [*(line.at for line in lines[1:]), length]
+    for line, end in zip(lines, ends, strict=True):
+        if line.width is not None or line.at is None or end is None or end <= line.at:
+            continue
+        line.width, line.units = end - line.at, (line.units[0], line.units[0])
+        if line.width > 1:
+            troubles.append(Trouble("IMP038", f"{line.where}: it prints no width; it has {line.width} bytes up to the next one",
+                                    line.entry.spot, "make sure that no row was lost", sure=DOUBTFUL))  # fmt: skip
 
 
 def _falls(spans: list[tuple[int | None, int]]) -> bool:

@@ -70,11 +70,12 @@ def _labelled(table: Table, profile: Profile) -> list[labels.Labelled]:
     """What the rows above the headings label, up to the description."""
     found: list[labels.Labelled] = []
     pending = ""
+    torn: labels.Labelled | None = None  # its value stands beside the first line of a label that may have more
     for row in table.head:
         text = " ".join(cell for cell in row.cells if cell)
         what = labels.leads(text, profile)
         if what == "description" or (what == "fields" and not any(c.isdigit() for c in text)):
-            pending = ""
+            pending, torn = "", None
             continue
         bare = text.split()
         if pending and bare and all(number(w) is not None or re.match(r"[0-9]+/[0-9]+\Z", w) for w in bare):
@@ -82,6 +83,15 @@ def _labelled(table: Table, profile: Profile) -> list[labels.Labelled]:
             pending = ""
             continue
         parts = labels.parse(f"{pending} {text}".strip(), profile)
+        if torn and len(parts) == 1 and not parts[0].value:
+            whole = f"{torn.label} {parts[0].label}"
+            torn = labels.Labelled(labels.meaning(whole, profile), whole, torn.value)
+            if torn.what:
+                found.append(torn)
+                pending, torn = "", None
+                continue
+        else:
+            torn = parts[-1] if parts and parts[-1].value and parts[-1].what in ("", "fields") else None
         pending = ""
         if parts and not parts[-1].value:
             pending = parts.pop().label

@@ -48,19 +48,18 @@ def survey(document: Document, profile: Profile) -> Survey:
     sections: list[Heading] = []
     prose: list[str] = []
     used: set[str] = set()  # headings whose id a table has
-    bare = False  # whether no table stands below the last heading
+    bare: list[Heading] = []  # those of the sections in which no table has come yet
     for block in document.blocks:
         if isinstance(block, Heading):
-            if bare and not _holds(sections[-1], block):
-                made.troubles += _without_table(sections, profile)
-            bare = True
+            _without_table(made, sections, [one for one in bare if not _holds(one, block)], profile)
+            bare = [one for one in bare if _holds(one, block)] + [block]
             sections = [s for s in sections if _holds(s, block)] + [block]
             prose = []
         elif isinstance(block, Text):
             prose = [block.text, *prose][:NEAR]
         if not isinstance(block, Table):
             continue
-        bare = False
+        bare = []
         if block.number is not None:
             if block.number <= last:
                 run += 1
@@ -84,7 +83,7 @@ def survey(document: Document, profile: Profile) -> Survey:
         made.found.append(Found(block, what, thing, run, titles))
         if what == UNKNOWN and not _is_repeated(block, made):
             made.troubles.append(_not_understood(block, around.read(about, profile)))
-    made.troubles += _without_table(sections, profile) if bare else []
+    _without_table(made, sections, bare, profile)
     return made
 
 
@@ -138,19 +137,20 @@ def _by_section(sections: tuple[str, ...], profile: Profile) -> str:
     return next((kind for title in reversed(sections) if (kind := kind_of(title, profile))), "")
 
 
-def _without_table(sections: list[Heading], profile: Profile) -> list[Trouble]:
-    """What is to be said of a heading below which no table stands, if it gives a message's name and id."""
-    *_, heading = sections
-    said = around.read(Around(headings=[heading.text]), profile)
-    kind = said.kind or _by_section(tuple(s.text for s in sections), profile) or profile.data["defaults"]["kind"]
-    if not (said.ids and said.name and kind):
-        return []
-    ids = f"set_id: {said.id}, get_id: {said.id}" if kind == CONFIGURATION else f"id: {said.id}"
-    return [Trouble(
-        "IMP039", f"the heading `{heading.text[:80]}` names a message, and no table follows; it was left out",
-        Spot(heading.page, heading.line),
-        f"if it is one without fields, add it to the ICD: `{{name: {said.name}, {ids}, kind: {kind}, length: 0}}`",
-    )]  # fmt: skip
+def _without_table(made: Survey, sections: list[Heading], bare: list[Heading], profile: Profile) -> None:
+    """Says of headings of sections without a table that they give a message's name and id, if they do."""
+    for heading in bare:
+        said = around.read(Around(headings=[heading.text]), profile)
+        titles = tuple(s.text for s in sections[: sections.index(heading) + 1])
+        kind = said.kind or _by_section(titles, profile) or profile.data["defaults"]["kind"]
+        if not (said.ids and said.name and kind):
+            continue
+        ids = f"set_id: {said.id}, get_id: {said.id}" if kind == CONFIGURATION else f"id: {said.id}"
+        made.troubles.append(Trouble(
+            "IMP039", f"the heading `{heading.text[:80]}` names a message, and no table follows; it was left out",
+            Spot(heading.page, heading.line),
+            f"if it is one without fields, add it to the ICD: `{{name: {said.name}, {ids}, kind: {kind}, length: 0}}`",
+        ))  # fmt: skip
 
 
 def _not_understood(table: Table, said: Said) -> Trouble:

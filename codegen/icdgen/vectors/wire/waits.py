@@ -15,10 +15,10 @@ from icdgen.vectors.wire import Requests
 from icdgen.vectors.wire.node import FileNode
 
 Script = list[dict[str, Any]]
-Told = dict[str, Any]  # what the frame of a step says, by role
+Values = dict[str, Any]  # what the frame of a step says, by role
 
 # Where a procedure waits: its request, what its frame says meanwhile, and how the time is called.
-HELD_UP: tuple[tuple[str, dict[str, Any], Told, str], ...] = (
+PROCEDURES_THAT_WAIT: tuple[tuple[str, dict[str, Any], Values, str], ...] = (
     ("list.information", {"do": "list"}, {"busy": 1}, "timeout"),
     ("download.ready", {"do": "download", "bus": UART, "type": 2, "counter": 0, "size": 1}, {}, "ready_timeout"),
     ("upload.initiated", {"do": "upload", "bytes": "00"}, {"busy": 1}, "erase_timeout"),
@@ -33,7 +33,7 @@ def scripts(known: Facts) -> Requests:
     yield from _clients(known)
     if not known.files or not known.hole_map or not known.crc16:
         return
-    for name, request, told, time in HELD_UP:
+    for name, request, values, time in PROCEDURES_THAT_WAIT:
         procedure = known.files.procedures.get(name.partition(".")[0])
         if procedure is None:
             continue
@@ -42,17 +42,17 @@ def scripts(known: Facts) -> Requests:
         for early in (1, 0):
             why = "a millisecond before its time is over" if early else "when its time is over"
             asked = {"op": "file", **request}
-            script = _held_up(known, asked, name, told, getattr(procedure, time) - early)
+            script = _never_done(known, asked, name, values, getattr(procedure, time) - early)
             yield f"{name}: nothing new {why}", {**asked, "script": script}
 
 
-def _held_up(known: Facts, request: dict[str, Any], name: str, told: Told, last: int) -> Script:
-    """The script of a procedure whose frame says `told` for the last time after that many milliseconds."""
+def _never_done(known: Facts, request: dict[str, Any], name: str, values: Values, last: int) -> Script:
+    """The script of a procedure whose frame says `values` for the last time after that many milliseconds."""
     assert known.files
     step = known.files.steps[name]
     node = FileNode(known, UART, Random(f"{known.node.name} {name}"))
     node.files[2, 0] = bytes(1)
-    waiting = {"event": "done", "bytes": step.frame(known.node, told).hex()}
+    waiting = {"event": "done", "bytes": step.frame(known.node, values).hex()}
     procedure, now, begun = procedure_of(known, request), 0, -1
     script: Script = [{"at": 0}]
     asked = procedure.next(0)

@@ -16,7 +16,7 @@ typedef struct {
     testee_type_t type;
     size_t offset;                                    /* of the member in the struct */
     size_t size;                                      /* of the member, in bytes */
-    const char *(*name_of)(uint64_t value);           /* of an enum field, else NULL */
+    const char *(*name_of)(uint64_t value, bool is_negative); /* of an enum field, else NULL */
     double (*get)(const void *message);               /* of a scaled field, else NULL */
     icd_status_t (*set)(void *message, double value); /* of a scaled field, else NULL */
     icd_status_t (*get_text)(const void *message, char *text, size_t capacity); /* of a text field, else NULL */
@@ -56,7 +56,7 @@ typedef struct {
     const char *(*name)(uint32_t id);
 } testee_dispatcher_t;
 
-typedef const char *testee_enum_t(uint64_t value); /* the name of a member, or NULL */
+typedef const char *testee_enum_t(uint64_t value, bool is_negative); /* the name of a member, or NULL */
 
 typedef struct {
     const testee_dispatcher_t *telecommand; /* NULL if the node has none */

@@ -219,7 +219,9 @@ static void put_message(const subject_t *subject)
             put_text_of(field, subject->value);
         }
         if (field->name_of != NULL) {
-            put_text("name", field->name_of(member_bits(field, subject->value)));
+            const uint64_t bits = member_bits(field, subject->value);
+            const int64_t number = field->type == TESTEE_SIGNED ? signed_of(bits, field->size) : 0;
+            put_text("name", field->name_of(number < 0 ? (uint64_t)number : bits, number < 0));
         }
     }
 }
@@ -347,9 +349,9 @@ static void enumeration(void)
     const char *word = next_word();
     uint64_t value;
     errno = 0;
-    value = strtoull(word, NULL, 10);
+    value = *word == '-' ? (uint64_t)strtoll(word, NULL, 10) : strtoull(word, NULL, 10);
     put_row("ok");
-    put_text("name", errno != 0 || *word == '-' ? NULL : name_of(value));
+    put_text("name", errno != 0 ? NULL : name_of(value, *word == '-'));
 }
 
 static void about_node(void)
