@@ -56,6 +56,7 @@ typedef enum {
 #define ICDGEN_U16(value) ICDGEN_CAST(uint16_t, value)
 #define ICDGEN_U32(value) ICDGEN_CAST(uint32_t, value)
 #define ICDGEN_U64(value) ICDGEN_CAST(uint64_t, value)
+#define ICDGEN_SIZE(value) ICDGEN_CAST(size_t, value)
 #define ICDGEN_I8(value) ICDGEN_CAST(int8_t, value)
 #define ICDGEN_I16(value) ICDGEN_CAST(int16_t, value)
 #define ICDGEN_I32(value) ICDGEN_CAST(int32_t, value)

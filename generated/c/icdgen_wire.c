@@ -182,7 +182,7 @@ static inline uint32_t icdgen_reflected(uint32_t value, unsigned width)
 ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length)
 {
     const icd_crc_form_t *const form = crc->form;
-    const unsigned width = form->width;
+    const unsigned width = ICDGEN_CAST(unsigned, form->width);
     const uint32_t mask = UINT32_C(0xFFFFFFFF) >> (32u - width);
     const uint32_t top = UINT32_C(1) << (width - 1u);
 #ifndef ICDGEN_NO_TABLES
@@ -213,7 +213,8 @@ ICDGEN_API uint32_t icd_crc_result(const icd_crc_t *crc)
     if (!crc->fed && form->has_empty) {
         return form->empty;
     }
-    return (form->reflect_out ? icdgen_reflected(crc->value, form->width) : crc->value) ^ form->xor_out;
+    return (form->reflect_out ? icdgen_reflected(crc->value, ICDGEN_CAST(unsigned, form->width)) : crc->value) ^
+        form->xor_out;
 }
 
 ICDGEN_API uint32_t icd_crc(const icd_crc_form_t *form, const uint8_t *bytes, size_t length)
@@ -493,7 +494,7 @@ ICDGEN_API icd_status_t icd_i2c_read_length(const icd_link_t *link, uint8_t id, 
     if (checked && link->checksum == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
-    *length = ICDGEN_U32(message->length) + (checked ? link->checksum->bytes : 0u);
+    *length = ICDGEN_SIZE(message->length) + (checked ? link->checksum->bytes : 0u);
     return ICD_OK;
 }
 
@@ -532,7 +533,7 @@ ICDGEN_API size_t icd_can_most(const icd_link_t *link, icd_can_kind_t kind)
 {
     const icd_can_form_t *const can = link->can;
     if (can->extended != NULL && can->extended_types[kind] >= 0) {
-        return can->extended->bytes;
+        return ICDGEN_SIZE(can->extended->bytes);
     }
     return icdgen_can_has_data(kind) ? can->data_bytes : 0u;
 }
@@ -585,7 +586,7 @@ ICDGEN_API bool icd_can_next(icd_can_splitter_t *splitter, icd_can_packet_t *pac
     }
     form = splitter->can->extended;
     packet->id = splitter->id;
-    at = splitter->extended ? splitter->next * form->data_bytes : 0u;
+    at = splitter->extended ? ICDGEN_SIZE(splitter->next * form->data_bytes) : 0u;
     size = splitter->length - at;
     memset(packet->data, 0, sizeof packet->data);
     if (splitter->extended) {
@@ -604,8 +605,8 @@ ICDGEN_API bool icd_can_next(icd_can_splitter_t *splitter, icd_can_packet_t *pac
 ICDGEN_API size_t icd_can_slot_bytes(const icd_link_t *link)
 {
     const icd_can_extended_t *const form = link->can->extended;
-    return 1u +
-        (form != NULL ? (link->longest_data + form->data_bytes - 1u) / form->data_bytes * form->data_bytes : 0u);
+    const uint32_t size = form != NULL ? form->data_bytes : 1u;
+    return 1u + (form != NULL ? ICDGEN_SIZE((link->longest_data + size - 1u) / size * size) : 0u);
 }
 
 ICDGEN_API icd_status_t icd_can_joiner_init(
@@ -736,8 +737,8 @@ static inline icd_can_slot_t *icdgen_can_slot(icd_can_joiner_t *joiner)
 /* Bytes of the message if the ICD knows it and it needs several packets, else 0. */
 static inline uint32_t icdgen_can_length(const icd_link_t *link, icd_can_kind_t kind, uint32_t id)
 {
-    const icd_message_t *const message =
-        icd_find_message(link, kind == ICD_CAN_TELECOMMAND ? ICD_TELECOMMAND : ICD_TELEMETRY, id);
+    const icd_message_t *const message = icd_find_message(
+        link, kind == ICD_CAN_TELECOMMAND ? ICD_TELECOMMAND : ICD_TELEMETRY, ICDGEN_CAST(unsigned, id));
     return message != NULL && message->length > link->can->data_bytes ? message->length : 0u;
 }
 
@@ -830,8 +831,8 @@ static inline void icdgen_can_extended(
         slot->done = true;
         slot->completed_by = number;
         icdgen_can_tell_message(
-            link, slot->key, kind, slot->data, slot->length != 0u ? slot->length : slot->count * size, on_event,
-            context);
+            link, slot->key, kind, slot->data, ICDGEN_SIZE(slot->length != 0u ? slot->length : slot->count * size),
+            on_event, context);
     }
 }
 
@@ -903,7 +904,8 @@ ICDGEN_API bool icd_log_next(icd_log_frames_t *frames, icd_log_frame_t *frame)
 ICDGEN_API size_t icd_log_bytes(const icd_link_t *link)
 {
     const icd_log_mask_form_t *const mask = link->log_mask;
-    const size_t most = mask->size + ICDGEN_U32(link->log_file->frames_at) + (mask->size * 8u * mask->slot_bytes);
+    const size_t most =
+        ICDGEN_SIZE(mask->size) + link->log_file->frames_at + (ICDGEN_SIZE(mask->size) * 8u * mask->slot_bytes);
     return most > link->log_file->header_bytes ? most : link->log_file->header_bytes;
 }
 
@@ -1268,19 +1270,19 @@ icd_index_entry_encode(const icd_link_t *link, const icd_index_entry_t *entry, u
 ICDGEN_API size_t icd_client_bytes(const icd_link_t *link)
 {
     const size_t slot = link->can != NULL ? icd_can_slot_bytes(link) : 0u;
-    return link->longest_telecommand + (slot > link->longest ? slot : link->longest);
+    return ICDGEN_SIZE(link->longest_telecommand + (slot > link->longest ? slot : link->longest));
 }
 
 static inline icd_status_t icdgen_client_input_init(icd_client_t *client, uint8_t *buffer, size_t size)
 {
     const icd_link_t *const link = client->link;
-    const size_t first = link->longest_telecommand;
+    const size_t first = ICDGEN_SIZE(link->longest_telecommand);
     if (size < icd_client_bytes(link)) {
         return ICD_ERROR_LENGTH;
     }
     switch (client->bus) {
     case ICD_BUS_UART:
-        return icd_uart_decoder_init(&client->decoder, link, buffer + first, link->longest);
+        return icd_uart_decoder_init(&client->decoder, link, buffer + first, ICDGEN_SIZE(link->longest));
     case ICD_BUS_CAN:
         return icd_can_joiner_init(&client->joiner, link, 0, &client->slot, 1, buffer + first, size - first);
     case ICD_BUS_I2C:
@@ -1403,7 +1405,7 @@ ICDGEN_API icd_status_t icd_client_start(
     }
     status = icd_i2c_write(
         client->link, request->id, request->data, telecommand ? request->length : 0u,
-        telecommand && client->checks_telecommands, client->whole, client->link->longest_telecommand,
+        telecommand && client->checks_telecommands, client->whole, ICDGEN_SIZE(client->link->longest_telecommand),
         &client->whole_length);
     client->direction = request->direction;
     if (status != ICD_OK || !icdgen_client_fits_bus(client)) {
@@ -1960,27 +1962,20 @@ static inline void icdgen_damaged(icd_procedure_t *procedure, const icd_event_t 
 ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, const icd_event_t *event)
 {
     procedure->now = now;
-    switch (event->kind) {
-    case ICD_EVENT_PACKET:
+    if (event->kind == ICD_EVENT_PACKET) {
         if (procedure->packet != NULL) {
             procedure->packet(procedure, event->number, event->data, event->length);
         }
-        break;
-    case ICD_EVENT_DONE:
-    case ICD_EVENT_REFUSED:
-    case ICD_EVENT_TIMEOUT:
-        if (procedure->asked) {
-            procedure->asked = false;
-            if (event->kind == ICD_EVENT_REFUSED && event->code >= 0 && event->reason == ICD_REASON_UNKNOWN) {
-                icdgen_damaged(procedure, event);
-            } else {
-                procedure->damaged = 0;
-                icdgen_resume(procedure, event);
-            }
+    } else if (
+        procedure->asked &&
+        (event->kind == ICD_EVENT_DONE || event->kind == ICD_EVENT_REFUSED || event->kind == ICD_EVENT_TIMEOUT)) {
+        procedure->asked = false;
+        if (event->kind == ICD_EVENT_REFUSED && event->code >= 0 && event->reason == ICD_REASON_UNKNOWN) {
+            icdgen_damaged(procedure, event);
+        } else {
+            procedure->damaged = 0;
+            icdgen_resume(procedure, event);
         }
-        break;
-    default:
-        break;
     }
 }
 
@@ -2094,15 +2089,19 @@ ICDGEN_API icd_status_t icd_list_init(icd_list_t *list, const icd_link_t *link, 
     return icdgen_procedure_init(&list->procedure, link, link->list != NULL, icdgen_list_resume);
 }
 
+static inline uint32_t icdgen_block_packets(const icd_link_t *link, uint32_t block)
+{
+    return (block + link->files->packet_bytes - 1u) / link->files->packet_bytes;
+}
+
 ICDGEN_API size_t icd_block_buffer(const icd_link_t *link, uint32_t block)
 {
-    const uint32_t size = link->files->packet_bytes;
-    return ICDGEN_CAST(size_t, (block + size - 1u) / size) * size;
+    return ICDGEN_SIZE(icdgen_block_packets(link, block) * link->files->packet_bytes);
 }
 
 ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block)
 {
-    return ((block + link->files->packet_bytes - 1u) / link->files->packet_bytes + 7u) / 8u;
+    return ICDGEN_SIZE((icdgen_block_packets(link, block) + 7u) / 8u);
 }
 
 enum {
@@ -2221,7 +2220,7 @@ static inline void icdgen_download_block(icd_download_t *download)
     icd_procedure_t *const procedure = &download->procedure;
     const icd_link_t *const link = procedure->link;
     const size_t covered =
-        link->download->checksum_covers_fill ? icd_block_buffer(link, download->length) : download->length;
+        link->download->checksum_covers_fill ? icd_block_buffer(link, download->length) : ICDGEN_SIZE(download->length);
     const uint32_t wanted = icdgen_download_wanted(download);
     if (icd_crc(link->crc16, download->buffer, covered) != download->checksum) {
         if (download->rounds == link->download->rounds) {
@@ -2233,7 +2232,7 @@ static inline void icdgen_download_block(icd_download_t *download)
         return;
     }
     if (download->length != 0u) {
-        download->on_block(download->context, download->offset, download->buffer, download->length);
+        download->on_block(download->context, download->offset, download->buffer, ICDGEN_SIZE(download->length));
         download->offset += download->length;
     }
     if (download->size == ICD_SIZE_UNKNOWN && download->length < wanted) {
@@ -2366,7 +2365,9 @@ ICDGEN_API icd_status_t icd_download_init(
     uint32_t size,
     uint32_t block,
     uint8_t *buffer,
+    size_t buffer_size,
     uint8_t *bitmap,
+    size_t bitmap_size,
     icd_block_fn *on_block,
     void *context)
 {
@@ -2376,12 +2377,17 @@ ICDGEN_API icd_status_t icd_download_init(
     if (icdgen_procedure_init(&download->procedure, link, known, icdgen_download_resume) != ICD_OK) {
         return ICD_ERROR_UNSUPPORTED;
     }
+    block = block != 0u && block < link->files->block_bytes ? block : link->files->block_bytes;
+    if (buffer_size < icdgen_block_packets(link, block) * link->files->packet_bytes ||
+        bitmap_size < icd_block_bitmap(link, block)) {
+        return ICD_ERROR_LENGTH;
+    }
     download->procedure.packet = icdgen_download_packet;
     download->bus = bus;
     download->type = type;
     download->counter = counter;
     download->size = size;
-    download->block = block != 0u && block < link->files->block_bytes ? block : link->files->block_bytes;
+    download->block = block;
     download->buffer = buffer;
     download->got = bitmap;
     download->on_block = on_block;
@@ -2414,7 +2420,7 @@ static inline void icdgen_upload_begin(icd_upload_t *upload)
     icd_procedure_t *const procedure = &upload->procedure;
     const uint32_t packet_bytes = procedure->link->files->packet_bytes;
     upload->count = (icdgen_upload_length(upload) + packet_bytes - 1u) / packet_bytes;
-    memset(upload->missing, 0xFF, (upload->count + 7u) / 8u);
+    memset(upload->missing, 0xFF, ICDGEN_SIZE((upload->count + 7u) / 8u));
     icdgen_command(procedure, &procedure->link->upload->begin, true, ICDGEN_UPLOAD_BEGUN);
 }
 
@@ -2435,7 +2441,8 @@ static inline void icdgen_upload_packet(const icd_upload_t *upload, uint32_t pos
     const uint32_t at = position * files->packet_bytes;
     const uint32_t left = icdgen_upload_length(upload) - at;
     memset(packet, files->fill, files->packet_bytes);
-    memcpy(packet, upload->file + upload->sent + at, left < files->packet_bytes ? left : files->packet_bytes);
+    memcpy(
+        packet, upload->file + upload->sent + at, ICDGEN_SIZE(left < files->packet_bytes ? left : files->packet_bytes));
 }
 
 /* Sends the next packet that is missing; false if there is none behind those that were sent. */
@@ -2523,7 +2530,7 @@ static inline uint32_t icdgen_upload_checksum(const icd_upload_t *upload)
     uint32_t left = upload->count * link->files->packet_bytes - length;
     icd_crc_t crc;
     icd_crc_init(&crc, link->crc16);
-    icd_crc_feed(&crc, upload->file + upload->sent, length);
+    icd_crc_feed(&crc, upload->file + upload->sent, ICDGEN_SIZE(length));
     for (left = link->upload->checksum_covers_fill ? left : 0u; left != 0u; --left) {
         icd_crc_feed(&crc, &link->files->fill, 1);
     }
@@ -2627,7 +2634,8 @@ ICDGEN_API icd_status_t icd_upload_init(
     const uint8_t *file,
     uint32_t size,
     uint32_t block,
-    uint8_t *bitmap)
+    uint8_t *bitmap,
+    size_t bitmap_size)
 {
     const bool known = link->upload != NULL && link->crc16 != NULL && link->hole_map != NULL;
     memset(upload, 0, sizeof *upload);
@@ -2640,10 +2648,14 @@ ICDGEN_API icd_status_t icd_upload_init(
     if (link->upload->destination_bytes != 0u && size > link->upload->destination_bytes) {
         return ICD_ERROR_LENGTH;
     }
+    block = block != 0u && block < link->files->block_bytes ? block : link->files->block_bytes;
+    if (bitmap_size < icd_block_bitmap(link, block)) {
+        return ICD_ERROR_LENGTH;
+    }
     upload->destination = destination;
     upload->file = file;
     upload->size = size;
-    upload->block = block != 0u && block < link->files->block_bytes ? block : link->files->block_bytes;
+    upload->block = block;
     upload->missing = bitmap;
     return ICD_OK;
 }

@@ -1170,7 +1170,8 @@ ICDGEN_API size_t icd_block_bitmap(const icd_link_t *link, uint32_t block);
 
 /**
  * `size`: bytes of the file, or ICD_SIZE_UNKNOWN. `block`: bytes asked for at once, 0 for those of the ICD. `buffer`
- * holds icd_block_buffer() bytes, `bitmap` icd_block_bitmap().
+ * holds icd_block_buffer() bytes, `bitmap` icd_block_bitmap(): NODE_BLOCK_BYTES and NODE_BLOCK_BITMAP_BYTES do for any.
+ * ICD_ERROR_LENGTH if either is smaller, ICD_ERROR_UNSUPPORTED if the node has no downloads on that bus.
  */
 ICDGEN_API icd_status_t icd_download_init(
     icd_download_t *download,
@@ -1181,7 +1182,9 @@ ICDGEN_API icd_status_t icd_download_init(
     uint32_t size,
     uint32_t block,
     uint8_t *buffer,
+    size_t buffer_size,
     uint8_t *bitmap,
+    size_t bitmap_size,
     icd_block_fn *on_block,
     void *context);
 
@@ -1202,7 +1205,7 @@ typedef struct {
 /**
  * The file must stay where it is. `block`: bytes a block, 0 for those of the ICD. `bitmap` holds icd_block_bitmap()
  * bytes. ICD_ERROR_UNSUPPORTED if the node takes no uploads, ICD_ERROR_RANGE if the destination is not supported,
- * ICD_ERROR_LENGTH if it holds less.
+ * ICD_ERROR_LENGTH if it holds less than the file, or the bitmap is smaller.
  */
 ICDGEN_API icd_status_t icd_upload_init(
     icd_upload_t *upload,
@@ -1211,7 +1214,8 @@ ICDGEN_API icd_status_t icd_upload_init(
     const uint8_t *file,
     uint32_t size,
     uint32_t block,
-    uint8_t *bitmap);
+    uint8_t *bitmap,
+    size_t bitmap_size);
 
 /** Deletes a file or all of them, or formats the medium. `procedure` goes to the functions of icd_procedure_t. */
 typedef struct {
