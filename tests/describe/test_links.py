@@ -18,7 +18,7 @@ from icdgen.icd.model import Icd
 from icdgen.render import Renderer
 from tests.conformance.icds import shipped
 
-LINKS = {"c": "/link.h", "python": "/_link.py", "rust": "/wire/links/"}
+LINKS = {"c": "/link.c", "python": "/_link.py", "rust": "/wire/links/"}
 
 
 @cache

@@ -79,7 +79,8 @@ def test_the_tables_of_generated_c(width, polynomial):
 def c_program(tmp_path_factory) -> Path:
     program = tmp_path_factory.mktemp("c") / "crc"
     checked = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
-    run("gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", *checked, "-I", RUNTIME / "c", HERE / "crc.c", "-o", program)
+    options = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-DICDGEN_SHARED", *checked, "-I", RUNTIME / "c")
+    run("gcc", *options, HERE / "crc.c", RUNTIME / "c" / "wire" / "crc.c", "-o", program)
     return program
 
 
