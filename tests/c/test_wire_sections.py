@@ -52,7 +52,10 @@ def icd() -> Icd:
         protocols[f"without_{section}"] = {name: part for name, part in whole.items() if name != section}
         protocols[f"only_{section}"] = {section: whole[section]}
     taken = {id for message in bootloader.messages for id in message.ids}
-    acp = dataclasses.replace(acp, messages=tuple(m for m in acp.messages if not taken & set(m.ids)))
+    names = {message.identifier for message in bootloader.messages}  # both call a message State: here by its whole name
+    left = (message for message in acp.messages if not taken & set(message.ids))
+    left = (dataclasses.replace(m, identifier=m.name) if m.identifier in names else m for m in left)
+    acp = dataclasses.replace(acp, messages=tuple(left))
     bases = [dataclasses.replace(node, protocol={}) for node in (*shipped.included(acp), bootloader, acp)]
     includes = tuple(node.name for node in bases)
     variant = dataclasses.replace(acp, messages=(), enums=(), includes=includes)

@@ -69,7 +69,8 @@ static void touch(const testee_message_t *message, void *value)
             for (byte = 0; byte < field->size; byte++) {
                 raw = (raw << 8) | at[byte];
             }
-            (void)field->name_of(raw);
+            (void)field->name_of(raw, false);
+            (void)field->name_of(raw, true);
         }
     }
 }

@@ -17,7 +17,7 @@ from icdgen.backends.rust.names import type_name
 from icdgen.describe import MessageDescription, describe
 from icdgen.icd.model import CONFIGURATION, Field, Icd, Message, Node
 from icdgen.protocol import facts
-from icdgen.sim.values import fresh
+from icdgen.sim.values import allowed_values
 from tests.rust import harness
 from tests.rust.tools import STD, Toolchain
 
@@ -56,11 +56,11 @@ def source(icd: Icd, node_name: str = NODE) -> str:
     )
     return environment.get_template("sim_client.rs.j2").render(
         node=node.name,
-        telemetry=of(known.telemetry.values(), fresh),
+        telemetry=of(known.telemetry.values(), allowed_values),
         settings=of((m for m in known.telecommands.values() if m.kind == CONFIGURATION), numbered),
-        acknowledged=of((m for m in commands if m.acknowledge and not m.expects_reset), fresh),
-        silent=of((m for m in commands if not m.acknowledge and not m.expects_reset), fresh),
-        resets=of((m for m in commands if m.expects_reset), fresh),
+        acknowledged=of((m for m in commands if m.acknowledge and not m.expects_reset), allowed_values),
+        silent=of((m for m in commands if not m.acknowledge and not m.expects_reset), allowed_values),
+        resets=of((m for m in commands if m.expects_reset), allowed_values),
         last=Place(_type(rows[last.message.name]), _field(rows[last.message.name], last.id)),
         identification=_type(rows[known.identification.message.name]),
         log=log and _type(rows[log]),
@@ -89,7 +89,7 @@ def build(folder: Path) -> list[str]:
 
 def numbered(message: Message) -> dict[str, int | bytes]:
     """A message in which hardly two fields have the same value, so that none can be taken for another."""
-    raw = fresh(message)
+    raw = allowed_values(message)
     for number, field in enumerate(message.fields, 1):
         if field.const is None:
             raw[field.name] = _numbered(field, number, raw[field.name])

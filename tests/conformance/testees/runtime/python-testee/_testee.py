@@ -141,7 +141,11 @@ def _enum(node: Any, words: Words) -> str:
 
 def _about_node(node: Any, words: Words) -> str:
     found = {"node_type": "NODE_TYPE", "interface_version": "INTERFACE_VERSION"}
-    return "".join(f" {key}={getattr(node, name)}" for key, name in found.items() if hasattr(node, name))
+    return "".join(
+        f" {key}={getattr(node, name)}"
+        for key, name in found.items()
+        if hasattr(node, name)
+    )
 
 
 def _sweep(node: Any, words: Words) -> str:
