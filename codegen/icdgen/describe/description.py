@@ -63,6 +63,11 @@ class FieldDescription(Named[Field]):
         return self.model.type == "text"
 
     @property
+    def size(self) -> int:
+        """How many bytes or characters a field of these has."""
+        return self.model.bits // 8
+
+    @property
     def has_physical(self) -> bool:
         """Whether there are accessors of a physical value that is not the raw one."""
         return self.is_text or self.steps is not None

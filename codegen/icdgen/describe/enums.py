@@ -6,7 +6,7 @@ from functools import cached_property
 
 from icdgen.describe.comments import Comment, enum_comment, member_comment
 from icdgen.describe.named import Named
-from icdgen.describe.storage import Storage, holding, needed
+from icdgen.describe.storage import Storage, holding
 from icdgen.icd.model import Enum, Icd, Member, Node
 
 
@@ -15,7 +15,7 @@ def enum_widths(icd: Icd) -> dict[tuple[str, str], int]:
     found: dict[tuple[str, str], int] = {}
     for node in icd.nodes:
         for enum in node.enums:
-            bits = max((needed(member.value, enum.signed) for member in enum.members), default=1)
+            bits = enum.bits_for(enum.widest.value) if enum.widest else 1
             found[enum.node, enum.name] = max(found.get((enum.node, enum.name), 1), bits)
         for message in node.messages:
             for field in message.fields:

@@ -14,6 +14,11 @@ EXACT_DOUBLE = 1 << 53
 """Up to this size every whole number is a double."""
 
 
+def wide_parts(value: int, bits: int) -> list[int]:
+    """A term in 256 bits of two's complement, as unsigned parts of so many bits, the least significant first."""
+    return [value >> shift & (1 << bits) - 1 for shift in range(0, 256, bits)]
+
+
 class Steps(NamedTuple):
     """physical = (raw*p + c) / q in whole numbers, for raw values from ``raw_min`` to ``raw_max``; q > 0, p != 0."""
 

@@ -21,11 +21,6 @@ class Storage(NamedTuple):
         return (1 << (self.bits - self.signed)) - 1
 
 
-def needed(value: int, signed: bool) -> int:
-    """How many bits hold a whole number; if signed, in two's complement."""
-    return (~value if value < 0 else value).bit_length() + 1 if signed else value.bit_length()
-
-
 def holding(bits: int) -> int:
     """The smallest of 8, 16, 32 and 64 that is not below ``bits``."""
     return 8 if bits <= 8 else 16 if bits <= 16 else 32 if bits <= 32 else 64

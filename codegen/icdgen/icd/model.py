@@ -78,6 +78,16 @@ class Enum:
         """Whether every field of it is in two's complement: one of its values is negative."""
         return any(member.value < 0 for member in self.members)
 
+    def bits_for(self, value: int) -> int:
+        """How many bits a field of it needs to hold the value."""
+        return (~value if value < 0 else value).bit_length() + 1 if self.signed else value.bit_length()
+
+    @property
+    def widest(self) -> Member | None:
+        """The member that takes the most bits: the one of the largest value, or of the smallest."""
+        by_value = sorted(self.members, key=lambda member: member.value)
+        return max(by_value[-1:] + by_value[:1], key=lambda member: self.bits_for(member.value), default=None)
+
 
 @dataclass(frozen=True, slots=True)
 class Special:

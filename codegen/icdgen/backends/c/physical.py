@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.backends.c.types import cast
 from icdgen.describe import FieldDescription, wholes
-from icdgen.describe.steps import Steps
+from icdgen.describe.steps import Steps, wide_parts
 from icdgen.describe.storage import Storage
 
 RAW = "{raw}"  # stands for the member in the expressions made here
@@ -99,11 +98,8 @@ def wide_scale(steps: Steps) -> list[str]:
     return ["static const icdgen_scale_t scale = {", *(f"    {line}," for line in lines), "};"]
 
 
-def _parts(value: int) -> Iterator[str]:
-    """256 bits of two's complement, the least significant part first."""
-    for shift in range(0, 256, 32):
-        part = value >> shift & 0xFFFFFFFF
-        yield f"0x{part:X}u" if part > 9 else f"{part}u"
+def _parts(value: int) -> list[str]:
+    return [f"0x{part:X}u" if part > 9 else f"{part}u" for part in wide_parts(value, 32)]
 
 
 def _limit(value: int, storage: Storage) -> str:

@@ -77,7 +77,7 @@ def text(field: FieldDescription) -> str:
 
 def set_text(field: FieldDescription) -> str:
     """The statement that sets it."""
-    arguments = ["value", f'"{field.name}"', str(field.model.bits // 8)]
+    arguments = ["value", f'"{field.name}"', str(field.size)]
     return bracketed(f"self.{field.name} = _codec.text_bytes(", arguments, ")", WIDTH, " " * 8)
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.text import mask, whole_double
 from icdgen.describe import FieldDescription
+from icdgen.describe.steps import wide_parts
 
 
 def big_parts(value: int) -> list[str]:
-    """256 bits of two's complement, the least significant part first, as literals."""
-    parts = (value >> shift & (1 << 64) - 1 for shift in range(0, 256, 64))
-    return [mask(part, 64) if part > 9 else str(part) for part in parts]
+    """A term of a wide scale, as literals."""
+    return [mask(part, 64) if part > 9 else str(part) for part in wide_parts(value, 64)]
 
 
 def physical(field: FieldDescription) -> str:

@@ -95,8 +95,7 @@ def _is_name(text: str) -> bool:
 @rule("ICD073", severity="warning")
 def is_distinct(ctx: Context) -> Iterator[Fault]:
     for names in declared(ctx):
-        language = names.language
-        most = next((getattr(one, "significant", 0) for one in ctx.languages if one.name == language), 0)
+        language, most = names.language, names.significant
         seen: dict[tuple[str, str], Identifier] = {}
         told: set[int] = set()
         for one in names.spelled({text for text in names.texts if len(text) >= most}) if most else ():

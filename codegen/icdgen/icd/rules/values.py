@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from icdgen.icd.model import Enum, Field, Member
+from icdgen.icd.model import Field
 from icdgen.icd.rules.context import Context, mappings
 from icdgen.icd.rules.fault import Fault
 from icdgen.icd.rules.rule import rule
@@ -15,7 +15,7 @@ NUMBERS = ("uint", "int", "enum")
 
 @rule("ICD030")
 def member_fits(ctx: Context) -> Iterator[Fault]:
-    largest = {id(e): _widest(e) for n in ctx.icd.nodes for e in n.enums}
+    largest = {id(e): e.widest for n in ctx.icd.nodes for e in n.enums}
     for field, _, _ in ctx.having["enum"]:
         top = largest.get(id(field.enum)) if field.enum else None
         if field.enum and top is not None and not field.raw_min <= top.value <= field.raw_max:
@@ -26,19 +26,9 @@ def member_fits(ctx: Context) -> Iterator[Fault]:
                 field.source,
                 field.source.at("bits"),
                 f"{member} does not fit the {count(field.bits, 'bit')} of {quote(field.name)}{others}",
-                f"it takes {count(_needed(top.value, field.signed), 'bit')}"
+                f"it takes {count(field.enum.bits_for(top.value), 'bit')}"
                 + (", as others of the enumeration are negative" if field.signed and top.value >= 0 else ""),
             )
-
-
-def _widest(enum: Enum) -> Member | None:
-    """The member that takes the most bits."""
-    return max(enum.members, key=lambda member: _needed(member.value, enum.signed), default=None)
-
-
-def _needed(value: int, signed: bool) -> int:
-    """Bits that hold the value; if signed, in two's complement."""
-    return (~value if value < 0 else value).bit_length() + 1 if signed else value.bit_length()
 
 
 @rule("ICD031")
