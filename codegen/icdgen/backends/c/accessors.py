@@ -66,5 +66,5 @@ def _whole(field: FieldDescription, whole: physical.Whole) -> Accessor:
         what=what,
         expression=whole.getter.format(raw=f"message->{field.name}"),
         assignment=f"message->{field.name} = {whole.setter};",
-        test=" || ".join(tests),
+        test=" || ".join(f"({test})" for test in tests) if len(tests) > 1 else "".join(tests),
     )
