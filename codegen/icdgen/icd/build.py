@@ -135,7 +135,7 @@ class Builder:
         )
 
     def fields(self, around: Orders, item: Map) -> tuple[model.Field, ...]:
-        """The field, the elements of an array, or the parts that it is divided into; ``around``: the orders that its message gives."""
+        """The field, the elements of an array, or the parts that it is divided into; ``around``: the orders of its message."""
         if "count" in item:
             return elements(self.field(item, around), item["count"])
         if "bitfields" not in item:
