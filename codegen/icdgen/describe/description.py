@@ -31,17 +31,19 @@ class FieldDescription(Named[Field]):
     """``estimated_roll_angle_deg``"""
     member: str
     """What an expression calls it, in any language: its name, of an element ``temperatures[3]``."""
+    declared: str
+    """The name that is declared for it: of an element, that of its array."""
 
     def __init__(self, field: Field, message: MessageDescription, enum: EnumDescription | None) -> None:
         super().__init__(field, message.node.vocabulary, f"field `{field.name}` of `{message.model.name}`")
         self.message, self.enum = message, enum
         self.storage = enum.storage if enum is not None else storage_of(field.bits, field.signed)
         self.steps = steps.steps(field)
-        element, self.member = field.element, self.name
+        element, self.member, self.declared = field.element, self.name, self.name
         if element is not None:
-            array = naming.snake(naming.words(field.identifier or element.array, message.node.vocabulary))
-            self.name, self.member = f"{array}_{element.index}", f"{array}[{element.index}]"
-        self.physical_name = f"{self.name}_{self.unit_name}"
+            self.declared = naming.snake(naming.words(field.identifier or element.array, message.node.vocabulary))
+            self.name, self.member = f"{self.declared}_{element.index}", f"{self.declared}[{element.index}]"
+        self.physical_name = f"{self.declared}_{self.unit_name}"
 
     @property
     def count(self) -> int:
@@ -112,7 +114,7 @@ class FieldDescription(Named[Field]):
 
     @cached_property
     def _constants(self) -> tuple[Constant, ...]:
-        return tuple(constants(self.model, self.name, self.physical_name, self.message.node.vocabulary))
+        return tuple(constants(self.model, self.declared, self.physical_name, self.message.node.vocabulary))
 
     @cached_property
     def comment(self) -> Comment:

@@ -25,7 +25,7 @@ class Accessor(NamedTuple):
     assignment: str
     test: str = ""
     declared: tuple[str, ...] = ()  # lines before both
-    count: int = 0  # of an array: both take which of so many elements is meant
+    elements: int = 0  # of an array: both take which of so many is meant
 
 
 def accessors(message: MessageDescription) -> list[Accessor]:
@@ -45,7 +45,7 @@ def _double(field: FieldDescription) -> Accessor:
         expression=scaled.getter.format(raw=_member(field)),
         assignment=call(f"return {function}", (f"&{_member(field)}", *arguments)),
         declared=tuple(physical.wide_scale(field.steps)) if field.steps.is_wide else (),
-        count=field.count,
+        elements=field.count,
     )
 
 
@@ -61,7 +61,7 @@ def whole_accessors(message: MessageDescription) -> list[Accessor]:
 
 def whole_name(field: FieldDescription, whole: physical.Whole) -> str:
     """``estimated_roll_angle_mdeg``"""
-    return f"{field.name}_{part_of_unit(field.model, whole.per)[0]}"
+    return f"{field.declared}_{part_of_unit(field.model, whole.per)[0]}"
 
 
 def _whole(field: FieldDescription, whole: physical.Whole) -> Accessor:
@@ -76,5 +76,5 @@ def _whole(field: FieldDescription, whole: physical.Whole) -> Accessor:
         expression=whole.getter.format(raw=_member(field)),
         assignment=f"{_member(field)} = {whole.setter};",
         test=" || ".join(tests),
-        count=field.count,
+        elements=field.count,
     )

@@ -25,7 +25,7 @@ def physical(field: FieldDescription) -> str:
     """
     assert field.steps is not None
     if field.storage.bits > 32 or field.steps.is_wide or not field.steps.exact_in_doubles:
-        return f"{field.name.upper()}.physical({raw_value(field)})"
+        return f"{field.declared.upper()}.physical({raw_value(field)})"
     p, c, q = field.steps.terms
     raw = f"f64::from({raw_value(field)})"
     value = raw if abs(p) == 1 else f"{raw} * {whole_double(abs(p))}"
