@@ -24,7 +24,7 @@ def statements(message: MessageDescription) -> list[str]:
 
 
 def _group(group: Flags | Row, message: MessageDescription) -> str:
-    names = [field.name for field in group.members]
+    names = [field.member for field in group.members]
     target = f"{stem(message)}_t", "message"
     if isinstance(group, Flags):
         value = f"buffer[{group.byte}]" + (f" >> {group.shift}" if group.shift else "")
@@ -49,5 +49,5 @@ def _one(field: FieldDescription) -> str:
 
 def _assigned(field: FieldDescription, value: str) -> str:
     if field.model.type == "float":
-        return call(f"icdgen_set_f{field.model.bits}", (f"&message->{field.name}", value))
-    return f"message->{field.name} = {value};"
+        return call(f"icdgen_set_f{field.model.bits}", (f"&message->{field.member}", value))
+    return f"message->{field.member} = {value};"
