@@ -72,7 +72,7 @@ def _message(message: MessageDescription, linked: bool) -> Iterator[Identifier]:
     for end in ("t", "init", "decode", "encode", *(("misfit",) if message.is_narrow else ())):
         yield message.identifier(FILE, f"{stem}_{end}")
     members = f"members of {stem}_t"
-    for field in message.fields:
+    for field in message.members:
         yield field.identifier(members, field.name)
         for one in field.constants:
             yield field.identifier(FILE, names.constant(message, one.name))

@@ -62,7 +62,7 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     fields, methods, associated = f"fields of {where}", f"methods of {where}", f"constants of {where}"
     yield from _ours(methods, _METHODS)
     yield from _ours(associated, _CONSTANTS)
-    for field in message.fields:
+    for field in message.members:
         yield field.identifier(fields, names.field_name(field))
         if field.has_physical:
             yield field.identifier(methods, field.physical_name)
