@@ -115,10 +115,21 @@ class MessageDescription(Named[Message]):
         self._description, self.node = description, node
 
     @cached_property
-    def fields(self) -> tuple[FieldDescription, ...]:
-        """In the order of the ICD."""
+    def all_fields(self) -> tuple[FieldDescription, ...]:
+        """Fields and views, in the order of the ICD."""
         enum = self._description.enum
         return tuple(FieldDescription(f, self, enum(f.enum) if f.enum else None) for f in self.model.fields)
+
+    @cached_property
+    def fields(self) -> tuple[FieldDescription, ...]:
+        """Those that have bits of their own: what a message is made of, and what is encoded."""
+        views = self.views
+        return tuple(field for field in self.all_fields if not field.model.view) if views else self.all_fields
+
+    @cached_property
+    def views(self) -> tuple[FieldDescription, ...]:
+        """Those that read bits of others: they are asked of a message, and never set."""
+        return tuple(field for field in self.all_fields if field.model.view)
 
     @cached_property
     def ids(self) -> tuple[Id, ...]:
@@ -148,12 +159,12 @@ class MessageDescription(Named[Message]):
 
     @property
     def has_floats(self) -> bool:
-        return any(field.type == "float" for field in self.model.fields)
+        return any(field.type == "float" for field in self.model.owners)
 
     @cached_property
     def has_wide_steps(self) -> bool:
         """Whether the formula of a field has numbers of many digits."""
-        return any(field.steps is not None and field.steps.is_wide for field in self.fields)
+        return any(field.steps is not None and field.steps.is_wide for field in self.all_fields)
 
     @cached_property
     def comment(self) -> Comment:

@@ -199,6 +199,8 @@ def _step(path: Path, number: int, row: object, icd: Icd, node: Node) -> Step:
 
 
 def _check_wave(where: str, one: Field, wave: Wave) -> None:
+    if one.view:
+        raise UserError(f"{where}: a view has no bits of its own", "let the fields move that have them")
     numbers = [wave.get(key, 1) for key in ("min", "max", "period")]
     if set(wave) - {"wave", "min", "max", "period"} or wave.get("wave", "sine") not in WAVES or one.is_bytes:
         raise UserError(f"{where}: there is no such wave", f"{{wave: {'|'.join(WAVES)}, min: -1, max: 1, period: 60}}")

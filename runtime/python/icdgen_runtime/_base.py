@@ -63,6 +63,8 @@ class FieldInfo(NamedTuple):
     """``little`` or ``big``; empty where it is the message's."""
     bit_order: str = ""
     """``lsb0`` or ``msb0``; empty where it is the message's."""
+    view: bool = False
+    """Whether it reads bits that other fields have; its attribute is not set."""
 
     @property
     def signed(self) -> bool:
@@ -144,8 +146,13 @@ class Message:
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        return self.as_dict() == other.as_dict()
+        return self._own() == other._own()
 
     def __repr__(self) -> str:
-        values = (f"{name}={value!r}" for name, value in self.as_dict().items())
+        values = (f"{name}={value!r}" for name, value in self._own().items())
         return f"{type(self).__name__}({', '.join(values)})"
+
+    def _own(self) -> dict[str, Any]:
+        """What it is made of: views follow from that."""
+        names = (info.attribute for info in self.FIELDS if not info.view)
+        return {name: getattr(self, name) for name in names}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from typing import Any, TypeVar
 
@@ -165,11 +165,44 @@ def length_error(message: type[Message], data: Buffer) -> LengthError:
 def range_error(message: Message) -> RangeError:
     """What to raise for a message that has a value that does not fit."""
     for info in message.FIELDS:
+        if info.view:
+            continue
         value = getattr(message, info.attribute, None)
         allowed, fits = _FITS[info.type](info, value)
         if not fits:
             return RangeError(info.attribute, allowed, value)
     return RangeError("a field", "a value of its type", None)
+
+
+def view(message: Message, attribute: str) -> int:
+    """The raw value of a field that reads bits of others (of a float, its bits).
+
+    It is that of the frame which the message makes. Raises `RangeError`.
+    """
+    frame = message.to_bytes()
+    info = next(info for info in message.FIELDS if info.attribute == attribute)
+    value = 0
+    for byte, shift, bits, at in pieces_of(info, type(message)):
+        value |= (frame[byte] >> shift & (1 << bits) - 1) << at
+    return signed(value, info.bits) if info.signed else value
+
+
+def pieces_of(
+    info: FieldInfo, message: type[Message]
+) -> Iterator[tuple[int, int, int, int]]:
+    """Byte, shift, width and place in the value of each run of bits."""
+    at, end = info.at, info.at + info.bits
+    below = 0
+    is_little = (info.byte_order or message.BYTE_ORDER) == "little"
+    is_lsb0 = (info.bit_order or message.BIT_ORDER) == "lsb0"
+    while at < end:
+        byte, first = divmod(at, 8)
+        bits = min(8 - first, end - at)
+        shift = first if is_lsb0 else 8 - first - bits
+        at += bits
+        weight = below if is_little else info.bits - below - bits
+        below += bits
+        yield byte, shift, bits, weight
 
 
 def raw_range(info: FieldInfo) -> tuple[int, int]:

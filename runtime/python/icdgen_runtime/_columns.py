@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from importlib import import_module
 from typing import Any, NamedTuple
 
 from ._base import Buffer, FieldInfo, Message
-from ._codec import raw_range, text
+from ._codec import pieces_of, raw_range, text
 from ._errors import LengthError
 
 OCTETS = ("bytes", "text")  # types whose raw values are bytes
@@ -155,7 +154,7 @@ class _Decoder:
             return self.flags[info.attribute]
         if _is_whole(info):
             return self._whole(info)
-        pieces = list(_pieces(info, self.message))
+        pieces = list(pieces_of(info, self.message))
         if len(pieces) == 1:
             return self._within(info, *pieces[0])
         return self._across(info, pieces)
@@ -229,7 +228,7 @@ def _plan(message: type[Message]) -> _Plan:
     for info in message.FIELDS:
         if _is_whole(info):
             continue
-        for byte, shift, _, _ in _pieces(info, message):
+        for byte, shift, _, _ in pieces_of(info, message):
             needed.add(byte)
             if info.type == "bool":
                 flags.setdefault(byte, []).append(shift)
@@ -248,21 +247,3 @@ def _is_whole(info: FieldInfo) -> bool:
     """Whether it is an array element as it stands."""
     is_wide = info.type in OCTETS or info.bits in (8, 16, 32, 64)
     return is_wide and info.at % 8 == 0
-
-
-def _pieces(
-    info: FieldInfo, message: type[Message]
-) -> Iterator[tuple[int, int, int, int]]:
-    """Byte, shift, width and place in the value of each run of bits."""
-    at, end = info.at, info.at + info.bits
-    below = 0
-    is_little = (info.byte_order or message.BYTE_ORDER) == "little"
-    is_lsb0 = (info.bit_order or message.BIT_ORDER) == "lsb0"
-    while at < end:
-        byte, first = divmod(at, 8)
-        bits = min(8 - first, end - at)
-        shift = first if is_lsb0 else 8 - first - bits
-        at += bits
-        weight = below if is_little else info.bits - below - bits
-        below += bits
-        yield byte, shift, bits, weight

@@ -68,7 +68,7 @@ def with_nans(message: Message, frame: bytes) -> bytes:
 
 def _aligned(message: Message) -> Iterator[tuple[str, int]]:
     for info in message.FIELDS:
-        if info.type != "float" or info.bits != 32 or info.at % 8:
+        if info.type != "float" or info.bits != 32 or info.at % 8 or info.view:
             continue
         if info.byte_order in ("", message.BYTE_ORDER):
             yield info.attribute, info.at // 8

@@ -51,6 +51,7 @@ def info(field: FieldDescription) -> str:
     if one.special:
         pairs = [f"({special.value}, {literal(special.meaning)})" for special in one.special]
         items.append(exploded("special=(", pairs, ")", " " * 12))
+    items += ["view=True"] if one.view else []
     items += (f'{key}="{value}"' for key in ("byte_order", "bit_order") if (value := getattr(one, key)))
     items += (f"{_KEYWORDS.get(bound.key, bound.key)}={_number(bound.value)}" for bound in field.bounds)
     return bracketed("_base.FieldInfo(", items, ")", WIDTH, " " * 8)
@@ -68,6 +69,15 @@ def physical(field: FieldDescription) -> str:
     if c:
         value = f"{value} {'+' if c > 0 else '-'} {abs(c)}"
     return f"float({value})" if q == 1 else f"({value}) / {q}" if c else f"{value} / {q}"
+
+
+def view(field: FieldDescription) -> str:
+    """The value of a view."""
+    raw = f'_codec.view(self, "{field.name}")'
+    if field.model.type == "float":
+        return f"_floats.float{field.model.bits}({raw})"
+    kind = annotation(field)
+    return raw if kind == "int" else f"{kind}({raw})"
 
 
 def text(field: FieldDescription) -> str:

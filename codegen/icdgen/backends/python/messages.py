@@ -19,7 +19,7 @@ def values(message: MessageDescription) -> dict[str, object]:
     defaults = {field.name: default(field, constants) for field in message.fields}
     head = "def from_bytes(", ["cls", "data: _base.Buffer"], f") -> {names.class_name(message)}:"
     return {
-        "imports": _imports(message, packing.floats),
+        "imports": _imports(message, packing.floats or any(view.model.type == "float" for view in message.views)),
         "tables": [*packing.tables, *(f"{name} = {call}" for call, name in constants.items())],
         "defaults": defaults,
         "from_bytes": bracketed(*head, WIDTH, STEP),
@@ -28,7 +28,7 @@ def values(message: MessageDescription) -> dict[str, object]:
 
 
 def _imports(message: MessageDescription, floats: bool) -> list[str]:
-    enums = {field.enum for field in message.fields if field.enum is not None}
+    enums = {field.enum for field in message.all_fields if field.enum is not None}
     lines = [_import(enum, message) for enum in enums]
     return [f"from ... import _base, _codec{', _floats' if floats else ''}", *sorted(lines)]
 

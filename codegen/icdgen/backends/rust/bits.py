@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from icdgen.backends.lines import STEP
 from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.text import mask
 from icdgen.describe import FieldDescription, MessageDescription
@@ -11,8 +12,11 @@ from icdgen.layout import Piece, is_whole_bytes
 FLAGS_FROM = 4  # so many flags of one byte are taken from the table of the support module
 
 
-def reading(field: FieldDescription, tables: set[int]) -> str:
-    """Expression of the raw value, from ``bytes``; ``tables`` are the bytes whose flags stand in ``flags_N``."""
+def reading(field: FieldDescription, tables: set[int], depth: int = 3) -> str:
+    """Expression of the raw value, from ``bytes``; ``tables`` are the bytes whose flags stand in ``flags_N``.
+
+    It stands in a line that is ``depth`` steps deep.
+    """
     one, row = field.model, field.pieces
     if one.is_bytes:
         return f"array(bytes, {one.at // 8})"
@@ -27,8 +31,8 @@ def reading(field: FieldDescription, tables: set[int]) -> str:
     lines = [f"let mut value = {_first(row[0], size)};"]
     lines += [f"value |= {_placed(piece, size)};" for piece in row[1:]]
     lines.append(_finished(field, "value", size))
-    body = "".join(f"\n                {line}" for line in lines)
-    return f"{{{body}\n            }}"
+    indent = "\n" + STEP * depth
+    return f"{{{''.join(f'{indent}{STEP}{line}' for line in lines)}{indent}}}"
 
 
 def _whole(field: FieldDescription, size: int) -> str:

@@ -41,6 +41,11 @@ def field_name(field: FieldDescription) -> str:
     return f"r#{field.name}" if field.name in _RAW else field.name
 
 
+def raw_value(field: FieldDescription) -> str:
+    """What gives the raw value of a field of a message: the member, or the method of a view."""
+    return f"self.{field_name(field)}{'()' if field.model.view else ''}"
+
+
 def catch_all(enum: EnumDescription) -> str:
     """The variant for values without a name."""
     taken = {type_name(member) for member in enum.members}

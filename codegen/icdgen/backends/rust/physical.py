@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from icdgen.backends.rust.names import field_name
+from icdgen.backends.rust.names import raw_value
 from icdgen.backends.rust.text import mask, whole_double
 from icdgen.describe import FieldDescription
 from icdgen.describe.steps import wide_parts
@@ -13,6 +13,13 @@ def big_parts(value: int) -> list[str]:
     return [mask(part, 64) if part > 9 else str(part) for part in wide_parts(value, 64)]
 
 
+def has_constant(field: FieldDescription) -> bool:
+    """Whether code needs the constant of its scale: to set it, to see whether it fits, or to compute its physical value."""
+    if not field.model.view:
+        return field.steps is not None or field.is_narrow
+    return field.steps is not None and physical(field).startswith(f"{field.name.upper()}.")
+
+
 def physical(field: FieldDescription) -> str:
     """The physical value of a field with a scale.
 
@@ -20,9 +27,9 @@ def physical(field: FieldDescription) -> str:
     """
     assert field.steps is not None
     if field.storage.bits > 32 or field.steps.is_wide or not field.steps.exact_in_doubles:
-        return f"{field.name.upper()}.physical(self.{field_name(field)})"
+        return f"{field.name.upper()}.physical({raw_value(field)})"
     p, c, q = field.steps.terms
-    raw = f"f64::from(self.{field_name(field)})"
+    raw = f"f64::from({raw_value(field)})"
     value = raw if abs(p) == 1 else f"{raw} * {whole_double(abs(p))}"
     if p < 0:
         value = f"{whole_double(c)} - {value}"  # so that a zero comes out positive, whatever the signs

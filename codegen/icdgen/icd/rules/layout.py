@@ -19,6 +19,7 @@ WIDTHS = {
     "bool": (frozenset({1}), "1 bit"),
     "float": (frozenset({32, 64}), "32 or 64 bits"),
 }
+_OVERLAPPING = "correct `at` or `bits`; if it reads the same bits in another way: `view: true`"
 _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
 
@@ -42,11 +43,11 @@ def past_the_end(ctx: Context) -> Iterator[Fault]:
 @rule("ICD021")
 def overlap(ctx: Context) -> Iterator[Fault]:
     for message, node in ctx.messages:
-        if any(field.bit_order not in ("", node.bit_order) for field in message.fields):
+        fields = message.owners
+        if any(field.bit_order not in ("", node.bit_order) for field in fields):
             yield from _overlaps_among(message, node)
             continue
         reached, widest = -1, -1
-        fields = message.fields
         for index in sorted(range(len(fields)), key=lambda i: fields[i].at):
             field = fields[index]
             if field.at < reached:
@@ -58,18 +59,22 @@ def overlap(ctx: Context) -> Iterator[Fault]:
 def _overlaps_among(message: Message, node: Node) -> Iterator[Fault]:
     """`overlap` where fields count bits in different ways."""
     seen: list[tuple[Field, int]] = []
-    for field in message.fields:
+    for field in message.owners:
         if field.at + field.bits > message.length * 8:
             continue  # a finding already
         mask = _mask(field, node)
         clash = next(((one, shared) for one, other in seen if (shared := mask & other)), None)
         if clash is not None:
             first, shared = clash
-            low = (shared & -shared).bit_length() - 1
-            size = shared.bit_count()
-            bits = f"{count(size, 'bit')} of byte {low // 8}" if shared >> low // 8 * 8 < 256 else count(size, "bit")
-            yield _overlap(first, field, bits)
+            yield _overlap(first, field, _bits_of(shared))
         seen.append((field, mask))
+
+
+def _bits_of(mask: int) -> str:
+    """``2 bits of byte 1``"""
+    low = (mask & -mask).bit_length() - 1
+    size = count(mask.bit_count(), "bit")
+    return f"{size} of byte {low // 8}" if mask >> low // 8 * 8 < 256 else size
 
 
 def _mask(field: Field, node: Node) -> int:
@@ -84,7 +89,7 @@ def _overlap(first: Field, second: Field, bits: str = "") -> Fault:
     start, end = max(first.at, second.at), min(first.at + first.bits, second.at + second.bits)
     bits = bits or (f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}")
     other = f"{quote(first.name)} ({line_of(first.source.place, place)})"
-    return Fault(second.source, place, f"{quote(second.name)} overlaps {other} in {bits}", "correct `at` or `bits`")
+    return Fault(second.source, place, f"{quote(second.name)} overlaps {other} in {bits}", _OVERLAPPING)
 
 
 @rule("ICD022")
@@ -121,6 +126,26 @@ def order_of_nothing(ctx: Context) -> Iterator[Fault]:
                 what = f"{_ORDERLY[field.type]} stand as they come" if field.is_bytes else "it is one bit"
                 message = f"{quote(field.name)} is `{field.type}`: {what}, so there is no `{key}`"
                 yield Fault(field.source, field.source.at(key), message, f"remove `{key}`")
+
+
+@rule("ICD029")
+def view_of_fields(ctx: Context) -> Iterator[Fault]:
+    for field, message, node in ctx.having["view"]:
+        if not field.view or field.at + field.bits > message.length * 8:
+            continue  # no view, or a finding already
+        source, name = field.source, quote(field.name)
+        if field.is_bytes:
+            yield Fault(source, source.at("view"), f"{name} is `{field.type}`: a view reads a number", "remove `view`")
+            continue
+        if field.const is not None:
+            help = "remove it: the fields that have the bits may have one"
+            yield Fault(source, source.at("const"), f"{name} is a view, which is never set, so it has no `const`", help)
+        free = _mask(field, node)
+        for owner in message.owners:
+            free &= ~_mask(owner, node)
+        if free:
+            help = "describe what has them as a field, or correct `at` or `bits`"
+            yield Fault(source, source.at("at"), f"{name} is a view of {_bits_of(free)} that no field has", help)
 
 
 def covered_bytes(message: Message) -> int:

@@ -66,6 +66,8 @@ def _encode(node: Any, words: Words) -> str:
     message = _message(node, words)()
     try:
         for info, word in zip(message.FIELDS, words):
+            if info.view:
+                continue
             if word[0] == "p" and info.type == "text":
                 setattr(message, info.physical, bytes.fromhex(word[1:]).decode())
             elif word[0] == "p":
