@@ -72,7 +72,7 @@ def _message(message: MessageDescription, linked: bool) -> Iterator[Identifier]:
     for end in ("t", "init", "decode", "encode", *(("misfit",) if message.is_narrow else ())):
         yield message.identifier(FILE, f"{stem}_{end}")
     members = f"members of {stem}_t"
-    for field in message.all_fields:
+    for field in message.all_members:
         is_view = field.model.view
         yield field.identifier(FILE, f"{stem}_{field.name}") if is_view else field.identifier(members, field.name)
         for one in field.constants:

@@ -24,7 +24,7 @@ def statements(message: MessageDescription) -> list[str]:
 
 
 def _group(group: Flags | Row, message: MessageDescription) -> str:
-    names = [field.name for field in group.members]
+    names = [field.member for field in group.members]
     target = f"{stem(message)}_t", "message"
     if isinstance(group, Flags):
         value = f"buffer[{group.byte}]" + (f" >> {group.shift}" if group.shift else "")
@@ -42,7 +42,7 @@ def _one(field: FieldDescription) -> str:
     one = field.model
     if one.is_bytes:
         return f"memcpy(message->{field.name}, &buffer[{one.at // 8}], {one.bits // 8}u);"
-    return _number(field, f"message->{field.name}")
+    return _number(field, f"message->{field.member}")
 
 
 def _number(field: FieldDescription, target: str) -> str:

@@ -47,7 +47,7 @@ class _Frame:
                 self._add(piece.byte, piece.shift, bits.put(field, piece))
 
     def _group(self, group: Flags | Row) -> None:
-        names = [field.name for field in group.members]
+        names = [field.member for field in group.members]
         byte, source = group.byte, (f"{stem(self.message)}_t", "message")
         if isinstance(group, Row):
             arguments = (*source, f"&buffer[{byte}]", f"{len(names)}u", names[0], names[-1])

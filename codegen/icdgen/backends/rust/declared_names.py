@@ -62,7 +62,7 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     fields, methods, associated = f"fields of {where}", f"methods of {where}", f"constants of {where}"
     yield from _ours(methods, _METHODS)
     yield from _ours(associated, _CONSTANTS)
-    for field in message.all_fields:
+    for field in message.all_members:
         is_view = field.model.view
         yield field.identifier(methods if is_view else fields, names.field_name(field))
         if field.has_physical:

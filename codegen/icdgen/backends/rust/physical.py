@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from icdgen.backends.rust.names import raw_value
+from icdgen.backends.rust.names import field_name
 from icdgen.backends.rust.text import mask, whole_double
 from icdgen.describe import FieldDescription
 from icdgen.describe.steps import wide_parts
@@ -17,7 +17,12 @@ def has_constant(field: FieldDescription) -> bool:
     """Whether code needs the constant of its scale: to set it, to see whether it fits, or to compute its physical value."""
     if not field.model.view:
         return field.steps is not None or field.is_narrow
-    return field.steps is not None and physical(field).startswith(f"{field.name.upper()}.")
+    return field.steps is not None and physical(field).startswith(f"{field.declared.upper()}.")
+
+
+def raw_value(field: FieldDescription) -> str:
+    """The raw value: the member, or what the method of a view gives; of an array, what stands in ``raw``."""
+    return "raw" if field.count else f"self.{field_name(field)}{'()' if field.model.view else ''}"
 
 
 def physical(field: FieldDescription) -> str:
@@ -27,7 +32,7 @@ def physical(field: FieldDescription) -> str:
     """
     assert field.steps is not None
     if field.storage.bits > 32 or field.steps.is_wide or not field.steps.exact_in_doubles:
-        return f"{field.name.upper()}.physical({raw_value(field)})"
+        return f"{field.declared.upper()}.physical({raw_value(field)})"
     p, c, q = field.steps.terms
     raw = f"f64::from({raw_value(field)})"
     value = raw if abs(p) == 1 else f"{raw} * {whole_double(abs(p))}"

@@ -87,6 +87,60 @@ pub(crate) fn put_array<const N: usize>(bytes: &mut [u8], at: usize, value: &[u8
     }
 }
 
+/// `N` values, each made by `value` of `SIZE` bytes, from `at` on.
+#[inline(always)]
+pub(crate) fn words<T: Copy + Default, const SIZE: usize, const N: usize>(
+    bytes: &[u8],
+    at: usize,
+    value: impl Fn([u8; SIZE]) -> T,
+) -> [T; N] {
+    let mut values = [T::default(); N];
+    let rest = bytes.get(at..).unwrap_or_default();
+    for (target, word) in values.iter_mut().zip(rest.chunks_exact(SIZE)) {
+        if let Ok(word) = word.try_into() {
+            *target = value(word);
+        }
+    }
+    values
+}
+
+/// Puts values, of each the `SIZE` bytes that `word` makes of it, from `at` on.
+#[inline(always)]
+pub(crate) fn put_words<T: Copy, const SIZE: usize, const N: usize>(
+    bytes: &mut [u8],
+    at: usize,
+    values: &[T; N],
+    word: impl Fn(T) -> [u8; SIZE],
+) {
+    let rest = bytes.get_mut(at..).unwrap_or_default();
+    for (target, value) in rest.chunks_exact_mut(SIZE).zip(values) {
+        target.copy_from_slice(&word(*value));
+    }
+}
+
+/// One of the elements of an array.
+#[inline]
+pub(crate) fn element_of<T: Copy>(elements: &[T], element: usize) -> Option<T> {
+    elements.get(element).copied()
+}
+
+/// Sets one of the elements of an array.
+#[inline]
+pub(crate) fn put_element<T>(
+    field: &'static str,
+    elements: &mut [T],
+    element: usize,
+    value: T,
+) -> Result<(), Error> {
+    match elements.get_mut(element) {
+        Some(target) => {
+            *target = value;
+            Ok(())
+        }
+        None => Err(Error::Range { field }),
+    }
+}
+
 /// Copies `bytes` to the beginning of `buffer` and says how many they are.
 #[inline]
 pub(crate) fn write_to<const N: usize>(buffer: &mut [u8], bytes: &[u8; N]) -> Result<usize, Error> {
