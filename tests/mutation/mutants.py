@@ -150,7 +150,11 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
         yield _number("offset", field, "at", step)
     for step in (-1, 1) if field["type"] not in ("bytes", "text") else (-8, 8):
         yield _number("width", field, "bits", step)
+    if field.get("view"):
+        yield "view", "no view", lambda f: f.pop("view")
     for other in _OTHER_TYPES[field["type"]]:
+        if other == "bytes" and field.get("view"):
+            continue
         yield "type", f"{field['type']} -> {other}", lambda f, o=other: _retype(f, o)
     for key, values in (("byte_order", ("little", "big")), ("bit_order", ("lsb0", "msb0"))):
         if key in field:

@@ -134,6 +134,8 @@ def locate(icd: Icd, node: Node, name: str, key: str) -> tuple[Message, Field]:
 
 def fitting(message: Message, one: Field, value: object) -> int | bytes:
     """The raw value of what a user gave. Raises `icdgen.errors.UserError`."""
+    if one.view:
+        raise UserError(f"{message.name}, {one.name}: a view has no bits of its own", "set the fields that have them")
     raw = from_physical(one, "true" if value is True else "false" if value is False else str(value))
     if isinstance(raw, int) and one.type != "float" and not one.raw_min <= raw <= one.raw_max:
         raise UserError(f"{message.name}, {one.name}: {value} does not fit", f"{one.bits} bits hold the raw value")

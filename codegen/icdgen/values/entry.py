@@ -45,9 +45,7 @@ def from_physical(field: Field, text: str) -> int | bytes:
 
 def _settable(field: Field) -> None:
     if field.view:
-        raise BadValue(
-            f"`{field.name}` is a view: its bits are those of other fields", "give values to the fields that have them"
-        )
+        raise BadValue("a view has no bits of its own", "set the fields that have them")
 
 
 def _bool(field: Field, text: str) -> int:

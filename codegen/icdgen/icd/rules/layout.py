@@ -142,7 +142,7 @@ def order_of_nothing(ctx: Context) -> Iterator[Fault]:
 @rule("ICD029")
 def view_of_fields(ctx: Context) -> Iterator[Fault]:
     for field, message, node in ctx.having["view"]:
-        if not field.view or field.at + field.bits > message.length * 8:
+        if not field.view or "bitfields" in field.source or field.at + field.bits > message.length * 8:
             continue  # no view, or a finding already
         source, name = field.source, quote(field.name)
         if field.element is not None:
