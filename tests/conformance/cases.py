@@ -170,7 +170,9 @@ class MessageCases:
             given = [*field["set"], *((bits, None) for bits in self.never_set)]
         for bits, raw in given:
             request = self.request("encode", raw=rest, physical={name: bits})
-            full = {key: raw if key == name else value for key, value in self.seen(self.fresh).items()}  # in the order of the fields
+            full = {
+                key: raw if key == name else value for key, value in self.seen(self.fresh).items()
+            }  # in the order of the fields
             answer = refusal if raw is None else {"ok": True, "raw": full, "physical": ..., "bytes": ...}
             yield Case(f"{name} set to {bits}", request, answer)
 

@@ -116,7 +116,17 @@ def fill_gap(icd, rng):
 def add_view(icd, rng, node, message, field):
     if not is_free(message, "Seen"):
         return None
-    new = replace(field, name="Seen", identifier=None, bits=field.bits - 1, type="int", unit=None, scale=None, formula="", view=True)
+    new = replace(
+        field,
+        name="Seen",
+        identifier=None,
+        bits=field.bits - 1,
+        type="int",
+        unit=None,
+        scale=None,
+        formula="",
+        view=True,
+    )
     new = replace(new, const=None, special=(), limits=None, enum=None, errata=())
     edited = with_fields(icd, node, message, [*message.fields, new])
     return done(edited, message.name, "DIF311")
