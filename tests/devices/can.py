@@ -58,7 +58,7 @@ def _definition(message: Any) -> Definition:
 
 
 def _with_views(fields: list[dict]) -> list[dict]:
-    """The fields, those that overlap larger ones as views; bits of these that no signal has by itself become fields of their own."""
+    """The fields, those that overlap larger ones as views; bits of these that no signal has by itself become fields."""
     owned, left = 0, 0
     for one in sorted(fields, key=lambda one: -int(one["bits"])):
         mask = _mask(one)
