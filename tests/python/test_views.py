@@ -29,12 +29,14 @@ def test_a_view_is_not_set(views):
         views(across=1)
 
 
-def test_views_stand_among_the_values_of_a_message(views):
+def test_views_stand_behind_the_fields_of_a_message(views):
     message = views(narrow=31)
-    names = ["narrow", "rest", "across", "flag", "top", "word", "real", "octets", "within"]
-    assert [info.attribute for info in views.FIELDS] == names == list(message.as_dict())
-    assert [info.attribute for info in views.FIELDS if info.view] == ["across", "flag", "top", "real", "within"]
-    assert list(message.as_dict(physical=True))[2] == "across_v"
+    own, seen = ["narrow", "rest", "word", "octets"], ["across", "flag", "top", "real", "within"]
+    assert [info.attribute for info in views.FIELDS] == own
+    assert [info.attribute for info in views.VIEWS] == seen
+    assert list(message.as_dict()) == own + seen
+    assert list(message.as_dict(physical=True))[4] == "across_v"
+    assert views.from_dict(message.as_dict()) == views.from_json(message.to_json(physical=True)) == message
     assert "across" not in repr(message) and message == views(narrow=31) != views(narrow=30)
 
 

@@ -43,8 +43,8 @@ def encode(front: Front, request: Request) -> dict[str, Any]:
     for field in fields:
         name = field["name"]
         if field["view"]:
-            values.append("-")
-        elif name in physical:
+            break  # they come last
+        if name in physical:
             values.append(f"p{_physical(field, physical[name])}")
         elif name in raw:
             values.append(f"r{_raw(field, raw[name])}")

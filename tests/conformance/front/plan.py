@@ -42,7 +42,7 @@ def _message(message: Message) -> dict[str, Any]:
                 "scaled": field.scale is not None or field.type == "text",
                 "view": field.view,
             }
-            for field in message.fields
+            for field in (*message.owners, *message.views)
         ],
     }
 

@@ -138,7 +138,7 @@ class _Rows:
             length=names.constant(message, "length"),
             ids=[names.constant(message, id.name) for id in message.ids],
             misfit=message.is_narrow,
-            fields=[self.field(field) for field in message.all_fields],
+            fields=[self.field(field) for field in (*message.fields, *message.views)],
         )
 
     def field(self, one: FieldDescription) -> FieldRow:

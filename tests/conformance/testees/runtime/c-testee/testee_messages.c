@@ -264,7 +264,7 @@ static void encode(void)
     subject.message->init(subject.value);
     for (i = 0; i < subject.message->field_count; i++) {
         const testee_field_t *field = &subject.message->fields[i];
-        const char *word = next_word();
+        const char *word = field->view == NULL ? next_word() : "";
         const bool fits = field->view != NULL ? true
             : *word == 'p'
             ? take_physical(field, subject.value, word + 1)

@@ -11,7 +11,7 @@ import sys
 from importlib import import_module
 from typing import Any, Optional
 
-from . import _codec, _floats
+from . import _floats
 from ._base import FieldInfo, Message
 from ._errors import LengthError, RangeError, UnknownIdError
 from ._testee_order import ORDER
@@ -66,8 +66,6 @@ def _encode(node: Any, words: Words) -> str:
     message = _message(node, words)()
     try:
         for info, word in zip(message.FIELDS, words):
-            if info.view:
-                continue
             if word[0] == "p" and info.type == "text":
                 setattr(message, info.physical, bytes.fromhex(word[1:]).decode())
             elif word[0] == "p":
@@ -107,7 +105,7 @@ def _field(message: Message, info: FieldInfo) -> str:
 
 def _described(message: Message, names: bool = False) -> str:
     said = [f" bytes={message.to_bytes().hex()}"]
-    for info in message.FIELDS:
+    for info in (*message.FIELDS, *message.VIEWS):
         said.append(_field(message, info))
         if info.type == "text":
             text = getattr(message, info.physical)
@@ -125,7 +123,7 @@ def _constants(node: Any, words: Words) -> str:
     message = _message(node, words)()
     ids = ",".join(map(str, message.IDS))
     said = [f" name={_hex(message.NAME)} length={message.LENGTH} ids={ids}"]
-    for info in message.FIELDS:
+    for info in (*message.FIELDS, *message.VIEWS):
         special = ",".join(str(value) for value, _ in info.special)
         said.append(f"{_field(message, info)} special={special}")
         for key, name in _LIMITS.items():
@@ -153,7 +151,7 @@ def _about_node(node: Any, words: Words) -> str:
 def _sweep(node: Any, words: Words) -> str:
     message = _message(node, words)()
     info = message.FIELDS[int(next(words))]
-    low, high = _codec.raw_range(info)
+    low, high = info.raw_range
     said = []
     for raw in map(int, words):
         if not low <= raw <= high:

@@ -204,6 +204,9 @@ fn decode<M: Subject>(words: &mut Words, id: u32, dispatcher: Dispatcher) -> Ans
 fn encode<M: Subject>(words: &mut Words) -> Answer {
     let mut message = M::default();
     for (place, field) in M::FIELDS.iter().enumerate() {
+        if matches!(field.value, Place::View(_)) {
+            break;
+        }
         let (kind, given) = words.word().split_at(1);
         match (&field.scale, &field.text) {
             (Some(scale), _) if kind == "p" => (scale.set)(&mut message, double(given))?,
