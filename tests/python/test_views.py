@@ -13,9 +13,9 @@ def views(odd):
 def test_a_view_says_what_its_bits_hold_and_follows_the_fields_that_have_them(odd, views):
     message = views.from_bytes(bytes.fromhex("0dff 0000c03f 8000000000ff"))
     assert (message.narrow, message.rest, message.across, message.across_v) == (1, -513, 223, 111.5)
-    assert (message.flag, message.real, message.within) == (True, 1.5, 3)
+    assert (message.property, message.real, message.within) == (True, 1.5, 3)
     message.narrow, message.word, message.octets = 0b11100, 0, b"\x20" + bytes(4) + b"\x40"
-    assert (message.flag, message.real, message.within) == (False, 0.0, (0x20 << 34 & (1 << 40) - 1) | 0x40 >> 6)
+    assert (message.property, message.real, message.within) == (False, 0.0, (0x20 << 34 & (1 << 40) - 1) | 0x40 >> 6)
     assert message.top is odd.module("odd").Signed(-1)
 
 
@@ -31,7 +31,7 @@ def test_a_view_is_not_set(views):
 
 def test_views_stand_behind_the_fields_of_a_message(views):
     message = views(narrow=31)
-    own, seen = ["narrow", "rest", "word", "octets"], ["across", "flag", "top", "real", "within"]
+    own, seen = ["narrow", "rest", "word", "octets"], ["across", "property", "top", "real", "within"]
     assert [info.attribute for info in views.FIELDS] == own
     assert [info.attribute for info in views.VIEWS] == seen
     assert list(message.as_dict()) == own + seen
