@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from icdgen.describe.bounds import Bound, bounds
-from icdgen.describe.numbers import bit_range, byte_count, byte_range, exact_text, value_text
+from icdgen.describe.numbers import array_text, bit_range, byte_count, byte_range, exact_text, value_text
 from icdgen.describe.steps import Steps, steps
 from icdgen.icd.model import CONFIGURATION, Enum, Erratum, Field, Member, Message
 
@@ -105,7 +105,9 @@ def _place(field: Field) -> str:
     if field.is_bytes:
         where = byte_range(field.at // 8, field.bits // 8)
         return f"{where}, text filled with NUL" if field.type == "text" else where
-    return ", ".join(filter(None, (bit_range(field.at, field.bits), orders_text(field))))
+    where = bit_range(field.at, field.bits * (field.count or 1))
+    elements = array_text(field.count, field.bits) if field.count else ""
+    return ", ".join(filter(None, (where, elements, orders_text(field))))
 
 
 def orders_text(field: Field) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import NamedTuple
 
-from icdgen import layout
+from icdgen import layout, naming
 from icdgen.describe import steps
 from icdgen.describe.bounds import Bound, bounds
 from icdgen.describe.comments import Comment, field_comment, message_comment
@@ -18,7 +18,7 @@ from icdgen.icd.model import Enum, Field, Icd, Message, Node
 
 
 class FieldDescription(Named[Field]):
-    """A field of ``message``.
+    """A field of ``message``; of an array, an element, or among `MessageDescription.members` all of it.
 
     Made by the ten thousand, and each asked for its names at once: what these need is worked out at the beginning.
     """
@@ -29,13 +29,35 @@ class FieldDescription(Named[Field]):
     """How the physical value is computed; None where that is the raw value."""
     physical_name: str
     """``estimated_roll_angle_deg``"""
+    member: str
+    """What an expression calls it, in any language: its name, of an element ``temperatures[3]``."""
+    declared: str
+    """The name that is declared for it: of an element, that of its array."""
 
     def __init__(self, field: Field, message: MessageDescription, enum: EnumDescription | None) -> None:
         super().__init__(field, message.node.vocabulary, f"field `{field.name}` of `{message.model.name}`")
         self.message, self.enum = message, enum
         self.storage = enum.storage if enum is not None else storage_of(field.bits, field.signed)
         self.steps = steps.steps(field)
-        self.physical_name = f"{self.name}_{self.unit_name}"
+        element, self.member, self.declared = field.element, self.name, self.name
+        if element is not None:
+            self.declared = naming.snake(naming.words(field.identifier or element.array, message.node.vocabulary))
+            self.name, self.member = f"{self.declared}_{element.index}", f"{self.declared}[{element.index}]"
+        self.physical_name = f"{self.declared}_{self.unit_name}"
+
+    @property
+    def count(self) -> int:
+        """How many elements an array has that stands as one; else 0."""
+        return self.model.count
+
+    @cached_property
+    def elements(self) -> tuple[FieldDescription, ...]:
+        """The elements of an array that stands as one; else none."""
+        if not self.count:
+            return ()
+        return tuple(
+            one for one in self.message.fields if one.model.element and one.model.element.array == self.model.name
+        )
 
     @property
     def is_narrow(self) -> bool:
@@ -92,7 +114,7 @@ class FieldDescription(Named[Field]):
 
     @cached_property
     def _constants(self) -> tuple[Constant, ...]:
-        return tuple(constants(self.model, self.name, self.physical_name, self.message.node.vocabulary))
+        return tuple(constants(self.model, self.declared, self.physical_name, self.message.node.vocabulary))
 
     @cached_property
     def comment(self) -> Comment:
@@ -116,9 +138,17 @@ class MessageDescription(Named[Message]):
 
     @cached_property
     def fields(self) -> tuple[FieldDescription, ...]:
-        """In the order of the ICD."""
-        enum = self._description.enum
-        return tuple(FieldDescription(f, self, enum(f.enum) if f.enum else None) for f in self.model.fields)
+        """In the order of the ICD, each element of an array."""
+        return tuple(map(self._field, self.model.fields))
+
+    @cached_property
+    def members(self) -> tuple[FieldDescription, ...]:
+        """In the order of the ICD, an array as one: what is declared in code."""
+        declared = self.model.members
+        return self.fields if declared is self.model.fields else tuple(map(self._field, declared))
+
+    def _field(self, field: Field) -> FieldDescription:
+        return FieldDescription(field, self, self._description.enum(field.enum) if field.enum else None)
 
     @cached_property
     def ids(self) -> tuple[Id, ...]:

@@ -44,6 +44,11 @@ def bit_range(at: int, bits: int) -> str:
     return f"bit {at}" if bits == 1 else f"bits {at} to {at + bits - 1}"
 
 
+def array_text(count: int, bits: int) -> str:
+    """``6 elements of 16 bits``"""
+    return f"{count} element{'s' * (count != 1)} of {bits} bit{'s' * (bits != 1)}"
+
+
 def byte_range(first: int, count: int) -> str:
     """``byte 3``, ``bytes 4 to 7``"""
     return f"byte {first}" if count == 1 else f"bytes {first} to {first + count - 1}"

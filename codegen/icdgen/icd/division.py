@@ -29,6 +29,12 @@ def parts_of(field: Map) -> list[Map]:
 def obstacles(field: Map, byte_order: str, bit_order: str) -> Iterator[Obstacle]:
     """What is wrong with the division; the parts are `parts_of` it."""
     name, bits = f"`{field['name']}`", field["bits"]
+    if "count" in field:
+        message = f"{name} is an array, and `bitfields` divide one number"
+        yield Obstacle(
+            field, "bitfields", message, "write a field for each element, or the parts as fields of the message"
+        )
+        return
     if field["type"] != "uint" or bits > 64:
         what = f"{name} is `{field['type']}`" if field["type"] != "uint" else f"{name} has {bits:,} bits"
         message = f"`bitfields` divide an unsigned number, and {what}"

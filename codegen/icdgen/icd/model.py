@@ -7,7 +7,7 @@ where a model was made in memory or came from the cache).
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -109,8 +109,17 @@ class Limits:
 
 
 @dataclass(frozen=True, slots=True)
+class Element:
+    """Which element of an array a field is."""
+
+    array: str  # its name
+    index: int
+    count: int  # of all elements
+
+
+@dataclass(frozen=True, slots=True)
 class Field:
-    """A field of a message: ``bits`` bits at bit ``at`` of the frame."""
+    """A field of a message: ``bits`` bits at bit ``at`` of the frame. Each element of an array is one: `Message.members`."""
 
     name: str
     at: int
@@ -127,6 +136,8 @@ class Field:
     summary: str = ""
     byte_order: str = ""  # its own or its message's; empty: the node's
     bit_order: str = ""  # likewise; `at` is counted by it
+    element: Element | None = None
+    count: int = 0  # of an array that stands as one: its elements, of which this is the first but for its name
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
@@ -158,6 +169,12 @@ class Field:
     def raw_max(self) -> int:
         """Largest raw value of an integer, enum or bool field."""
         return (1 << (self.bits - self.signed)) - 1
+
+
+def _declared(field: Field) -> Field:
+    """The array of which a field is the first element; or else the field."""
+    one = field.element
+    return field if one is None else replace(field, name=one.array, element=None, count=one.count)
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,6 +210,13 @@ class Message:
     node: str = ""  # name of the node that declares it
     errata: tuple[Erratum, ...] = ()
     source: Map = field(default_factory=unread, compare=False, repr=False)
+
+    @property
+    def members(self) -> tuple[Field, ...]:
+        """The fields as the ICD declares them: an array stands as one."""
+        if all(field.element is None for field in self.fields):
+            return self.fields
+        return tuple(map(_declared, (one for one in self.fields if one.element is None or one.element.index == 0)))
 
     @property
     def fresh(self) -> dict[str, int | bytes]:

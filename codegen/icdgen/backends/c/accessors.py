@@ -10,6 +10,9 @@ from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.comments import physical_comment, physical_name, words
 from icdgen.describe.wholes import part_of_unit
 
+ELEMENT = "element"
+"""What accessors call the index of an array's element."""
+
 
 class Accessor(NamedTuple):
     """A getter and a setter of a physical value; ``test`` holds for values that the setter refuses by itself."""
@@ -22,11 +25,12 @@ class Accessor(NamedTuple):
     assignment: str
     test: str = ""
     declared: tuple[str, ...] = ()  # lines before both
+    elements: int = 0  # of an array: both take which of so many is meant
 
 
 def accessors(message: MessageDescription) -> list[Accessor]:
     """In double precision."""
-    return [_double(field) for field in message.fields if field.steps is not None]
+    return [_double(field) for field in message.members if field.steps is not None]
 
 
 def _double(field: FieldDescription) -> Accessor:
@@ -38,21 +42,26 @@ def _double(field: FieldDescription) -> Accessor:
         type="double",
         about=physical_comment(field.model, field.steps),
         what=physical_name(field.model),
-        expression=scaled.getter.format(raw=f"message->{field.name}"),
-        assignment=call(f"return {function}", (f"&message->{field.name}", *arguments)),
+        expression=scaled.getter.format(raw=_member(field)),
+        assignment=call(f"return {function}", (f"&{_member(field)}", *arguments)),
         declared=tuple(physical.wide_scale(field.steps)) if field.steps.is_wide else (),
+        elements=field.count,
     )
+
+
+def _member(field: FieldDescription) -> str:
+    return f"message->{field.name}{f'[{ELEMENT}]' if field.count else ''}"
 
 
 def whole_accessors(message: MessageDescription) -> list[Accessor]:
     """In whole thousandths or millionths of the unit."""
-    wholes = ((field, physical.scaled(field).whole) for field in message.fields if field.steps is not None)
+    wholes = ((field, physical.scaled(field).whole) for field in message.members if field.steps is not None)
     return [_whole(field, whole) for field, whole in wholes if whole is not None]
 
 
 def whole_name(field: FieldDescription, whole: physical.Whole) -> str:
     """``estimated_roll_angle_mdeg``"""
-    return f"{field.name}_{part_of_unit(field.model, whole.per)[0]}"
+    return f"{field.declared}_{part_of_unit(field.model, whole.per)[0]}"
 
 
 def _whole(field: FieldDescription, whole: physical.Whole) -> Accessor:
@@ -64,7 +73,8 @@ def _whole(field: FieldDescription, whole: physical.Whole) -> Accessor:
         type=whole.type,
         about=f"{what}, exact: {whole.low} to {whole.high}.",
         what=what,
-        expression=whole.getter.format(raw=f"message->{field.name}"),
-        assignment=f"message->{field.name} = {whole.setter};",
-        test=" || ".join(tests),
+        expression=whole.getter.format(raw=_member(field)),
+        assignment=f"{_member(field)} = {whole.setter};",
+        test=" || ".join(f"({test})" for test in tests) if len(tests) > 1 else "".join(tests),
+        elements=field.count,
     )

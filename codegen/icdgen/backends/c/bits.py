@@ -109,7 +109,7 @@ def store(field: FieldDescription) -> str:
 
 def _raw(field: FieldDescription) -> str:
     """The raw value, or the bits of a float."""
-    member = f"message->{field.name}"
+    member = f"message->{field.member}"
     return f"icdgen_bits_f{field.model.bits}(&{member})" if field.model.type == "float" else member
 
 
@@ -119,9 +119,9 @@ def excess(field: FieldDescription) -> str:
     wide = 64 if storage.bits == 64 else 32
     if not storage.signed:
         beyond = ((1 << storage.bits) - 1) ^ one.raw_max
-        return f"message->{field.name} & {mask(beyond, storage.bits)}"
+        return f"message->{field.member} & {mask(beyond, storage.bits)}"
     beyond = ((1 << wide) - 1) ^ ((1 << one.bits) - 1)
-    return f"({cast(f'message->{field.name}', wide)} + {mask(1 << (one.bits - 1), wide)}) & {mask(beyond, wide)}"
+    return f"({cast(f'message->{field.member}', wide)} + {mask(1 << (one.bits - 1), wide)}) & {mask(beyond, wide)}"
 
 
 def excess_type(message: MessageDescription) -> str:

@@ -17,7 +17,7 @@ _MAX_ENUMERATOR = 32767
 
 def of_fields(message: MessageDescription) -> list[tuple[Constant, str]]:
     """The constants of a message's fields, and their values."""
-    return [(one, _value(one, field)) for field in message.fields for one in field.constants]
+    return [(one, _value(one, field)) for field in message.members for one in field.constants]
 
 
 def _value(one: Constant, field: FieldDescription) -> str:
@@ -30,10 +30,11 @@ def _value(one: Constant, field: FieldDescription) -> str:
 def initial(message: MessageDescription) -> list[str]:
     """Statements that give fields with only one valid value that value."""
     return [
-        f"message->{field.name} = {names.constant(message, one.name)};"
-        for field in message.fields
+        f"message->{element.member} = {names.constant(message, one.name)};"
+        for field in message.members
         for one in field.constants
         if one.key == "const"
+        for element in field.elements or (field,)
     ]
 
 

@@ -24,7 +24,7 @@ def statements(message: MessageDescription) -> list[str]:
 
 
 def _group(group: Flags | Row, message: MessageDescription) -> str:
-    names = [field.name for field in group.members]
+    names = [field.member for field in group.members]
     target = f"{stem(message)}_t", "message"
     if isinstance(group, Flags):
         value = f"buffer[{group.byte}]" + (f" >> {group.shift}" if group.shift else "")
@@ -36,7 +36,7 @@ def _group(group: Flags | Row, message: MessageDescription) -> str:
 def _one(field: FieldDescription) -> str:
     one = field.model
     if one.is_bytes:
-        return f"memcpy(message->{field.name}, &buffer[{one.at // 8}], {one.bits // 8}u);"
+        return f"(void)memcpy(message->{field.name}, &buffer[{one.at // 8}], {one.bits // 8}u);"
     read = bits.read(field)
     line = _assigned(field, read.whole)
     if len(STEP) + len(line) <= WIDTH or len(read.terms) == 1:
@@ -49,5 +49,5 @@ def _one(field: FieldDescription) -> str:
 
 def _assigned(field: FieldDescription, value: str) -> str:
     if field.model.type == "float":
-        return call(f"icdgen_set_f{field.model.bits}", (f"&message->{field.name}", value))
-    return f"message->{field.name} = {value};"
+        return call(f"icdgen_set_f{field.model.bits}", (f"&message->{field.member}", value))
+    return f"message->{field.member} = {value};"

@@ -39,7 +39,7 @@ class _Frame:
         one = field.model
         first, size = one.at // 8, one.bits // 8
         if one.is_bytes:
-            self.whole[first] = size, f"memcpy(&buffer[{first}], message->{field.name}, {size}u);"
+            self.whole[first] = size, f"(void)memcpy(&buffer[{first}], message->{field.name}, {size}u);"
         elif bits.is_word(field):
             self.whole[first] = size, bits.store(field)
         else:
@@ -47,7 +47,7 @@ class _Frame:
                 self._add(piece.byte, piece.shift, bits.put(field, piece))
 
     def _group(self, group: Flags | Row) -> None:
-        names = [field.name for field in group.members]
+        names = [field.member for field in group.members]
         byte, source = group.byte, (f"{stem(self.message)}_t", "message")
         if isinstance(group, Row):
             arguments = (*source, f"&buffer[{byte}]", f"{len(names)}u", names[0], names[-1])
@@ -82,4 +82,4 @@ class _Frame:
 
 
 def _zero(first: int, count: int) -> str:
-    return f"buffer[{first}] = 0u;" if count == 1 else f"memset(&buffer[{first}], 0, {count}u);"
+    return f"buffer[{first}] = 0u;" if count == 1 else f"(void)memset(&buffer[{first}], 0, {count}u);"

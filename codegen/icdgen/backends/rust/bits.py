@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from icdgen.backends.lines import STEP, bracketed
 from icdgen.backends.rust.names import field_name
-from icdgen.backends.rust.text import mask
+from icdgen.backends.rust.text import WIDTH, mask
 from icdgen.describe import FieldDescription, MessageDescription
 from icdgen.describe.storage import holding
 from icdgen.layout import Piece, is_whole_bytes
 
+_ARRAY_WIDTH = 60  # of an array that rustfmt leaves on one line
 FLAGS_FROM = 4  # so many flags of one byte are taken from the table of the support module
 
 
-def reading(field: FieldDescription, tables: set[int]) -> str:
-    """Expression of the raw value, from ``bytes``; ``tables`` are the bytes whose flags stand in ``flags_N``."""
+def reading(field: FieldDescription, tables: set[int], depth: int = 3) -> str:
+    """Expression of the raw value, from ``bytes``; ``tables`` are the bytes whose flags stand in ``flags_N``.
+
+    It stands in a line indented by ``depth`` steps.
+    """
+    if field.count:
+        return _array(field) if _is_run(field) else _listed(field, tables, depth)
     one, row = field.model, field.pieces
     if one.is_bytes:
         return f"array(bytes, {one.at // 8})"
@@ -27,8 +34,41 @@ def reading(field: FieldDescription, tables: set[int]) -> str:
     lines = [f"let mut value = {_first(row[0], size)};"]
     lines += [f"value |= {_placed(piece, size)};" for piece in row[1:]]
     lines.append(_finished(field, "value", size))
-    body = "".join(f"\n                {line}" for line in lines)
-    return f"{{{body}\n            }}"
+    body = "".join(f"\n{STEP * (depth + 1)}{line}" for line in lines)
+    return f"{{{body}\n{STEP * depth}}}"
+
+
+def _is_run(field: FieldDescription) -> bool:
+    """Whether the elements of an array are words that lie in the frame as they do in memory, but for their byte order."""
+    one = field.model
+    return is_whole_bytes(one) and one.bits == field.storage.bits and one.type != "bool"
+
+
+def _array(field: FieldDescription) -> str:
+    """The words of an array, read one after the other."""
+    one, size = field.model, field.model.bits
+    first = one.at // 8
+    if one.type == "uint" and size == 8:
+        return f"array(bytes, {first})"
+    kind = "f" if one.type == "float" else "i" if one.signed else "u"
+    word = f"{kind}{size}::from_{_order(field)}_bytes"
+    if one.type != "enum":
+        return f"words(bytes, {first}, {word})"
+    value = f"Coded::from_raw({word}(word))"
+    line = f"words(bytes, {first}, |word| {value})"
+    if len(f"{STEP * 3}{field_name(field)}: {line},") <= WIDTH:
+        return line
+    return f"words(bytes, {first}, |word| {{\n{STEP * 4}{value}\n{STEP * 3}}})"
+
+
+def _listed(field: FieldDescription, tables: set[int], depth: int) -> str:
+    """The elements of an array, each read by itself."""
+    values = [reading(one, tables, depth + 1) for one in field.elements]
+    line = f"[{', '.join(values)}]"
+    if len(line) <= _ARRAY_WIDTH and "\n" not in line:
+        return line
+    rows = "".join(f"\n{STEP * (depth + 1)}{value}," for value in values)
+    return f"[{rows}\n{STEP * depth}]"
 
 
 def _whole(field: FieldDescription, size: int) -> str:
@@ -100,14 +140,19 @@ def _placed(piece: Piece, size: int) -> str:
     return f"{_parenthesised(value) if size == 8 else value} << {piece.at}" if piece.at else value
 
 
-def fitting(field: FieldDescription) -> str:
-    """The statement that returns with an error if the raw value of a narrow field does not fit its bits."""
+def fitting(field: FieldDescription) -> list[str]:
+    """The statements that return with an error if the raw value of a narrow field does not fit its bits."""
     raw = ".raw()" if field.enum is not None else ""
-    return f"{field.name.upper()}.fit(self.{field_name(field)}{raw})?;"
+    if field.count:
+        lines = f"for value in self.{field_name(field)} {{", f"{STEP}{field.name.upper()}.fit(value{raw})?;", "}"
+        return list(lines)
+    return [f"{field.name.upper()}.fit(self.{field_name(field)}{raw})?;"]
 
 
 def writing(field: FieldDescription) -> list[str]:
     """Statements that put the raw value into ``bytes``, without the bits that its field has no room for."""
+    if field.count:
+        return _put_run(field) if _is_run(field) else [line for one in field.elements for line in writing(one)]
     one, row, source = field.model, field.pieces, f"self.{field_name(field)}"
     if one.is_bytes:
         return [f"put_array(&mut bytes, {one.at // 8}, &{source});"]
@@ -128,6 +173,18 @@ def writing(field: FieldDescription) -> list[str]:
         lines.append(f"let value = u{size}::from_le_bytes({source}.to_le_bytes());")
         source = "value"
     return lines + _put_pieces(row, source, size)
+
+
+def _put_run(field: FieldDescription) -> list[str]:
+    """The words of an array, written one after the other."""
+    one, size, source = field.model, field.model.bits, f"self.{field_name(field)}"
+    first = one.at // 8
+    if one.type == "uint" and size == 8:
+        return [f"put_array(&mut bytes, {first}, &{source});"]
+    kind = "f" if one.type == "float" else "i" if one.signed else "u"
+    to_bytes = f"to_{_order(field)}_bytes"
+    word = f"|value| value.raw().{to_bytes}()" if one.type == "enum" else f"{kind}{size}::{to_bytes}"
+    return [bracketed("put_words(", ("&mut bytes", str(first), f"&{source}", word), ");", WIDTH, STEP * 2)]
 
 
 def _copied(first: int, count: int, source: str) -> str:

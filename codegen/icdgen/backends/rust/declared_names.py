@@ -9,7 +9,7 @@ from icdgen.backends.rust import names
 from icdgen.describe import Description, MessageDescription, NodeDescription
 from icdgen.naming import DEVICES
 
-_METHODS = ("from_bytes", "from_array", "to_bytes", "try_to_bytes", "default")
+_METHODS = ("from_bytes", "from_array", "to_bytes", "default")
 _CONSTANTS = ("NAME", "LENGTH", "ID", "SET_ID", "GET_ID")
 _ENUM_USES = ("Option", "From", "Enumeration")
 _OURS = "a name of the generated code"
@@ -62,7 +62,7 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     fields, methods, associated = f"fields of {where}", f"methods of {where}", f"constants of {where}"
     yield from _ours(methods, _METHODS)
     yield from _ours(associated, _CONSTANTS)
-    for field in message.fields:
+    for field in message.members:
         yield field.identifier(fields, names.field_name(field))
         if field.has_physical:
             yield field.identifier(methods, field.physical_name)

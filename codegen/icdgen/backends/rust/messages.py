@@ -12,7 +12,7 @@ DERIVES_DEFAULT = 32  # elements of an array; longer ones do not
 
 def values(message: MessageDescription) -> dict[str, object]:
     """What is read, written, derived and imported."""
-    fields, tables = message.fields, bits.flag_tables(message)
+    fields, tables = message.members, bits.flag_tables(message)
     readings = [bits.reading(field, tables) for field in fields]
     writings = [line for field in fields for line in bits.writing(field)]
     has_default = all(field.fresh == 0 and not _is_long(field) for field in fields)
@@ -20,15 +20,20 @@ def values(message: MessageDescription) -> dict[str, object]:
     narrow = [field for field in fields if field.is_narrow]
     scales = [field for field in fields if field.steps is not None or field.is_narrow]
     has_text = any(field.is_text for field in fields)
+    has_elements = any(field.count and field.steps is not None for field in fields)
     is_usual = any(field.steps is None or not field.steps.is_wide for field in scales)
     imported = {
         "array": any("array(" in reading for reading in readings),
+        "element_of": has_elements,
         "flags": bool(tables),
         "put": any("put!(" in line for line in writings),
         "put_array": any("put_array(" in line for line in writings),
+        "put_element": has_elements,
+        "put_words": any("put_words(" in line for line in writings),
         "take": any("take!(" in reading for reading in readings),
         "text": has_text,
         "text_array": has_text,
+        "words": any("words(" in reading for reading in readings),
         "Big": message.has_wide_steps,
         "Coded": any(field.enum for field in fields),
         "Error": True,
@@ -41,7 +46,7 @@ def values(message: MessageDescription) -> dict[str, object]:
         "tables": sorted(tables),
         "literal": _literal(fields, readings),
         "writings": writings,
-        "fits": [bits.fitting(field) for field in narrow],
+        "fits": [line for field in narrow for line in bits.fitting(field)],
         "scales": scales,
         "default": None if has_default else _literal(fields, [_fresh(field) for field in fields]),
         "derives": ", ".join(derived + ([] if message.has_floats else ["Eq", "Hash"])),
@@ -54,6 +59,8 @@ def values(message: MessageDescription) -> dict[str, object]:
 
 def _is_long(field: FieldDescription) -> bool:
     """Whether it is an array that has no `Default`."""
+    if field.count:
+        return field.count > DERIVES_DEFAULT
     return field.model.is_bytes and field.model.bits > DERIVES_DEFAULT * 8
 
 
@@ -63,6 +70,10 @@ def _byte(id: int | None) -> int | None:
 
 
 def _fresh(field: FieldDescription) -> str:
+    return f"[{_one_fresh(field)}; {field.count}]" if field.count else _one_fresh(field)
+
+
+def _one_fresh(field: FieldDescription) -> str:
     kind = field.model.type
     if field.model.is_bytes:
         return f"[0; {field.model.bits // 8}]"

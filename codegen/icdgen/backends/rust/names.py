@@ -37,8 +37,8 @@ def type_name(one: MessageDescription | EnumDescription | MemberDescription) -> 
 
 
 def field_name(field: FieldDescription) -> str:
-    """``estimated_roll_angle``; ``r#type`` where the name is a keyword."""
-    return f"r#{field.name}" if field.name in _RAW else field.name
+    """``estimated_roll_angle``; ``r#type`` where the name is a keyword; of an element of an array ``temperatures[3]``."""
+    return f"r#{field.member}" if field.member.partition("[")[0] in _RAW else field.member
 
 
 def catch_all(enum: EnumDescription) -> str:
@@ -65,6 +65,10 @@ def integer_type(field: FieldDescription) -> str:
 
 def raw_type(field: FieldDescription) -> str:
     """Type of the raw value in the message's struct."""
+    return f"[{_one_type(field)}; {field.count}]" if field.count else _one_type(field)
+
+
+def _one_type(field: FieldDescription) -> str:
     one = field.model
     if field.enum is not None:
         return f"Coded<{enum_path(field.enum, field.message.node)}>"

@@ -13,6 +13,11 @@ def big_parts(value: int) -> list[str]:
     return [mask(part, 64) if part > 9 else str(part) for part in wide_parts(value, 64)]
 
 
+def raw_value(field: FieldDescription) -> str:
+    """The raw value; of an array, what stands in ``raw``."""
+    return "raw" if field.count else f"self.{field_name(field)}"
+
+
 def physical(field: FieldDescription) -> str:
     """The physical value of a field with a scale.
 
@@ -20,9 +25,9 @@ def physical(field: FieldDescription) -> str:
     """
     assert field.steps is not None
     if field.storage.bits > 32 or field.steps.is_wide or not field.steps.exact_in_doubles:
-        return f"{field.name.upper()}.physical(self.{field_name(field)})"
+        return f"{field.declared.upper()}.physical({raw_value(field)})"
     p, c, q = field.steps.terms
-    raw = f"f64::from(self.{field_name(field)})"
+    raw = f"f64::from({raw_value(field)})"
     value = raw if abs(p) == 1 else f"{raw} * {whole_double(abs(p))}"
     if p < 0:
         value = f"{whole_double(c)} - {value}"  # so that a zero comes out positive, whatever the signs

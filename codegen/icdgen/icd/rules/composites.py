@@ -53,17 +53,23 @@ def part_matches(ctx: Context) -> Iterator[Fault]:
             continue  # a finding already
         wanted = {part.at + f.at: f for f in frame.fields}
         start, end = part.at, part.at + frame.length * 8
+        told = set()
         for field in message.fields:
             if field.at + field.bits <= start or field.at >= end:
                 continue
             twin = wanted.pop(field.at, None)
+            if id(field.source) in told:
+                continue  # another element of the same array
             if twin is None:
+                told.add(id(field.source))
                 text = f"{quote(frame.name)} has no field at bit {field.at - start:,}, where {quote(field.name)} begins"
                 if field.at < start:
                     text = f"{quote(field.name)} lies across bit {start:,}, where {quote(frame.name)} begins"
                 yield Fault(field.source, field.source.at("at"), text, _compare(frame, field.source.at("at")))
             else:
-                yield from _differences(field, twin, frame)
+                differences = list(_differences(field, twin, frame))
+                told |= {id(one.owner) for one in differences}
+                yield from differences
         if wanted:
             names = [f"{quote(f.name)} at bit {at:,}" for at, f in list(wanted.items())[:3]]
             more = [f"{len(wanted) - 3} more"] if len(wanted) > 3 else []

@@ -66,7 +66,11 @@ def field_names(ctx: Context) -> Iterator[Fault]:
         fields = message.fields
         if len({f.name for f in fields}) == len(fields):
             continue
+        told = set()
         for first, second in _twice(fields, lambda f: f.name):
+            if id(second.source) in told:
+                continue  # another element of the same array
+            told.add(id(second.source))
             place = second.source.at("name")
             there = line_of(first.source.at("name"), place)
             text = f"{quote(message.name)} already has a field {quote(second.name)}, in {there}"

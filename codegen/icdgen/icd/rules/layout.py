@@ -19,28 +19,38 @@ WIDTHS = {
     "bool": (frozenset({1}), "1 bit"),
     "float": (frozenset({32, 64}), "32 or 64 bits"),
 }
+Overlap = tuple[Fault, tuple[int, int]]  # and the two fields as they were read
 _ORDERLY = {"bytes": "bytes", "text": "characters"}
 
 
 @rule("ICD020")
 def past_the_end(ctx: Context) -> Iterator[Fault]:
     for field, message, _ in ctx.fields:
-        end, room = field.at + field.bits, message.length * 8
+        end, room = field.at + field.bits * (field.count or 1), message.length * 8
         if end > room:
             source = field.source
-            place = source.at("bits" if field.at < room else "at")
+            key = "at" if field.at >= room else "count" if field.count else "bits"
+            place = source.at(key)
             has = f"{quote(message.name)} has {count(room, 'bit')} ({count(message.length, 'byte')})"
             length = line_of(message.source.at("length"), place)
             yield Fault(
                 source,
                 place,
                 f"{quote(field.name)} ends at bit {end:,}, but {has}",
-                f"correct `at` or `bits`, or the `length` in {length}",
+                f"correct `at`{', `count`' if field.count else ''} or `bits`, or the `length` in {length}",
             )
 
 
 @rule("ICD021")
 def overlap(ctx: Context) -> Iterator[Fault]:
+    told = set()
+    for fault, pair in _overlaps(ctx):
+        if pair not in told:  # of arrays, each element may overlap
+            told.add(pair)
+            yield fault
+
+
+def _overlaps(ctx: Context) -> Iterator[Overlap]:
     for message, node in ctx.messages:
         if any(field.bit_order not in ("", node.bit_order) for field in message.fields):
             yield from _overlaps_among(message, node)
@@ -55,8 +65,8 @@ def overlap(ctx: Context) -> Iterator[Fault]:
                 reached, widest = field.at + field.bits, index
 
 
-def _overlaps_among(message: Message, node: Node) -> Iterator[Fault]:
-    """`overlap` where fields count bits in different ways."""
+def _overlaps_among(message: Message, node: Node) -> Iterator[Overlap]:
+    """`_overlaps` where fields count bits in different ways."""
     seen: list[tuple[Field, int]] = []
     for field in message.fields:
         if field.at + field.bits > message.length * 8:
@@ -79,12 +89,13 @@ def _mask(field: Field, node: Node) -> int:
     return sum(1 << (at // 8 * 8 + 7 - at % 8) for at in range(field.at, field.at + field.bits))
 
 
-def _overlap(first: Field, second: Field, bits: str = "") -> Fault:
+def _overlap(first: Field, second: Field, bits: str = "") -> Overlap:
     place = second.source.at("at")
     start, end = max(first.at, second.at), min(first.at + first.bits, second.at + second.bits)
     bits = bits or (f"bit {start:,}" if end - start == 1 else f"bits {start:,} to {end - 1:,}")
     other = f"{quote(first.name)} ({line_of(first.source.place, place)})"
-    return Fault(second.source, place, f"{quote(second.name)} overlaps {other} in {bits}", "correct `at` or `bits`")
+    fault = Fault(second.source, place, f"{quote(second.name)} overlaps {other} in {bits}", "correct `at` or `bits`")
+    return fault, (id(first.source), id(second.source))
 
 
 @rule("ICD022")

@@ -87,6 +87,60 @@ pub(crate) fn put_array<const N: usize>(bytes: &mut [u8], at: usize, value: &[u8
     }
 }
 
+/// `N` values, each made by `value` of `SIZE` bytes, from `at` on.
+#[inline(always)]
+pub(crate) fn words<T: Copy + Default, const SIZE: usize, const N: usize>(
+    bytes: &[u8],
+    at: usize,
+    value: impl Fn([u8; SIZE]) -> T,
+) -> [T; N] {
+    let mut values = [T::default(); N];
+    let rest = bytes.get(at..).unwrap_or_default();
+    for (target, word) in values.iter_mut().zip(rest.chunks_exact(SIZE)) {
+        if let Ok(word) = word.try_into() {
+            *target = value(word);
+        }
+    }
+    values
+}
+
+/// Puts values, of each the `SIZE` bytes that `word` makes of it, from `at` on.
+#[inline(always)]
+pub(crate) fn put_words<T: Copy, const SIZE: usize, const N: usize>(
+    bytes: &mut [u8],
+    at: usize,
+    values: &[T; N],
+    word: impl Fn(T) -> [u8; SIZE],
+) {
+    let rest = bytes.get_mut(at..).unwrap_or_default();
+    for (target, value) in rest.chunks_exact_mut(SIZE).zip(values) {
+        target.copy_from_slice(&word(*value));
+    }
+}
+
+/// One of the elements of an array.
+#[inline]
+pub(crate) fn element_of<T: Copy>(elements: &[T], element: usize) -> Option<T> {
+    elements.get(element).copied()
+}
+
+/// Sets one of the elements of an array.
+#[inline]
+pub(crate) fn put_element<T>(
+    field: &'static str,
+    elements: &mut [T],
+    element: usize,
+    value: T,
+) -> Result<(), Error> {
+    match elements.get_mut(element) {
+        Some(target) => {
+            *target = value;
+            Ok(())
+        }
+        None => Err(Error::Range { field }),
+    }
+}
+
 /// Copies `bytes` to the beginning of `buffer` and says how many they are.
 #[inline]
 pub(crate) fn write_to<const N: usize>(buffer: &mut [u8], bytes: &[u8; N]) -> Result<usize, Error> {
@@ -97,24 +151,40 @@ pub(crate) fn write_to<const N: usize>(buffer: &mut [u8], bytes: &[u8; N]) -> Re
     }
 }
 
-/// The eight bits of a byte, least significant first.
+/// The eight bits of a byte, least significant first: looked up where memory is plenty, which is faster.
 #[inline(always)]
 pub(crate) fn flags(byte: u8) -> [bool; 8] {
-    FLAGS[usize::from(byte)]
+    #[cfg(target_pointer_width = "64")]
+    return FLAGS[usize::from(byte)];
+    #[cfg(not(target_pointer_width = "64"))]
+    return bits(byte);
 }
 
+#[cfg(target_pointer_width = "64")]
 static FLAGS: [[bool; 8]; 256] = flag_table();
 
+#[cfg(target_pointer_width = "64")]
 const fn flag_table() -> [[bool; 8]; 256] {
     let mut table = [[false; 8]; 256];
-    let mut byte = 0;
-    while byte < 256 {
-        let mut bit = 0;
-        while bit < 8 {
-            table[byte][bit] = (byte >> bit) & 1 != 0;
-            bit += 1;
+    let mut byte = 0_u8;
+    loop {
+        table[byte as usize] = bits(byte);
+        if byte == u8::MAX {
+            return table;
         }
         byte += 1;
     }
-    table
+}
+
+const fn bits(byte: u8) -> [bool; 8] {
+    [
+        byte & 0x01 != 0,
+        byte & 0x02 != 0,
+        byte & 0x04 != 0,
+        byte & 0x08 != 0,
+        byte & 0x10 != 0,
+        byte & 0x20 != 0,
+        byte & 0x40 != 0,
+        byte & 0x80 != 0,
+    ]
 }

@@ -14,7 +14,9 @@ mod scale;
 mod text;
 mod wide;
 
-pub(crate) use self::bytes::{array, flags, put, put_array, take, write_to};
+pub(crate) use self::bytes::{
+    array, element_of, flags, put, put_array, put_element, put_words, take, words, write_to,
+};
 pub(crate) use self::scale::Scale;
 pub(crate) use self::text::{text, text_array};
 pub(crate) use self::wide::{Big, Wide};

@@ -11,7 +11,7 @@ import sys
 from importlib import import_module
 from typing import Any, Optional
 
-from . import _codec, _floats
+from . import _floats
 from ._base import FieldInfo, Message
 from ._errors import LengthError, RangeError, UnknownIdError
 from ._testee_order import ORDER
@@ -151,7 +151,7 @@ def _about_node(node: Any, words: Words) -> str:
 def _sweep(node: Any, words: Words) -> str:
     message = _message(node, words)()
     info = message.FIELDS[int(next(words))]
-    low, high = _codec.raw_range(info)
+    low, high = info.raw_range
     said = []
     for raw in map(int, words):
         if not low <= raw <= high:
