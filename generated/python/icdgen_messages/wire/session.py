@@ -50,54 +50,7 @@ class BusSession(Exchanges):
         it may be, as the acknowledge may be damaged, and else taken for a time-out. Raises
         `FailedError`.
         """
-<<<<<<< HEAD
         return self._run(self._procedure(procedure, progress))
-=======
-        try:
-            return self._driven(procedure, progress)
-        finally:
-            self.client.cancel()  # else a port that fails leaves it busy
-
-    def _driven(
-        self, procedure: P, progress: Optional[Callable[[int, Optional[int]], object]]
-    ) -> P:
-        events: list[Event] = []
-        shown: Optional[tuple[int, Optional[int]]] = None
-        asked: Optional[Request] = None
-        refused: Optional[Refused] = None
-        left = 0
-        while True:
-            is_again = False
-            for event in events:
-                if isinstance(event, Refused):
-                    refused = event
-                    if _may_be_damaged(event):
-                        self._tell(event)
-                        is_again = bool(asked and asked.repeat) and left > 0
-                        if is_again:
-                            continue
-                        event = Timeout(event.id, event.attempts)
-                procedure.event(self._now(), event)
-            events = []
-            if is_again:
-                left -= 1
-            elif not self.client.busy:
-                asked = procedure.next(self._now())
-                left = self.client.settings.retries
-            if asked and not self.client.busy:
-                events = self.client.start(self._now(), asked)
-            self._flush()
-            if progress and procedure.progress != shown:
-                shown = procedure.progress
-                progress(*shown)
-            if procedure.result == "done":
-                return procedure
-            if procedure.result:
-                why = refused if procedure.result == "refused" else None
-                raise FailedError(procedure.result, why)
-            if not events:
-                events = self.wait(procedure.deadline)
->>>>>>> main
 
     def wait(self, until: Optional[float] = None) -> list[Event]:
         """What happens next, by ``until`` at the latest (milliseconds of the clock).
