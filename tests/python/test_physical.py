@@ -126,5 +126,5 @@ def test_whole_numbers_are_set_to_the_nearest_raw_value(shipped):
         angles.estimated_roll_angle_mdeg = value
         assert angles.estimated_roll_angle == raw
     for value in (-327686, 327675, "1", None):
-        with pytest.raises(shipped.module().RangeError, match="takes -327680.0 to 327670.0"):
+        with pytest.raises(shipped.module().RangeError, match=r"takes -327680\.0 to 327670\.0"):
             angles.estimated_roll_angle_mdeg = value
