@@ -92,7 +92,7 @@ def member_comment(member: Member, told: Mapping[str, str]) -> Comment:
 
 def field_comment(field: Field, told: Mapping[str, str]) -> Comment:
     """Name, place, range and unit; summary; values that are allowed or mean something. ``told``: as for a member."""
-    facts = []
+    facts = ["A view: it reads bits of other fields, and is not set."] if field.view else []
     if field.const is not None:
         facts.append(f"Always {value_text(field.const)}.")
     if field.limits is not None:

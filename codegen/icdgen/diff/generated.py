@@ -300,7 +300,7 @@ class _Cut:
         message, field = self.messages[id(pair.owner)], self.fields[id(pair)]
         if field.type == "enum" and field.enum is None:
             return f"u{field.bits}" if language == "rust" else "int"
-        one = next(one for one in describe(self.icd).message(message).fields if one.model is field)
+        one = next(one for one in describe(self.icd).message(message).all_fields if one.model is field)
         if language == "rust":
             return rust.raw_type(one)
         if language == "c":

@@ -25,7 +25,7 @@ def decode_many(
     numpy: Any = import_module("numpy")
     decoder = _Decoder(numpy, message, frames)
     columns = {}
-    for info in message.FIELDS:
+    for info in (*message.FIELDS, *message.VIEWS):
         column = decoder.column(info)
         if physical and info.type == "text":
             texts = [text(row) for row in column]
@@ -43,7 +43,7 @@ def decode_table(message: type[Message], frames: Buffer, physical: bool) -> Any:
     pyarrow: Any = import_module("pyarrow")
     columns = decode_many(message, frames, physical)
     fields, arrays = [], []
-    for info, (name, column) in zip(message.FIELDS, columns.items()):
+    for info, (name, column) in zip((*message.FIELDS, *message.VIEWS), columns.items()):
         column = numpy.ascontiguousarray(column)
         if info.type in OCTETS and column.ndim == 2:
             kind = pyarrow.binary(info.bits // 8)
@@ -228,7 +228,7 @@ def _plan(message: type[Message]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in message.FIELDS:
+    for info in (*message.FIELDS, *message.VIEWS):
         if _is_whole(info):
             continue
         for piece in pieces(info, message):

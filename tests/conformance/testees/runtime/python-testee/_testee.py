@@ -105,7 +105,7 @@ def _field(message: Message, info: FieldInfo) -> str:
 
 def _described(message: Message, names: bool = False) -> str:
     said = [f" bytes={message.to_bytes().hex()}"]
-    for info in message.FIELDS:
+    for info in (*message.FIELDS, *message.VIEWS):
         said.append(_field(message, info))
         if info.type == "text":
             text = getattr(message, info.physical)
@@ -123,7 +123,7 @@ def _constants(node: Any, words: Words) -> str:
     message = _message(node, words)()
     ids = ",".join(map(str, message.IDS))
     said = [f" name={_hex(message.NAME)} length={message.LENGTH} ids={ids}"]
-    for info in message.FIELDS:
+    for info in (*message.FIELDS, *message.VIEWS):
         special = ",".join(str(value) for value, _ in info.special)
         said.append(f"{_field(message, info)} special={special}")
         for key, name in _LIMITS.items():
