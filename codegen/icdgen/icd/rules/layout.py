@@ -134,6 +134,15 @@ def order_of_nothing(ctx: Context) -> Iterator[Fault]:
                 yield Fault(field.source, field.source.at(key), message, f"remove `{key}`")
 
 
+@rule("ICD028")
+def array_of_numbers(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.having["count"]:
+        if field.is_bytes:
+            what = "an array of them is one field of bytes" if field.type == "bytes" else "write a field for each text"
+            message = f"{quote(field.name)} is `{field.type}`, and the elements of an array are numbers"
+            yield Fault(field.source, field.source.at("count"), message, what)
+
+
 def covered_bytes(message: Message) -> int:
     """Bytes up to the end of the last field."""
     return max((field.at + field.bits + 7 for field in message.fields), default=0) // 8
