@@ -63,6 +63,11 @@ class FieldInfo(NamedTuple):
     """``little`` or ``big``; empty where it is the message's."""
     bit_order: str = ""
     """``lsb0`` or ``msb0``; empty where it is the message's."""
+    elements: int = 0
+    """Elements of an array, of so many bits each; its attributes hold tuples.
+
+    0 if it is no array.
+    """
 
     @property
     def signed(self) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from typing import Any, TypeVar
 
@@ -12,6 +12,7 @@ from ._enumeration import OpenEnum, is_signed
 from ._errors import LengthError, RangeError
 
 _E = TypeVar("_E", bound=OpenEnum)
+_T = TypeVar("_T")
 new = object.__new__
 
 REFUSED = (
@@ -99,6 +100,17 @@ def signed_bits(value: int, bits: int) -> int:
     return value & ((1 << bits) - 1)
 
 
+array = struct.Struct
+"""Packs and unpacks the elements of an array."""
+
+
+def counted(values: Sequence[_T], count: int) -> Sequence[_T]:
+    """``values``, if there are so many."""
+    if len(values) != count:
+        raise ValueError
+    return values
+
+
 def sized(value: Buffer, size: int) -> bytes:
     """``value``, if it has that many bytes."""
     data = memoryview(value).tobytes()
@@ -151,6 +163,23 @@ def raw_value(
     return raw
 
 
+def raw_values(
+    values: Sequence[float],
+    field: str,
+    scale: tuple[int, int, int],
+    low: int,
+    high: int,
+    count: int,
+) -> tuple[int, ...]:
+    """`raw_value` of each of ``count`` elements. Raises `RangeError`."""
+    if len(values) != count:
+        raise RangeError(field, f"{count} values", values)
+    return tuple(
+        raw_value(value, f"{field}[{index}]", scale, low, high)
+        for index, value in enumerate(values)
+    )
+
+
 def _limits(scale: tuple[int, int, int], low: int, high: int) -> str:
     p, c, q = scale
     least, most = sorted(((low * p + c) / q, (high * p + c) / q))
@@ -166,10 +195,26 @@ def range_error(message: Message) -> RangeError:
     """What to raise for a message that has a value that does not fit."""
     for info in message.FIELDS:
         value = getattr(message, info.attribute, None)
-        allowed, fits = _FITS[info.type](info, value)
-        if not fits:
-            return RangeError(info.attribute, allowed, value)
+        for name, one in _elements(info, value):
+            allowed, fits = _FITS[info.type](info, one)
+            if not fits:
+                return RangeError(name, allowed, one)
+        if info.elements and not _has_elements(info, value):
+            return RangeError(info.attribute, f"{info.elements} values", value)
     return RangeError("a field", "a value of its type", None)
+
+
+def _has_elements(info: FieldInfo, value: Any) -> bool:
+    return hasattr(value, "__getitem__") and len(value) == info.elements
+
+
+def _elements(info: FieldInfo, value: Any) -> Iterator[tuple[str, Any]]:
+    """What is to fit, and what it is called: the value, or each element of an array."""
+    if not info.elements:
+        yield info.attribute, value
+    elif _has_elements(info, value):
+        for index in range(info.elements):
+            yield f"{info.attribute}[{index}]", value[index]
 
 
 def raw_range(info: FieldInfo) -> tuple[int, int]:

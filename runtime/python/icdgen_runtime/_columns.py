@@ -23,12 +23,17 @@ def decode_many(
     decoder = _Decoder(numpy, message, frames)
     columns = {}
     for info in message.FIELDS:
-        column = decoder.column(info)
+        if info.elements:
+            found = [decoder.column(one) for one in _elements(info)]
+            column = numpy.stack(found, axis=1)
+        else:
+            column = decoder.column(info)
         if physical and info.type == "text":
             texts = [text(row) for row in column]
             columns[info.physical] = numpy.array(texts, dtype=str)
         elif physical and info.physical:
-            columns[info.physical] = _physical(numpy, info, column)
+            values = _physical(numpy, info, column.ravel())
+            columns[info.physical] = values.reshape(column.shape)
         else:
             columns[info.attribute] = column
     return columns
@@ -46,6 +51,9 @@ def decode_table(message: type[Message], frames: Buffer, physical: bool) -> Any:
             kind = pyarrow.binary(info.bits // 8)
             buffers = [None, pyarrow.py_buffer(column)]
             array = pyarrow.Array.from_buffers(kind, len(column), buffers)
+        elif info.elements:
+            values = pyarrow.array(column.ravel())
+            array = pyarrow.FixedSizeListArray.from_arrays(values, info.elements)
         else:
             array = pyarrow.array(column)
         fields.append(pyarrow.field(name, array.type, metadata=_metadata(info)))
@@ -67,6 +75,18 @@ def _metadata(info: FieldInfo) -> dict[str, str]:
         names = {int(member): member.label for member in info.enum}
         found["values"] = json.dumps(names)
     return found
+
+
+def _elements(info: FieldInfo) -> Iterator[FieldInfo]:
+    """The elements of an array as fields; or else the field."""
+    if not info.elements:
+        yield info
+    for index in range(info.elements):
+        yield info._replace(
+            attribute=f"{info.attribute}[{index}]",
+            at=info.at + index * info.bits,
+            elements=0,
+        )
 
 
 def _physical(numpy: Any, info: FieldInfo, raw: Any) -> Any:
@@ -226,7 +246,7 @@ def _plan(message: type[Message]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in message.FIELDS:
+    for info in (one for field in message.FIELDS for one in _elements(field)):
         if _is_whole(info):
             continue
         for byte, shift, _, _ in _pieces(info, message):

@@ -14,6 +14,11 @@ _KEYWORDS = {"min": "minimum", "max": "maximum"}
 
 def annotation(field: FieldDescription) -> str:
     """The type of the attribute."""
+    one = _annotation(field)
+    return f"tuple[{one}, ...]" if field.count else one
+
+
+def _annotation(field: FieldDescription) -> str:
     if field.is_text:
         return "bytes"
     return class_name(field.enum) if field.enum else "int" if field.model.type == "uint" else field.model.type
@@ -21,6 +26,23 @@ def annotation(field: FieldDescription) -> str:
 
 def default(field: FieldDescription, constants: dict[str, str]) -> str:
     """What a field is at first; constants of the module are kept in ``constants``: the call that makes it, and its name."""
+    one = _default(field, constants)
+    return f"({one},) * {field.count}" if field.count else one
+
+
+def physical_annotation(field: FieldDescription) -> str:
+    """The type of the property of a number's physical value."""
+    return "tuple[float, ...]" if field.count else "float"
+
+
+def physical_default(field: FieldDescription) -> str:
+    """The physical value of a field with a scale, as it is at first."""
+    assert field.steps is not None
+    one = repr(field.steps.double(field.fresh))
+    return f"({one},) * {field.count}" if field.count else one
+
+
+def _default(field: FieldDescription, constants: dict[str, str]) -> str:
     kind, value = field.model.type, field.fresh
     if field.model.is_bytes:
         return _constant(constants, f"bytes({field.model.bits // 8})")
@@ -52,6 +74,8 @@ def info(field: FieldDescription) -> str:
         pairs = [f"({special.value}, {literal(special.meaning)})" for special in one.special]
         items.append(exploded("special=(", pairs, ")", " " * 12))
     items += (f'{key}="{value}"' for key in ("byte_order", "bit_order") if (value := getattr(one, key)))
+    if field.count:
+        items.append(f"elements={field.count}")
     items += (f"{_KEYWORDS.get(bound.key, bound.key)}={_number(bound.value)}" for bound in field.bounds)
     return bracketed("_base.FieldInfo(", items, ")", WIDTH, " " * 8)
 
@@ -64,10 +88,14 @@ def physical(field: FieldDescription) -> str:
     """The physical value of a field with a scale."""
     assert field.steps is not None
     p, c, q = field.steps.terms
-    value = f"self.{field.name}" if p == 1 else f"self.{field.name} * {p}"
+    raw = "raw" if field.count else f"self.{field.name}"
+    value = raw if p == 1 else f"{raw} * {p}"
     if c:
         value = f"{value} {'+' if c > 0 else '-'} {abs(c)}"
-    return f"float({value})" if q == 1 else f"({value}) / {q}" if c else f"{value} / {q}"
+    value = f"float({value})" if q == 1 else f"({value}) / {q}" if c else f"{value} / {q}"
+    if not field.count:
+        return value
+    return bracketed("tuple(", [f"{value} for raw in self.{field.name}"], ")", WIDTH, " " * 8, last="")
 
 
 def text(field: FieldDescription) -> str:
@@ -86,4 +114,6 @@ def set_physical(field: FieldDescription) -> str:
     assert field.steps is not None
     ends = str(field.model.raw_min), str(field.model.raw_max)
     arguments = ["value", f'"{field.name}"', str(field.steps.terms), *ends]
-    return bracketed(f"self.{field.name} = _codec.raw_value(", arguments, ")", WIDTH, " " * 8)
+    arguments += [str(field.count)] if field.count else []
+    function = "raw_values" if field.count else "raw_value"
+    return bracketed(f"self.{field.name} = _codec.{function}(", arguments, ")", WIDTH, " " * 8)

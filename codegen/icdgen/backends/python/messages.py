@@ -16,7 +16,7 @@ def values(message: MessageDescription) -> dict[str, object]:
     """How bytes become attributes and back, what attributes are at first, and what is imported for it."""
     packing = Packer(message).packing()
     constants: dict[str, str] = {}
-    defaults = {field.name: default(field, constants) for field in message.fields}
+    defaults = {field.name: default(field, constants) for field in message.members}
     head = "def from_bytes(", ["cls", "data: _base.Buffer"], f") -> {names.class_name(message)}:"
     return {
         "imports": _imports(message, packing.floats),

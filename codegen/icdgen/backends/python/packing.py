@@ -46,6 +46,17 @@ class _Item(NamedTuple):
     value: str  # what is packed
 
 
+def _is_run(field: FieldDescription) -> bool:
+    """Whether it is an array of words, which are taken apart at once."""
+    one = field.model
+    return bool(field.count) and is_whole_bytes(one) and one.bits in _INTEGERS and one.type != "bool"
+
+
+def _target(field: FieldDescription) -> str:
+    """What decoding assigns a value to: the attribute, of an element a variable."""
+    return f"self.{field.name}" if field.model.element is None else f"e{field.model.at}"
+
+
 class Packer:
     """Makes the packing of one message."""
 
@@ -58,7 +69,10 @@ class Packer:
         self.parts: dict[int, list[tuple[int, FieldDescription]]] = {}  # byte -> fields within it, from bit `shift` up
         self.terms: dict[int, list[str]] = {}  # byte -> what crossing fields add to it
         self.floats: list[str] = []  # 32-bit floats that the struct converts
-        self.fields = message.fields
+        self.members, self.all_fields = message.members, message.fields
+        self.fields = tuple(
+            part for one in self.members for part in ((one,) if _is_run(one) else one.elements or (one,))
+        )
 
     def packing(self) -> Packing:
         """The finished packing."""
@@ -67,7 +81,9 @@ class Packer:
         for field in self.fields:
             span = byte_range(field.model)
             turned_float = field.model.type == "float" and field.byte_order != self.order
-            if is_whole_bytes(field.model) and not shared.intersection(span) and not turned_float:
+            if field.count:
+                self._run(field, span.start)
+            elif is_whole_bytes(field.model) and not shared.intersection(span) and not turned_float:
                 self._whole(field, span.start, len(span))
             elif len(span) == 1:
                 (piece,) = field.pieces
@@ -76,10 +92,12 @@ class Packer:
                 crossing.append(field)
         for field in crossing:
             self._take_apart(field)
+        self._check_counts()
         for byte in sorted(self.parts.keys() | self.terms.keys()):
             self._bit_byte(byte)
         for field in crossing:
             self._put_together(field)
+        self._join_elements()
         self.items.sort()
         self._keep_nans()
         pack = self._pack()
@@ -91,7 +109,7 @@ class Packer:
 
     def _shared_bytes(self) -> set[int]:
         """Bytes that more than one field touches."""
-        touched = [byte for field in self.fields for byte in byte_range(field.model)]
+        touched = [byte for field in self.all_fields for byte in byte_range(field.model)]
         return {byte for byte, count in Counter(touched).items() if count > 1}
 
     def _table(self, prefix: str, kind: str, *arguments: str) -> str:
@@ -107,14 +125,48 @@ class Packer:
             return class_name(field.enum)
         return {"bool": "bool", "int": "_codec.signed"}.get(field.model.type, "int")
 
+    def _check_counts(self) -> None:
+        """Arrays that are put together element by element must have all of them, and no more."""
+        checks = (
+            f"_codec.counted(self.{one.name}, {one.count})" for one in self.members if one.count and not _is_run(one)
+        )
+        self.prepare[:0] = checks
+
+    def _join_elements(self) -> None:
+        for one in self.members:
+            if one.count and not _is_run(one):
+                parts = [_target(element) for element in one.elements]
+                line = f"self.{one.name} = {parts[0]}," if len(parts) == 1 else ""
+                self.assign.append(line or bracketed(f"self.{one.name} = (", parts, ")", WIDTH, _BODY))
+
+    def _run(self, field: FieldDescription, byte: int) -> None:
+        """An array of words: one item of the struct, which a struct of its own takes apart."""
+        one, own, local = field.model, f"self.{field.name}", f"v{byte}"
+        is_single = one.type == "float" and one.bits == 32  # which a struct does not keep
+        code = "I" if is_single else _FLOATS[one.bits] if one.type == "float" else _INTEGERS[one.bits]
+        code = code.lower() if one.signed else code
+        order = "<" if field.byte_order == "little" else ">"
+        size = one.bits // 8 * field.count
+        packed = self._table("_ARRAY", "array", f'"{order}{field.count}{code}"')
+        self.items.append(_Item(byte, size, f"{size}s", local, local))
+        values, given = f"{packed}.unpack({local})", own
+        if is_single:
+            values, given = f"tuple(map(_floats.float32, {values}))", f"map(_floats.float32_bits, {own})"
+        elif field.enum is not None:
+            members = self._table("_MEMBERS", "Members", self._kind(field))
+            values = f"tuple(map({members}.__getitem__, {values}))"
+        self.assign.append(f"{own} = {values}")
+        self.prepare.append(f"{local} = {packed}.pack(*{given})")
+
     def _whole(self, field: FieldDescription, byte: int, size: int) -> None:
         """A field of whole bytes: one item of the struct."""
-        one, own, local = field.model, f"self.{field.name}", f"v{byte}"
+        one, own, local = field.model, f"self.{field.member}", f"v{byte}"
+        target = _target(field)
         if one.is_bytes:
             self.items.append(_Item(byte, size, f"{size}s", own, local))
             self.prepare.append(f"{local} = _codec.sized({own}, {size})")
         elif one.type == "float":
-            self.items.append(_Item(byte, size, _FLOATS[one.bits], own, own))
+            self.items.append(_Item(byte, size, _FLOATS[one.bits], target, own))
             if one.bits == 32:
                 self.floats.append(own)
         elif one.bits not in _INTEGERS or (size > 1 and field.byte_order != self.order):
@@ -124,7 +176,7 @@ class Packer:
             self.prepare.append(f"{local} = {own}.to_bytes({size}, {how})")
         elif field.enum is None:
             code = _INTEGERS[one.bits]
-            self.items.append(_Item(byte, size, code.lower() if one.signed else code, own, own))
+            self.items.append(_Item(byte, size, code.lower() if one.signed else code, target, own))
         else:
             code = _INTEGERS[one.bits]
             self.items.append(_Item(byte, size, code.lower() if one.signed else code, local, own))
@@ -135,7 +187,7 @@ class Packer:
                 self._assign(field, local)
 
     def _store(self, field: FieldDescription, value: str) -> None:
-        self.assign.append(f"self.{field.name} = {value}")
+        self.assign.append(f"{_target(field)} = {value}")
 
     def _assign(self, field: FieldDescription, value: str) -> None:
         """Assigns an integer's value as its type needs it."""
@@ -153,19 +205,20 @@ class Packer:
             rows = self._table("_BITS", "bit_table", *spec)
             inverse = rows.replace("_BITS", "_BYTES")
             self.tables["Inverse", rows] = inverse
-            names = [f"self.{field.name}" for _, field in parts]
+            names = [f"self.{field.member}" for _, field in parts]
             if len(names) == 1:
                 self._store(parts[0][1], f"{rows}[{local}]")
                 self.prepare.append(f"{local} = {inverse}[{names[0]}]")
             else:
-                self.assign.append(_unpacked(names, f"{rows}[{local}]", _BODY))
+                targets = [_target(field) for _, field in parts]
+                self.assign.append(_unpacked(targets, f"{rows}[{local}]", _BODY))
                 self.prepare.append(bracketed(f"{local} = {inverse}[", names, "]", WIDTH, _INNER))
         for number, term in enumerate(self.terms.get(byte, [])):
             self.prepare.append(f"{local} {'|=' if number or parts else '='} {term}")
 
     def _take_apart(self, field: FieldDescription) -> None:
         """Encoding of a field that crosses bytes: its bits as an integer, and its pieces for the bytes."""
-        one, own = field.model, f"self.{field.name}"
+        one, own = field.model, f"self.{field.member}"
         local = f"n{one.at}"
         if one.type == "float":
             self.prepare.append(f"{local} = _floats.float{one.bits}_bits({own})")
