@@ -158,7 +158,7 @@ messages:
       - {at: 768, bits: 16, count: 2, name: Big Words, type: uint, byte_order: big}
       - {at: 803, bits: 8, count: 3, name: Crossing, type: uint}
       - {at: 827, bits: 32, count: 2, name: Crossing Floats, type: float}
-      - {at: 896, bits: 8, count: 7, name: Bytes, type: int}
+      - {at: 896, bits: 8, count: 7, name: Small, type: int}
   - name: Keywords
     id: 0x01020305
     kind: telecommand
