@@ -133,7 +133,7 @@ def _read(pair: MessagePair, sent: Message, reader: Message) -> tuple[str, tuple
     reasons = _together((p.any.name, why) for p, why in wrong)
     if absent:
         reasons.append(f"not carried: {some([f.name for f in absent])}")
-    verdict = NO if len(absent) + len(wrong) == len(reader.fields) else PARTLY
+    verdict = NO if len(absent) + len(wrong) == len(reader.members) else PARTLY
     return verdict, tuple(reasons)
 
 

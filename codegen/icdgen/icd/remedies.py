@@ -71,7 +71,7 @@ def of_key(key: str, known: list[str]) -> str:
     """What is written instead of a key that the format does not know; nothing if there is no telling."""
     if key.lower() in _REPEATED:
         if "count" in known:
-            return "write `count:`, how many elements an array has: `{at: 0, bits: 16, count: 6, name: Temperatures, type: int}`"
+            return "write `count:`: `{at: 0, bits: 16, count: 6, name: Temperatures, type: int}` is an array of six numbers"
         return "only fields are repeated, by `count:`: what else there is several times is written as often"
     meant = _KEYS.get(key.lower(), "")
     return f"write {meant}" if meant and re.search(r"`(\w+):", meant)[1] in known else ""  # type: ignore[index]

@@ -80,7 +80,8 @@ def _functions() -> dict[str, object]:
     from icdgen.describe.numbers import byte_count
 
     found = (
-        byte_count, fields.annotation, fields.info, fields.physical, fields.physical_annotation, fields.physical_default, fields.set_physical, fields.set_text, fields.text,
+        byte_count, fields.annotation, fields.info, fields.physical, fields.physical_annotation, fields.physical_default,
+        fields.set_physical, fields.set_text, fields.text,
         names.class_name, physical_comment, nodes.mapping, text.docstring, text.documented, text.literal, text.paragraph,
         text.prose, text_comment,
     )  # fmt: skip

@@ -26,7 +26,7 @@ _ORDERLY = {"bytes": "bytes", "text": "characters"}
 @rule("ICD020")
 def past_the_end(ctx: Context) -> Iterator[Fault]:
     for field, message, _ in ctx.fields:
-        end, room = field.at + field.bits * (field.count or 1), message.length * 8
+        end, room = field.at + field.width, message.length * 8
         if end > room:
             source = field.source
             key = "at" if field.at >= room else "count" if field.count else "bits"
