@@ -5,8 +5,13 @@ Values come finished from the backends: a template holds loops, not decisions ab
 
 from __future__ import annotations
 
+import marshal
 import os
+import sys
 from collections.abc import Callable
+from hashlib import sha256
+from importlib.machinery import SourceFileLoader
+from importlib.util import cache_from_source
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
@@ -14,7 +19,8 @@ from icdgen import fingerprints, shipped
 from icdgen.errors import UserError
 
 if TYPE_CHECKING:
-    from jinja2 import BaseLoader, Environment
+    from jinja2 import BaseLoader, BytecodeCache, Environment
+    from jinja2.bccache import Bucket
     from jinja2.runtime import Context
 
 
@@ -42,6 +48,7 @@ class Renderer:
         self.looked_at: dict[Path, str] = {}
         self._environment = jinja2.Environment(
             loader=_loader(self._own, templates or shipped.templates() / backend, self.looked_at),
+            bytecode_cache=_compiled(),
             undefined=jinja2.StrictUndefined,
             autoescape=lambda template: template is not None and template.endswith(".html.j2"),
             trim_blocks=True,
@@ -136,3 +143,33 @@ def _loader(own: list[Path], shipped: Path, looked_at: dict[Path, str]) -> BaseL
             return super().get_source(environment, template)
 
     return Loader([*own, shipped])
+
+
+def _compiled() -> BytecodeCache:
+    import jinja2
+
+    class Compiled(jinja2.BytecodeCache):
+        """Keeps the code of shipped templates where Python keeps that of modules, in ``__pycache__`` beside the source, and as
+        it would: whoever can write there can write to the tool itself. That of others' templates is kept nowhere.
+        """
+
+        def get_cache_key(self, name: str, filename: str | None = None) -> str:
+            is_ours = filename is not None and Path(filename).is_relative_to(shipped.templates())
+            return cache_from_source(filename) if filename and is_ours and sys.implementation.cache_tag else ""
+
+        def get_source_checksum(self, source: str) -> str:
+            return sha256(f"{fingerprints.of_tool()}\0{source}".encode()).hexdigest()
+
+        def load_bytecode(self, bucket: Bucket) -> None:
+            try:
+                made_of, _, code = SourceFileLoader("", bucket.key).get_data(bucket.key).partition(b"\n")
+                bucket.code = marshal.loads(code) if made_of == bucket.checksum.encode() else None
+            except (OSError, EOFError, ValueError, TypeError):
+                return
+
+        def dump_bytecode(self, bucket: Bucket) -> None:
+            if bucket.key and not sys.dont_write_bytecode:
+                data = bucket.checksum.encode() + b"\n" + marshal.dumps(bucket.code)
+                SourceFileLoader("", bucket.key).set_data(bucket.key, data)  # whole or not at all, and never fails
+
+    return Compiled()

@@ -94,7 +94,7 @@ ICDGEN_INLINE uint16_t icdgen_load_u16le(const uint8_t *bytes)
 {
 #if ICDGEN_WORDS
     uint16_t word;
-    memcpy(&word, bytes, sizeof word);
+    (void)memcpy(&word, bytes, sizeof word);
     return ICDGEN_FOR_LE(16, word);
 #else
     return ICDGEN_U16(bytes[0] | (ICDGEN_U32(bytes[1]) << 8));
@@ -105,7 +105,7 @@ ICDGEN_INLINE void icdgen_store_u16le(uint8_t *bytes, uint16_t value)
 {
 #if ICDGEN_WORDS
     const uint16_t word = ICDGEN_FOR_LE(16, value);
-    memcpy(bytes, &word, sizeof word);
+    (void)memcpy(bytes, &word, sizeof word);
 #else
     bytes[0] = ICDGEN_U8(value);
     bytes[1] = ICDGEN_U8(value >> 8);
@@ -116,7 +116,7 @@ ICDGEN_INLINE uint32_t icdgen_load_u32le(const uint8_t *bytes)
 {
 #if ICDGEN_WORDS
     uint32_t word;
-    memcpy(&word, bytes, sizeof word);
+    (void)memcpy(&word, bytes, sizeof word);
     return ICDGEN_FOR_LE(32, word);
 #else
     const uint32_t low = icdgen_load_u16le(&bytes[0]);
@@ -129,7 +129,7 @@ ICDGEN_INLINE void icdgen_store_u32le(uint8_t *bytes, uint32_t value)
 {
 #if ICDGEN_WORDS
     const uint32_t word = ICDGEN_FOR_LE(32, value);
-    memcpy(bytes, &word, sizeof word);
+    (void)memcpy(bytes, &word, sizeof word);
 #else
     icdgen_store_u16le(&bytes[0], ICDGEN_U16(value));
     icdgen_store_u16le(&bytes[2], ICDGEN_U16(value >> 16));
@@ -140,7 +140,7 @@ ICDGEN_INLINE uint64_t icdgen_load_u64le(const uint8_t *bytes)
 {
 #if ICDGEN_WORDS
     uint64_t word;
-    memcpy(&word, bytes, sizeof word);
+    (void)memcpy(&word, bytes, sizeof word);
     return ICDGEN_FOR_LE(64, word);
 #else
     const uint64_t low = icdgen_load_u32le(&bytes[0]);
@@ -153,7 +153,7 @@ ICDGEN_INLINE void icdgen_store_u64le(uint8_t *bytes, uint64_t value)
 {
 #if ICDGEN_WORDS
     const uint64_t word = ICDGEN_FOR_LE(64, value);
-    memcpy(bytes, &word, sizeof word);
+    (void)memcpy(bytes, &word, sizeof word);
 #else
     icdgen_store_u32le(&bytes[0], ICDGEN_U32(value));
     icdgen_store_u32le(&bytes[4], ICDGEN_U32(value >> 32));
@@ -164,7 +164,7 @@ ICDGEN_INLINE uint16_t icdgen_load_u16be(const uint8_t *bytes)
 {
 #if ICDGEN_WORDS
     uint16_t word;
-    memcpy(&word, bytes, sizeof word);
+    (void)memcpy(&word, bytes, sizeof word);
     return ICDGEN_FOR_BE(16, word);
 #else
     return ICDGEN_U16(bytes[1] | (ICDGEN_U32(bytes[0]) << 8));
@@ -175,7 +175,7 @@ ICDGEN_INLINE void icdgen_store_u16be(uint8_t *bytes, uint16_t value)
 {
 #if ICDGEN_WORDS
     const uint16_t word = ICDGEN_FOR_BE(16, value);
-    memcpy(bytes, &word, sizeof word);
+    (void)memcpy(bytes, &word, sizeof word);
 #else
     bytes[1] = ICDGEN_U8(value);
     bytes[0] = ICDGEN_U8(value >> 8);
@@ -186,7 +186,7 @@ ICDGEN_INLINE uint32_t icdgen_load_u32be(const uint8_t *bytes)
 {
 #if ICDGEN_WORDS
     uint32_t word;
-    memcpy(&word, bytes, sizeof word);
+    (void)memcpy(&word, bytes, sizeof word);
     return ICDGEN_FOR_BE(32, word);
 #else
     const uint32_t low = icdgen_load_u16be(&bytes[2]);
@@ -199,7 +199,7 @@ ICDGEN_INLINE void icdgen_store_u32be(uint8_t *bytes, uint32_t value)
 {
 #if ICDGEN_WORDS
     const uint32_t word = ICDGEN_FOR_BE(32, value);
-    memcpy(bytes, &word, sizeof word);
+    (void)memcpy(bytes, &word, sizeof word);
 #else
     icdgen_store_u16be(&bytes[2], ICDGEN_U16(value));
     icdgen_store_u16be(&bytes[0], ICDGEN_U16(value >> 16));
@@ -210,7 +210,7 @@ ICDGEN_INLINE uint64_t icdgen_load_u64be(const uint8_t *bytes)
 {
 #if ICDGEN_WORDS
     uint64_t word;
-    memcpy(&word, bytes, sizeof word);
+    (void)memcpy(&word, bytes, sizeof word);
     return ICDGEN_FOR_BE(64, word);
 #else
     const uint64_t low = icdgen_load_u32be(&bytes[4]);
@@ -223,7 +223,7 @@ ICDGEN_INLINE void icdgen_store_u64be(uint8_t *bytes, uint64_t value)
 {
 #if ICDGEN_WORDS
     const uint64_t word = ICDGEN_FOR_BE(64, value);
-    memcpy(bytes, &word, sizeof word);
+    (void)memcpy(bytes, &word, sizeof word);
 #else
     icdgen_store_u32be(&bytes[4], ICDGEN_U32(value));
     icdgen_store_u32be(&bytes[0], ICDGEN_U32(value >> 32));
@@ -234,28 +234,28 @@ ICDGEN_INLINE void icdgen_store_u64be(uint8_t *bytes, uint64_t value)
 ICDGEN_INLINE int8_t icdgen_i8(uint8_t bits)
 {
     int8_t value;
-    memcpy(&value, &bits, sizeof value);
+    (void)memcpy(&value, &bits, sizeof value);
     return value;
 }
 
 ICDGEN_INLINE int16_t icdgen_i16(uint16_t bits)
 {
     int16_t value;
-    memcpy(&value, &bits, sizeof value);
+    (void)memcpy(&value, &bits, sizeof value);
     return value;
 }
 
 ICDGEN_INLINE int32_t icdgen_i32(uint32_t bits)
 {
     int32_t value;
-    memcpy(&value, &bits, sizeof value);
+    (void)memcpy(&value, &bits, sizeof value);
     return value;
 }
 
 ICDGEN_INLINE int64_t icdgen_i64(uint64_t bits)
 {
     int64_t value;
-    memcpy(&value, &bits, sizeof value);
+    (void)memcpy(&value, &bits, sizeof value);
     return value;
 }
 
@@ -273,25 +273,25 @@ ICDGEN_INLINE int64_t icdgen_extend64(uint64_t bits, uint64_t sign)
 /* Floating-point fields are moved as bits, so that every NaN keeps its payload. */
 ICDGEN_INLINE void icdgen_set_f32(float *value, uint32_t bits)
 {
-    memcpy(value, &bits, sizeof bits);
+    (void)memcpy(value, &bits, sizeof bits);
 }
 
 ICDGEN_INLINE void icdgen_set_f64(double *value, uint64_t bits)
 {
-    memcpy(value, &bits, sizeof bits);
+    (void)memcpy(value, &bits, sizeof bits);
 }
 
 ICDGEN_INLINE uint32_t icdgen_bits_f32(const float *value)
 {
     uint32_t bits;
-    memcpy(&bits, value, sizeof bits);
+    (void)memcpy(&bits, value, sizeof bits);
     return bits;
 }
 
 ICDGEN_INLINE uint64_t icdgen_bits_f64(const double *value)
 {
     uint64_t bits;
-    memcpy(&bits, value, sizeof bits);
+    (void)memcpy(&bits, value, sizeof bits);
     return bits;
 }
 
@@ -313,7 +313,7 @@ ICDGEN_INLINE void icdgen_spread_4(void *message, size_t offset, unsigned bits, 
     const bool reversed = falling == (ICDGEN_LITTLE != 0);
     const uint32_t word = reversed ? ((bits & 0x0Fu) * 0x08040201u) >> 3 : (bits & 0x0Fu) * 0x00204081u;
     const uint32_t flags = word & 0x01010101u;
-    memcpy(&bytes[offset], &flags, sizeof flags);
+    (void)memcpy(&bytes[offset], &flags, sizeof flags);
 }
 
 ICDGEN_INLINE int icdgen_join_4(const void *message, size_t offset, bool falling)
@@ -321,7 +321,7 @@ ICDGEN_INLINE int icdgen_join_4(const void *message, size_t offset, bool falling
     const uint8_t *const bytes = ICDGEN_CAST(const uint8_t *, message);
     const bool reversed = falling == (ICDGEN_LITTLE != 0);
     uint32_t flags;
-    memcpy(&flags, &bytes[offset], sizeof flags);
+    (void)memcpy(&flags, &bytes[offset], sizeof flags);
     return ICDGEN_CAST(int, (flags * (reversed ? 0x08040201u : 0x01020408u)) >> 24);
 }
 
@@ -332,7 +332,7 @@ ICDGEN_INLINE void icdgen_spread_8(void *message, size_t offset, unsigned bits, 
     const bool reversed = falling == (ICDGEN_LITTLE != 0);
     const uint64_t word = (((bits & 0xFFu) * UINT64_C(0x8040201008040201)) >> 7) & UINT64_C(0x0101010101010101);
     const uint64_t flags = reversed ? word : __builtin_bswap64(word);
-    memcpy(&bytes[offset], &flags, sizeof flags);
+    (void)memcpy(&bytes[offset], &flags, sizeof flags);
 #else
     icdgen_spread_4(message, offset, falling ? bits >> 4 : bits, falling);
     icdgen_spread_4(message, offset + 4u, falling ? bits : bits >> 4, falling);
@@ -345,7 +345,7 @@ ICDGEN_INLINE int icdgen_join_8(const void *message, size_t offset, bool falling
     const uint8_t *const bytes = ICDGEN_CAST(const uint8_t *, message);
     const bool reversed = falling == (ICDGEN_LITTLE != 0);
     uint64_t flags;
-    memcpy(&flags, &bytes[offset], sizeof flags);
+    (void)memcpy(&flags, &bytes[offset], sizeof flags);
     flags *= reversed ? UINT64_C(0x8040201008040201) : UINT64_C(0x0102040810204080);
     return ICDGEN_CAST(int, flags >> 56);
 #else
@@ -446,7 +446,7 @@ ICDGEN_INLINE bool icdgen_is_little(void)
 #else
     const uint16_t word = 1u;
     uint8_t first;
-    memcpy(&first, &word, sizeof first);
+    (void)memcpy(&first, &word, sizeof first);
     return first == 1u;
 #endif
 }
@@ -454,7 +454,7 @@ ICDGEN_INLINE bool icdgen_is_little(void)
 ICDGEN_INLINE void icdgen_copy(void *target, const void *source, size_t length, size_t size, bool little)
 {
     if (size == 1u || icdgen_is_little() == little) {
-        memcpy(target, source, length);
+        (void)memcpy(target, source, length);
     } else {
         uint8_t *const to = ICDGEN_CAST(uint8_t *, target);
         const uint8_t *const from = ICDGEN_CAST(const uint8_t *, source);
@@ -625,7 +625,7 @@ static inline double icdgen_rounded(icdgen_wide_t value, uint64_t divisor)
         bits |= ICDGEN_U64(value.negative) << 63;
     }
     double result;
-    memcpy(&result, &bits, sizeof result);
+    (void)memcpy(&result, &bits, sizeof result);
     return result;
 }
 
@@ -668,7 +668,7 @@ static inline icd_status_t icdgen_nearest(
     double value, int64_t factor, int64_t offset, int64_t divisor, bool *negative, uint64_t *magnitude)
 {
     uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
+    (void)memcpy(&bits, &value, sizeof bits);
     const uint32_t exponent = ICDGEN_U32(bits >> 52) & 0x7FFu;
     if (exponent == 0x7FFu) {
         return ICD_ERROR_RANGE;
@@ -721,6 +721,8 @@ static inline icd_status_t icdgen_nearest(
     } else if (rest + 1u == missing) {
         up = half && more;
         tie = half && !more;
+    } else {
+        /* the fraction decides nothing */
     }
     const bool odd = ((whole.low & 1u) != 0u) != below;
     up = up || (tie && odd);

@@ -149,7 +149,7 @@ icd_identify(const icd_link_t *link, const uint8_t *frame, size_t length, icd_id
 static inline icd_event_t icdgen_event(icd_event_kind_t kind, uint8_t id)
 {
     icd_event_t event;
-    memset(&event, 0, sizeof event);
+    (void)memset(&event, 0, sizeof event);
     event.kind = kind;
     event.id = id;
     event.code = -1;
@@ -198,8 +198,8 @@ ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length
             continue;
         }
 #endif
-        for (unsigned bit = 8; bit-- != 0u;) {
-            const bool out = ((value & top) != 0u) != (((byte >> bit) & 1u) != 0u);
+        for (unsigned bit = 0; bit < 8u; ++bit) {
+            const bool out = ((value & top) != 0u) != (((byte >> (7u - bit)) & 1u) != 0u);
             value = ((value << 1) & mask) ^ (out ? form->polynomial : 0u);
         }
     }
@@ -246,7 +246,7 @@ ICDGEN_API icd_status_t icd_crc16(const icd_link_t *link, const uint8_t *bytes, 
 ICDGEN_API icd_status_t
 icd_uart_encode_begin(icd_uart_encoder_t *encoder, const icd_link_t *link, const uint8_t *message, size_t length)
 {
-    memset(encoder, 0, sizeof *encoder);
+    (void)memset(encoder, 0, sizeof *encoder);
     encoder->ended = true;
     if (link->framing == NULL) {
         return ICD_ERROR_UNSUPPORTED;
@@ -270,14 +270,17 @@ ICDGEN_API size_t icd_uart_encode_some(icd_uart_encoder_t *encoder, uint8_t *buf
     size_t count = 0;
     while (count < capacity) {
         if (encoder->pending != 0u) {
-            buffer[count++] = encoder->next[--encoder->pending];
+            encoder->pending--;
+            buffer[count] = encoder->next[encoder->pending];
+            count++;
         } else if (encoder->at < encoder->length) {
             const uint8_t byte = encoder->message[encoder->at];
             if (byte == framing->escape && (encoder->at != 0u || framing->escapes_id)) {
                 encoder->next[0] = framing->escaped;
                 encoder->pending = 1;
             }
-            buffer[count++] = byte;
+            buffer[count] = byte;
+            count++;
             encoder->at++;
         } else if (!encoder->ended) {
             encoder->next[0] = framing->end;
@@ -307,7 +310,7 @@ ICDGEN_API icd_status_t icd_uart_encode(
 ICDGEN_API icd_status_t
 icd_uart_decoder_init(icd_uart_decoder_t *decoder, const icd_link_t *link, uint8_t *buffer, size_t capacity)
 {
-    memset(decoder, 0, sizeof *decoder);
+    (void)memset(decoder, 0, sizeof *decoder);
     if (link->framing == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
@@ -351,7 +354,8 @@ static inline void icdgen_uart_tell(
 static inline void icdgen_uart_data(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_fn *on_event, void *context)
 {
     if (decoder->length < decoder->capacity) {
-        decoder->buffer[decoder->length++] = byte;
+        decoder->buffer[decoder->length] = byte;
+        decoder->length++;
     } else {
         icdgen_uart_tell(decoder, ICD_EVENT_OVERRUN, on_event, context);
         icdgen_uart_outside(decoder, false);
@@ -384,6 +388,8 @@ static inline void icdgen_uart_escaped(icd_uart_decoder_t *decoder, uint8_t byte
     } else if (!framing->ignores_other) {
         icdgen_uart_tell(decoder, ICD_EVENT_PROTOCOL_ERROR, on_event, context);
         icdgen_uart_outside(decoder, byte == framing->escape);
+    } else {
+        /* both bytes are skipped */
     }
 }
 
@@ -438,7 +444,7 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
     if (link->acknowledge != NULL && length == link->acknowledge->length) {
         return ICD_UART_ACKNOWLEDGE;
     }
-    if (files != NULL && id == files->packet_ids[ICD_BUS_UART] &&
+    if (files != NULL && ICDGEN_I16(id) == files->packet_ids[ICD_BUS_UART] &&
         length == 1u + ICDGEN_U32(files->counter_bytes) + files->packet_bytes) {
         return ICD_UART_PACKET;
     }
@@ -478,10 +484,10 @@ ICDGEN_API icd_status_t icd_i2c_write(
     }
     buffer[0] = id;
     if (length != 0u) {
-        memmove(buffer + 1, data, length);
+        (void)memmove(buffer + 1, data, length);
     }
     *written = 1u + length + extra;
-    return checked ? icdgen_put_number(link, buffer + 1 + length, extra, icd_checksum(link, id, buffer + 1, length))
+    return checked ? icdgen_put_number(link, buffer + 1u + length, extra, icd_checksum(link, id, buffer + 1, length))
                    : ICD_OK;
 }
 
@@ -550,7 +556,7 @@ ICDGEN_API icd_status_t icd_can_split(
 {
     const icd_can_form_t *const can = link->can;
     int32_t type;
-    memset(splitter, 0, sizeof *splitter);
+    (void)memset(splitter, 0, sizeof *splitter);
     if (can == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
@@ -588,14 +594,14 @@ ICDGEN_API bool icd_can_next(icd_can_splitter_t *splitter, icd_can_packet_t *pac
     packet->id = splitter->id;
     at = splitter->extended ? ICDGEN_SIZE(splitter->next * form->data_bytes) : 0u;
     size = splitter->length - at;
-    memset(packet->data, 0, sizeof packet->data);
+    (void)memset(packet->data, 0, sizeof packet->data);
     if (splitter->extended) {
         size = size < form->data_bytes ? size : form->data_bytes;
-        memset(packet->data, form->fill, form->left_at);
+        (void)memset(packet->data, form->fill, form->left_at);
         packet->data[form->left_at] = ICDGEN_U8(form->left_in_last + splitter->count - 1u - splitter->next);
     }
     if (size != 0u) {
-        memcpy(packet->data, splitter->data + at, size);
+        (void)memcpy(packet->data, splitter->data + at, size);
     }
     packet->length = ICDGEN_U8(splitter->extended ? form->left_at + 1u : size);
     splitter->next++;
@@ -619,7 +625,7 @@ ICDGEN_API icd_status_t icd_can_joiner_init(
     size_t size)
 {
     size_t each;
-    memset(joiner, 0, sizeof *joiner);
+    (void)memset(joiner, 0, sizeof *joiner);
     if (link->can == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
@@ -627,9 +633,9 @@ ICDGEN_API icd_status_t icd_can_joiner_init(
     if (size / each < count) {
         return ICD_ERROR_LENGTH;
     }
-    memset(slots, 0, count * sizeof *slots);
+    (void)memset(slots, 0, count * sizeof *slots);
     for (size_t i = 0; i < count; ++i) {
-        slots[i].data = buffer + (i * each) + 1;
+        slots[i].data = buffer + (i * each) + 1u;
     }
     joiner->link = link;
     joiner->address = address;
@@ -684,8 +690,8 @@ static inline void icdgen_can_free(icd_can_joiner_t *joiner, size_t index)
     icd_can_slot_t *const slots = joiner->slots;
     uint8_t *const data = slots[index].data;
     joiner->used--;
-    memmove(&slots[index], &slots[index + 1u], (joiner->used - index) * sizeof *slots);
-    memset(&slots[joiner->used], 0, sizeof *slots);
+    (void)memmove(&slots[index], &slots[index + 1u], (joiner->used - index) * sizeof *slots);
+    (void)memset(&slots[joiner->used], 0, sizeof *slots);
     slots[joiner->used].data = data;
 }
 
@@ -703,7 +709,8 @@ static inline void icdgen_can_give_up(icd_can_joiner_t *joiner, size_t index, ic
 
 ICDGEN_API void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event_fn *on_event, void *context)
 {
-    for (size_t i = 0; i < joiner->used;) {
+    size_t i = 0;
+    while (i < joiner->used) {
         if (icdgen_reached(now, joiner->slots[i].last + joiner->link->can->extended->packet_timeout)) {
             icdgen_can_give_up(joiner, i, on_event, context);
         } else {
@@ -720,6 +727,8 @@ static inline void icdgen_can_came(icd_can_slot_t *slot, uint32_t number, uint32
         slot->run++;
     } else if (number + 1u != slot->run) {
         slot->run = number == 0u ? 1u : 0u;
+    } else {
+        /* the one before came again */
     }
 }
 
@@ -805,7 +814,7 @@ static inline void icdgen_can_extended(
         icdgen_can_tell(link, packet->id, ICD_EVENT_DUPLICATE, 0, on_event, context);
         return;
     }
-    memset(&fresh, 0, sizeof fresh);
+    (void)memset(&fresh, 0, sizeof fresh);
     if (slot != NULL && (slot->done || slot->count != count || icdgen_can_got(slot, number))) {
         icdgen_can_replace(joiner, index, number, &fresh, on_event, context); /* the next free slot has its memory */
         slot = NULL;
@@ -823,7 +832,7 @@ static inline void icdgen_can_extended(
         slot->count = count;
         slot->length = length;
     }
-    memcpy(slot->data + (number * size), packet->data, size);
+    (void)memcpy(slot->data + (number * size), packet->data, size);
     slot->got[number / 8u] = ICDGEN_U8(slot->got[number / 8u] | (1u << (number % 8u)));
     slot->there++;
     icdgen_can_came(slot, number, now);
@@ -855,7 +864,7 @@ ICDGEN_API void icd_can_feed(
                 icdgen_can_tell(link, packet->id, ICD_EVENT_MALFORMED, 0, on_event, context);
                 return;
             }
-            memcpy(message + 1, packet->data, sizeof packet->data);
+            (void)memcpy(message + 1, packet->data, sizeof packet->data);
             icdgen_can_tell_message(link, packet->id, kind, message + 1, packet->length, on_event, context);
             return;
         }
@@ -887,8 +896,9 @@ ICDGEN_API bool icd_log_next(icd_log_frames_t *frames, icd_log_frame_t *frame)
 {
     const icd_log_mask_form_t *const form = frames->form;
     while (frames->bit < form->size * 8u) {
-        const unsigned bit = frames->bit++;
+        const unsigned bit = frames->bit;
         const unsigned weight = form->msb0 ? 7u - (bit % 8u) : bit % 8u;
+        frames->bit++;
         if (((ICDGEN_U32(frames->mask[bit / 8u]) >> weight) & 1u) != 0u) {
             frame->bit = ICDGEN_U16(bit);
             frame->id = form->bits[bit].id;
@@ -912,7 +922,7 @@ ICDGEN_API size_t icd_log_bytes(const icd_link_t *link)
 ICDGEN_API icd_status_t
 icd_log_reader_init(icd_log_reader_t *reader, const icd_link_t *link, uint8_t *buffer, size_t capacity)
 {
-    memset(reader, 0, sizeof *reader);
+    (void)memset(reader, 0, sizeof *reader);
     if (link->log_file == NULL || link->log_mask == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
@@ -927,7 +937,7 @@ icd_log_reader_init(icd_log_reader_t *reader, const icd_link_t *link, uint8_t *b
 static inline void icdgen_log_header(icd_log_reader_t *reader)
 {
     const icd_link_t *const link = reader->link;
-    memmove(reader->buffer, reader->buffer + link->log_file->mask_at, link->log_mask->size);
+    (void)memmove(reader->buffer, reader->buffer + link->log_file->mask_at, link->log_mask->size);
     reader->entry_bytes =
         link->log_file->frames_at + (icd_log_count(link, reader->buffer) * link->log_mask->slot_bytes);
     reader->has_mask = true;
@@ -955,7 +965,7 @@ ICDGEN_API void icd_log_feed(
         const size_t before = reader->has_mask ? reader->link->log_mask->size : 0u;
         const size_t wanted = whole - reader->length;
         const size_t taken = wanted < count ? wanted : count;
-        memcpy(reader->buffer + before + reader->length, bytes, taken);
+        (void)memcpy(reader->buffer + before + reader->length, bytes, taken);
         reader->length += taken;
         bytes += taken;
         count -= taken;
@@ -979,8 +989,8 @@ ICDGEN_API icd_status_t icd_log_write_header(
     if (mask_length != link->log_mask->size || capacity < link->log_file->header_bytes) {
         return ICD_ERROR_LENGTH;
     }
-    memset(buffer, 0, link->log_file->header_bytes);
-    memcpy(buffer + link->log_file->mask_at, mask, mask_length);
+    (void)memset(buffer, 0, link->log_file->header_bytes);
+    (void)memcpy(buffer + link->log_file->mask_at, mask, mask_length);
     *written = link->log_file->header_bytes;
     return ICD_OK;
 }
@@ -998,18 +1008,20 @@ static inline icd_status_t icdgen_log_slots_write(
     const size_t size = link->log_mask->slot_bytes;
     icd_log_frames_t frames;
     icd_log_frame_t frame;
+    size_t i = 0;
     if (count != icd_log_count(link, mask) || capacity / (size != 0u ? size : 1u) < count) {
         return ICD_ERROR_LENGTH;
     }
     icd_log_frames(&frames, link, mask, NULL);
-    for (size_t i = 0; icd_log_next(&frames, &frame); ++i) {
+    while (icd_log_next(&frames, &frame)) {
         if (given[i].length != frame.length) {
             return ICD_ERROR_LENGTH;
         }
-        memset(buffer + (i * size), link->log_mask->fill, size);
+        (void)memset(buffer + (i * size), link->log_mask->fill, size);
         if (frame.length != 0u) {
-            memcpy(buffer + (i * size), given[i].data, frame.length);
+            (void)memcpy(buffer + (i * size), given[i].data, frame.length);
         }
+        ++i;
     }
     *written = count * size;
     return ICD_OK;
@@ -1035,7 +1047,7 @@ ICDGEN_API icd_status_t icd_log_write_entry(
     if (capacity < form->frames_at) {
         return ICD_ERROR_LENGTH;
     }
-    memset(buffer, 0, form->frames_at);
+    (void)memset(buffer, 0, form->frames_at);
     status = icdgen_put_number(link, buffer + form->seconds.at, form->seconds.bytes, seconds);
     if (status == ICD_OK) {
         status = icdgen_put_number(link, buffer + form->milliseconds.at, form->milliseconds.bytes, milliseconds);
@@ -1089,9 +1101,9 @@ ICDGEN_API icd_status_t icd_log_message_encode(
     if (mask_length != link->log_mask->size || capacity < form->frames_at) {
         return ICD_ERROR_LENGTH;
     }
-    memset(buffer, 0, form->frames_at);
+    (void)memset(buffer, 0, form->frames_at);
     buffer[0] = form->id;
-    memcpy(buffer + form->mask_at, mask, mask_length);
+    (void)memcpy(buffer + form->mask_at, mask, mask_length);
     status =
         icdgen_log_slots_write(link, mask, frames, count, buffer + form->frames_at, capacity - form->frames_at, &slots);
     *written = form->frames_at + slots;
@@ -1250,7 +1262,7 @@ icd_index_entry_encode(const icd_link_t *link, const icd_index_entry_t *entry, u
     if (capacity < form->entry_bytes) {
         return ICD_ERROR_LENGTH;
     }
-    memset(bytes, 0, form->entry_bytes);
+    (void)memset(bytes, 0, form->entry_bytes);
     if (icdgen_put_number(link, bytes + form->type.at, form->type.bytes, entry->type) != ICD_OK ||
         icdgen_put_number(link, bytes + form->counter.at, form->counter.bytes, entry->counter) != ICD_OK ||
         icdgen_put_number(link, bytes + form->checksum.at, form->checksum.bytes, entry->checksum) != ICD_OK ||
@@ -1262,7 +1274,7 @@ icd_index_entry_encode(const icd_link_t *link, const icd_index_entry_t *entry, u
         return ICD_ERROR_LENGTH;
     }
     if (entry->meta_length != 0u) {
-        memcpy(bytes + form->meta.at, entry->meta, entry->meta_length);
+        (void)memcpy(bytes + form->meta.at, entry->meta, entry->meta_length);
     }
     return ICD_OK;
 }
@@ -1295,7 +1307,7 @@ ICDGEN_API icd_status_t
 icd_client_init(icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
 {
     icd_status_t status;
-    memset(client, 0, sizeof *client);
+    (void)memset(client, 0, sizeof *client);
     client->link = link;
     client->bus = bus;
     client->settings = link->client;
@@ -1309,8 +1321,10 @@ icd_client_init(icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uin
 ICDGEN_API void icd_client_use_checksums(icd_client_t *client)
 {
     const icd_checksum_form_t *const form = client->link->checksum;
-    client->checks_telecommands = form != NULL && ((ICDGEN_U32(form->telecommand_buses) >> client->bus) & 1u) != 0u;
-    client->checks_telemetry = form != NULL && ((ICDGEN_U32(form->telemetry_buses) >> client->bus) & 1u) != 0u;
+    client->checks_telecommands =
+        form != NULL && ((ICDGEN_U32(form->telecommand_buses) >> ICDGEN_U32(client->bus)) & 1u) != 0u;
+    client->checks_telemetry =
+        form != NULL && ((ICDGEN_U32(form->telemetry_buses) >> ICDGEN_U32(client->bus)) & 1u) != 0u;
 }
 
 ICDGEN_API void icd_client_set_address(icd_client_t *client, uint8_t address)
@@ -1447,7 +1461,7 @@ static inline void icdgen_client_ignore(void *context, const icd_event_t *event)
 ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint8_t id)
 {
     icd_request_t request;
-    memset(&request, 0, sizeof request);
+    (void)memset(&request, 0, sizeof request);
     request.direction = ICD_TELEMETRY;
     request.id = id;
     return icd_client_start(client, now, &request, icdgen_client_ignore, NULL);
@@ -1464,7 +1478,7 @@ ICDGEN_API icd_status_t icd_client_send(
     void *context)
 {
     icd_request_t request;
-    memset(&request, 0, sizeof request);
+    (void)memset(&request, 0, sizeof request);
     request.direction = ICD_TELECOMMAND;
     request.id = id;
     request.data = data;
@@ -1544,8 +1558,8 @@ static inline void icdgen_client_refused(
     icd_client_t *client, uint32_t now, int64_t code, int64_t parameter, icd_event_fn *on_event, void *context)
 {
     icd_event_t event = icdgen_event(ICD_EVENT_REFUSED, 0);
-    for (size_t i = client->link->error_count; i-- != 0u;) {
-        if (client->link->errors[i].code == code) {
+    for (size_t i = 0; i < client->link->error_count; ++i) {
+        if (event.reason == ICD_REASON_UNKNOWN && ICDGEN_I64(client->link->errors[i].code) == code) {
             event.reason = client->link->errors[i].reason;
         }
     }
@@ -1622,7 +1636,7 @@ static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, 
     if (kind == ICD_UART_PACKET) {
         icd_event_t event = icdgen_event(ICD_EVENT_PACKET, message[0]);
         event.number = icdgen_number(link, message + 1, link->files->counter_bytes);
-        event.data = message + 1 + link->files->counter_bytes;
+        event.data = message + 1u + link->files->counter_bytes;
         event.length = link->files->packet_bytes;
         call->on_event(call->context, &event);
         return;
@@ -1835,7 +1849,7 @@ static inline void icdgen_wait(icd_procedure_t *procedure, uint32_t until)
 /* Requests a frame. */
 static inline void icdgen_ask(icd_procedure_t *procedure, int16_t id, uint8_t state)
 {
-    memset(&procedure->request, 0, sizeof procedure->request);
+    (void)memset(&procedure->request, 0, sizeof procedure->request);
     procedure->request.direction = ICD_TELEMETRY;
     procedure->request.id = ICDGEN_U8(id);
     procedure->request.repeat = true;
@@ -1848,9 +1862,9 @@ static inline void icdgen_ask(icd_procedure_t *procedure, int16_t id, uint8_t st
 static inline void icdgen_command(icd_procedure_t *procedure, const icd_step_t *step, bool repeat, uint8_t state)
 {
     if (step->fresh != NULL) {
-        memcpy(procedure->data, step->fresh, step->length);
+        (void)memcpy(procedure->data, step->fresh, step->length);
     } else {
-        memset(procedure->data, 0, step->length);
+        (void)memset(procedure->data, 0, step->length);
     }
     procedure->request.direction = ICD_TELECOMMAND;
     procedure->request.id = ICDGEN_U8(step->telecommand);
@@ -1922,6 +1936,8 @@ static inline void icdgen_resume(icd_procedure_t *procedure, const icd_event_t *
         icdgen_end(procedure, outcome->kind == ICD_EVENT_REFUSED ? ICD_REFUSED : ICD_TIMED_OUT);
     } else if (procedure->polled == NULL || !icdgen_polls_on(procedure, outcome)) {
         procedure->resume(procedure, outcome);
+    } else {
+        /* the frame is polled again */
     }
 }
 
@@ -1976,6 +1992,8 @@ ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, co
             procedure->damaged = 0;
             icdgen_resume(procedure, event);
         }
+    } else {
+        /* it is of no concern */
     }
 }
 
@@ -2002,7 +2020,7 @@ static inline icd_status_t icdgen_procedure_init(
     bool supported,
     void (*resume)(icd_procedure_t *procedure, const icd_event_t *outcome))
 {
-    memset(procedure, 0, sizeof *procedure);
+    (void)memset(procedure, 0, sizeof *procedure);
     procedure->link = link;
     procedure->resume = resume;
     procedure->result = ICD_RUNNING;
@@ -2048,8 +2066,10 @@ static inline void icdgen_list_frame(icd_list_t *list, const uint8_t *frame, siz
     } else if (list->again > procedure->link->client.retries) {
         icdgen_end(procedure, ICD_TIMED_OUT);
         return;
+    } else {
+        /* perhaps the node has not gone on yet */
     }
-    memcpy(list->last, frame, length);
+    (void)memcpy(list->last, frame, length);
     list->has_last = true;
     list->again++;
     /* Sent once: if only its acknowledge was lost, the next frame tells that it arrived. */
@@ -2083,7 +2103,7 @@ static inline void icdgen_list_resume(icd_procedure_t *procedure, const icd_even
 
 ICDGEN_API icd_status_t icd_list_init(icd_list_t *list, const icd_link_t *link, icd_file_fn *on_file, void *context)
 {
-    memset(list, 0, sizeof *list);
+    (void)memset(list, 0, sizeof *list);
     list->on_file = on_file;
     list->context = context;
     return icdgen_procedure_init(&list->procedure, link, link->list != NULL, icdgen_list_resume);
@@ -2141,7 +2161,7 @@ static inline void icdgen_download_packet(
     }
     if (!icdgen_bit(download->got, position)) {
         icdgen_set_bit(download->got, position, true);
-        memcpy(download->buffer + (ICDGEN_CAST(size_t, position) * length), data, length);
+        (void)memcpy(download->buffer + (ICDGEN_CAST(size_t, position) * length), data, length);
         download->there++;
     }
     download->last = procedure->now;
@@ -2201,7 +2221,7 @@ static inline void icdgen_download_map(icd_download_t *download)
         icdgen_download_burst(download);
         return;
     }
-    memset(&step, 0, sizeof step);
+    (void)memset(&step, 0, sizeof step);
     step.telecommand = message->telecommand;
     step.length = message->length;
     icdgen_command(procedure, &step, true, ICDGEN_DOWNLOAD_MAPPED);
@@ -2281,7 +2301,7 @@ static inline void icdgen_download_ready(icd_download_t *download, const uint8_t
         return;
     }
     download->count = (download->length + link->files->packet_bytes - 1u) / link->files->packet_bytes;
-    memset(download->got, 0, icd_block_bitmap(link, download->length));
+    (void)memset(download->got, 0, icd_block_bitmap(link, download->length));
     icdgen_download_round(download);
 }
 
@@ -2373,7 +2393,7 @@ ICDGEN_API icd_status_t icd_download_init(
 {
     const bool known = link->download != NULL && link->files != NULL && link->crc16 != NULL && link->hole_map != NULL &&
         (bus == ICD_BUS_UART || link->files->packet_ids[bus] >= 0);
-    memset(download, 0, sizeof *download);
+    (void)memset(download, 0, sizeof *download);
     if (icdgen_procedure_init(&download->procedure, link, known, icdgen_download_resume) != ICD_OK) {
         return ICD_ERROR_UNSUPPORTED;
     }
@@ -2420,7 +2440,7 @@ static inline void icdgen_upload_begin(icd_upload_t *upload)
     icd_procedure_t *const procedure = &upload->procedure;
     const uint32_t packet_bytes = procedure->link->files->packet_bytes;
     upload->count = (icdgen_upload_length(upload) + packet_bytes - 1u) / packet_bytes;
-    memset(upload->missing, 0xFF, ICDGEN_SIZE((upload->count + 7u) / 8u));
+    (void)memset(upload->missing, 0xFF, ICDGEN_SIZE((upload->count + 7u) / 8u));
     icdgen_command(procedure, &procedure->link->upload->begin, true, ICDGEN_UPLOAD_BEGUN);
 }
 
@@ -2440,8 +2460,8 @@ static inline void icdgen_upload_packet(const icd_upload_t *upload, uint32_t pos
     const icd_files_form_t *const files = upload->procedure.link->files;
     const uint32_t at = position * files->packet_bytes;
     const uint32_t left = icdgen_upload_length(upload) - at;
-    memset(packet, files->fill, files->packet_bytes);
-    memcpy(
+    (void)memset(packet, files->fill, files->packet_bytes);
+    (void)memcpy(
         packet, upload->file + upload->sent + at, ICDGEN_SIZE(left < files->packet_bytes ? left : files->packet_bytes));
 }
 
@@ -2638,7 +2658,7 @@ ICDGEN_API icd_status_t icd_upload_init(
     size_t bitmap_size)
 {
     const bool known = link->upload != NULL && link->crc16 != NULL && link->hole_map != NULL;
-    memset(upload, 0, sizeof *upload);
+    (void)memset(upload, 0, sizeof *upload);
     if (icdgen_procedure_init(&upload->procedure, link, known, icdgen_upload_resume) != ICD_OK) {
         return ICD_ERROR_UNSUPPORTED;
     }
@@ -2683,7 +2703,7 @@ static inline void icdgen_erase_resume(icd_procedure_t *procedure, const icd_eve
 ICDGEN_API icd_status_t
 icd_erase_init(icd_erase_t *erase, const icd_link_t *link, uint8_t type, uint8_t counter, bool all)
 {
-    memset(erase, 0, sizeof *erase);
+    (void)memset(erase, 0, sizeof *erase);
     erase->form = link->erase;
     erase->type = type;
     erase->counter = counter;
@@ -2693,7 +2713,7 @@ icd_erase_init(icd_erase_t *erase, const icd_link_t *link, uint8_t type, uint8_t
 
 ICDGEN_API icd_status_t icd_format_init(icd_format_t *format, const icd_link_t *link)
 {
-    memset(format, 0, sizeof *format);
+    (void)memset(format, 0, sizeof *format);
     format->form = link->format;
     format->all = true;
     return icdgen_procedure_init(&format->procedure, link, link->format != NULL, icdgen_erase_resume);

@@ -47,19 +47,19 @@ static uint64_t member(const icdgen_selftest_field_t *field, const void *message
     uint32_t four;
     bool flag;
     if (field->type == ICDGEN_SELFTEST_BOOL) {
-        memcpy(&flag, at, sizeof flag);
+        (void)memcpy(&flag, at, sizeof flag);
         return flag ? 1u : 0u;
     }
     if (field->size == 1u) {
         bits = *at;
     } else if (field->size == 2u) {
-        memcpy(&two, at, sizeof two);
+        (void)memcpy(&two, at, sizeof two);
         bits = two;
     } else if (field->size == 4u) {
-        memcpy(&four, at, sizeof four);
+        (void)memcpy(&four, at, sizeof four);
         bits = four;
     } else {
-        memcpy(&bits, at, sizeof bits);
+        (void)memcpy(&bits, at, sizeof bits);
     }
     return field->type == ICDGEN_SELFTEST_SIGNED ? extended(bits, field->size) : bits;
 }
@@ -72,15 +72,15 @@ static void set_member(const icdgen_selftest_field_t *field, void *message, uint
     const uint32_t four = (uint32_t)(bits & 0xFFFFFFFFu);
     const bool flag = bits != 0u;
     if (field->type == ICDGEN_SELFTEST_BOOL) {
-        memcpy(at, &flag, sizeof flag);
+        (void)memcpy(at, &flag, sizeof flag);
     } else if (field->size == 1u) {
-        memcpy(at, &one, sizeof one);
+        (void)memcpy(at, &one, sizeof one);
     } else if (field->size == 2u) {
-        memcpy(at, &two, sizeof two);
+        (void)memcpy(at, &two, sizeof two);
     } else if (field->size == 4u) {
-        memcpy(at, &four, sizeof four);
+        (void)memcpy(at, &four, sizeof four);
     } else {
-        memcpy(at, &bits, sizeof bits);
+        (void)memcpy(at, &bits, sizeof bits);
     }
 }
 
@@ -107,8 +107,8 @@ static bool holds_bytes(const uint8_t *at, uint32_t count, uint8_t value)
 
 static void fill(const run_t *run)
 {
-    memset(run->node->value, (int)FILLER, run->node->value_size);
-    memset(run->node->buffer, (int)FILLER, run->node->buffer_size);
+    (void)memset(run->node->value, (int)FILLER, run->node->value_size);
+    (void)memset(run->node->buffer, (int)FILLER, run->node->buffer_size);
 }
 
 /* ---- messages --------------------------------------------------------------------------------------------------- */
@@ -132,11 +132,11 @@ static void raw_values(run_t *run, const uint8_t *at)
 static void assemble(const run_t *run, const uint8_t *at)
 {
     uint16_t i;
-    memset(run->node->value, (int)FILLER, run->node->value_size);
+    (void)memset(run->node->value, (int)FILLER, run->node->value_size);
     for (i = 0; i < run->message->field_count; i++) {
         const icdgen_selftest_field_t *field = &run->message->fields[i];
         if (field->type == ICDGEN_SELFTEST_BYTES) {
-            memcpy((uint8_t *)run->node->value + field->offset, at, field->packed);
+            (void)memcpy((uint8_t *)run->node->value + field->offset, at, field->packed);
         } else {
             set_member(field, run->node->value, packed(field, at));
         }
@@ -150,7 +150,7 @@ static void encoded(run_t *run, const uint8_t *frame)
     const uint16_t length = run->message->length;
     uint16_t i;
     bool same = true;
-    memset(run->node->buffer, (int)FILLER, run->node->buffer_size);
+    (void)memset(run->node->buffer, (int)FILLER, run->node->buffer_size);
     check(run, run->message->encode(run->node->value, run->node->buffer, length) == ICD_OK, "encode refuses", NULL);
     for (i = 0; i < length; i++) {
         same = same && buffer[i] == (frame[i] & run->message->kept[i]);
@@ -171,7 +171,7 @@ static void text_is(run_t *run, const icdgen_selftest_field_t *field, const char
 {
     char *const text = (char *)run->node->buffer;
     const size_t size = expected != NULL ? strlen(expected) + 1u : field->size + 1u;
-    memset(text, (int)FILLER, run->node->buffer_size);
+    (void)memset(text, (int)FILLER, run->node->buffer_size);
     if (expected == NULL) {
         check(run, field->get_text(run->node->value, text, size) == ICD_ERROR_RANGE, "text that is none", field->name);
     } else {
@@ -204,7 +204,7 @@ static void set_texts(run_t *run, const icdgen_selftest_field_t *field)
         const icdgen_selftest_text_t *one = &field->texts[i];
         icd_status_t status;
         run->vector = i;
-        memset(run->node->value, (int)FILLER, run->node->value_size);
+        (void)memset(run->node->value, (int)FILLER, run->node->value_size);
         status = field->set_text(run->node->value, one->text);
         check(run, status == (one->bytes == NULL ? ICD_ERROR_RANGE : ICD_OK), "setting a text", field->name);
         if (one->bytes == NULL) {
@@ -220,14 +220,14 @@ static void set_texts(run_t *run, const icdgen_selftest_field_t *field)
 static double double_of(uint64_t bits)
 {
     double value;
-    memcpy(&value, &bits, sizeof value);
+    (void)memcpy(&value, &bits, sizeof value);
     return value;
 }
 
 static uint64_t bits_of(double value)
 {
     uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
+    (void)memcpy(&bits, &value, sizeof bits);
     return bits;
 }
 
@@ -283,7 +283,7 @@ static void field_values(run_t *run, const icdgen_selftest_field_t *field)
         run->vector = i;
         run->message->init(run->node->value);
         set_member(field, run->node->value, field->unfit[i]);
-        memset(run->node->buffer, (int)FILLER, run->node->buffer_size);
+        (void)memset(run->node->buffer, (int)FILLER, run->node->buffer_size);
         check(
             run, run->message->encode(run->node->value, run->node->buffer, run->message->length) == ICD_ERROR_RANGE,
             "unfit raw value", field->name);
@@ -328,7 +328,7 @@ static void lengths(run_t *run)
 static void fresh(run_t *run)
 {
     uint16_t i;
-    memset(run->node->value, (int)FILLER, run->node->value_size);
+    (void)memset(run->node->value, (int)FILLER, run->node->value_size);
     run->message->init(run->node->value);
     for (i = 0; i < run->message->field_count; i++) {
         const icdgen_selftest_field_t *field = &run->message->fields[i];
@@ -384,7 +384,7 @@ static void message(run_t *run)
 static void dispatcher(run_t *run, const icdgen_selftest_dispatcher_t *one)
 {
     uint16_t i;
-    memset(run->node->buffer, 0, run->node->buffer_size);
+    (void)memset(run->node->buffer, 0, run->node->buffer_size);
     for (i = 0; i < one->id_count; i++) {
         const uint32_t id = one->ids[i].id;
         const bool known = one->ids[i].length >= 0;

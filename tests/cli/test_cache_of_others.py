@@ -62,7 +62,9 @@ def test_nothing_that_is_planted_runs(generated, tmp_path):
     assert not mark.exists()
 
 
-def test_no_compiled_template_is_kept(generated):
+def test_no_compiled_template_is_kept_in_the_cache(generated, monkeypatch, tmp_path):
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    monkeypatch.setattr(sys, "pycache_prefix", str(tmp_path / "compiled"))
     generated()
     assert {path.parent.name for path in entries()} == {"models", "runs"}
 

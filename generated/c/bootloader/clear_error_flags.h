@@ -29,7 +29,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void bootloader_clear_error_flags_init(bootloader_clear_error_flags_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 0 bytes. */

@@ -38,7 +38,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void bootloader_copy_to_internal_flash_init(bootloader_copy_to_internal_flash_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 2 bytes. */

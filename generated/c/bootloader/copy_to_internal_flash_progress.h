@@ -29,7 +29,7 @@ typedef struct {
 static inline void bootloader_copy_to_internal_flash_progress_init(
     bootloader_copy_to_internal_flash_progress_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 1 byte. */

@@ -43,7 +43,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void bootloader_program_information_init(bootloader_program_information_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 8 bytes. */

@@ -63,7 +63,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void bootloader_state_init(bootloader_state_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -128,7 +128,7 @@ static inline icd_status_t bootloader_state_encode(
         boot_register_corrupt,
         communications_error_with_radio);
     buffer[3] = ICDGEN_U8(flags_3);
-    memset(&buffer[4], 0, 2u);
+    (void)memset(&buffer[4], 0, 2u);
     return ICD_OK;
 }
 

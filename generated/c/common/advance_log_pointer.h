@@ -27,7 +27,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void common_advance_log_pointer_init(common_advance_log_pointer_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 0 bytes. */

@@ -34,7 +34,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void common_current_unix_time_init(common_current_unix_time_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */

@@ -38,7 +38,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void common_download_block_ready_init(common_download_block_ready_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 5 bytes. */

@@ -35,7 +35,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void common_erase_file_init(common_erase_file_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 3 bytes. */

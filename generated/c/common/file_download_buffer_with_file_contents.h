@@ -37,7 +37,7 @@ typedef struct {
 static inline void common_file_download_buffer_with_file_contents_init(
     common_file_download_buffer_with_file_contents_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 22 bytes. */
@@ -50,7 +50,7 @@ static inline icd_status_t common_file_download_buffer_with_file_contents_decode
         return ICD_ERROR_LENGTH;
     }
     message->packet_counter = icdgen_load_u16le(&buffer[0]);
-    memcpy(message->file_bytes, &buffer[2], 20u);
+    (void)memcpy(message->file_bytes, &buffer[2], 20u);
     return ICD_OK;
 }
 
@@ -64,7 +64,7 @@ static inline icd_status_t common_file_download_buffer_with_file_contents_encode
         return ICD_ERROR_LENGTH;
     }
     icdgen_store_u16le(&buffer[0], message->packet_counter);
-    memcpy(&buffer[2], message->file_bytes, 20u);
+    (void)memcpy(&buffer[2], message->file_bytes, 20u);
     return ICD_OK;
 }
 

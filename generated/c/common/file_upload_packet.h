@@ -37,7 +37,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void common_file_upload_packet_init(common_file_upload_packet_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 22 bytes. */
@@ -50,7 +50,7 @@ static inline icd_status_t common_file_upload_packet_decode(
         return ICD_ERROR_LENGTH;
     }
     message->packet_number = icdgen_load_u16le(&buffer[0]);
-    memcpy(message->file_bytes, &buffer[2], 20u);
+    (void)memcpy(message->file_bytes, &buffer[2], 20u);
     return ICD_OK;
 }
 
@@ -64,7 +64,7 @@ static inline icd_status_t common_file_upload_packet_encode(
         return ICD_ERROR_LENGTH;
     }
     icdgen_store_u16le(&buffer[0], message->packet_number);
-    memcpy(&buffer[2], message->file_bytes, 20u);
+    (void)memcpy(&buffer[2], message->file_bytes, 20u);
     return ICD_OK;
 }
 

@@ -28,7 +28,7 @@ typedef struct {
 /** Makes every raw value 0, or the only valid one. */
 static inline void common_format_sd_card_init(common_format_sd_card_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
     message->magic_number = COMMON_FORMAT_SD_CARD_MAGIC_NUMBER_CONST;
 }
 

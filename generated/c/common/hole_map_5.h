@@ -31,7 +31,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void common_hole_map_5_init(common_hole_map_5_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 16 bytes. */
@@ -43,7 +43,7 @@ static inline icd_status_t common_hole_map_5_decode(
     if (length != COMMON_HOLE_MAP_5_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    memcpy(message->hole_map, &buffer[0], 16u);
+    (void)memcpy(message->hole_map, &buffer[0], 16u);
     return ICD_OK;
 }
 
@@ -56,7 +56,7 @@ static inline icd_status_t common_hole_map_5_encode(
     if (capacity < COMMON_HOLE_MAP_5_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    memcpy(&buffer[0], message->hole_map, 16u);
+    (void)memcpy(&buffer[0], message->hole_map, 16u);
     return ICD_OK;
 }
 

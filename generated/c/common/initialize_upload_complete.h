@@ -31,7 +31,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void common_initialize_upload_complete_init(common_initialize_upload_complete_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 1 byte. */

@@ -33,7 +33,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void common_initiate_file_upload_init(common_initiate_file_upload_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 2 bytes. */

@@ -45,7 +45,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void common_load_file_download_block_init(common_load_file_download_block_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 8 bytes. */

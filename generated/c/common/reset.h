@@ -33,7 +33,7 @@ typedef struct {
 /** Makes every raw value 0, or the only valid one. */
 static inline void common_reset_init(common_reset_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
     message->magic_number = COMMON_RESET_MAGIC_NUMBER_CONST;
 }
 

@@ -27,7 +27,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void common_sram_latchup_counters_init(common_sram_latchup_counters_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -55,7 +55,7 @@ static inline icd_status_t common_sram_latchup_counters_encode(
     }
     icdgen_store_u16le(&buffer[0], message->sram1_latchups);
     icdgen_store_u16le(&buffer[2], message->sram2_latchups);
-    memset(&buffer[4], 0, 2u);
+    (void)memset(&buffer[4], 0, 2u);
     return ICD_OK;
 }
 

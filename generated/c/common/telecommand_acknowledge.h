@@ -48,7 +48,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void common_telecommand_acknowledge_init(common_telecommand_acknowledge_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 4 bytes. */

@@ -40,7 +40,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void common_unix_time_save_to_flash_init(common_unix_time_save_to_flash_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 2 bytes. */

@@ -56,7 +56,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_actuator_commands_init(cubeacp_actuator_commands_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 12 bytes. */

@@ -756,7 +756,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_adcs_configuration_init(cubeacp_adcs_configuration_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 504 bytes. */
@@ -882,8 +882,8 @@ static inline icd_status_t cubeacp_adcs_configuration_decode(
     message->time_gain = buffer[404];
     message->max_lag = buffer[405];
     message->min_samples = icdgen_load_u16le(&buffer[406]);
-    memcpy(message->user_coded_controller_settings, &buffer[408], 48u);
-    memcpy(message->user_coded_estimator_settings, &buffer[456], 48u);
+    (void)memcpy(message->user_coded_controller_settings, &buffer[408], 48u);
+    (void)memcpy(message->user_coded_estimator_settings, &buffer[456], 48u);
     return ICD_OK;
 }
 
@@ -1044,8 +1044,8 @@ static inline icd_status_t cubeacp_adcs_configuration_encode(
     buffer[404] = message->time_gain;
     buffer[405] = message->max_lag;
     icdgen_store_u16le(&buffer[406], message->min_samples);
-    memcpy(&buffer[408], message->user_coded_controller_settings, 48u);
-    memcpy(&buffer[456], message->user_coded_estimator_settings, 48u);
+    (void)memcpy(&buffer[408], message->user_coded_controller_settings, 48u);
+    (void)memcpy(&buffer[456], message->user_coded_estimator_settings, 48u);
     return ICD_OK;
 }
 
@@ -1061,7 +1061,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_x_rate_sensor_offset_m
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->x_rate_sensor_offset = ICDGEN_I16(value);
@@ -1080,7 +1080,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_y_rate_sensor_offset_m
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->y_rate_sensor_offset = ICDGEN_I16(value);
@@ -1099,7 +1099,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_z_rate_sensor_offset_m
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->z_rate_sensor_offset = ICDGEN_I16(value);
@@ -1117,7 +1117,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_css1_relative_scale_mi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css1_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -1135,7 +1135,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_css2_relative_scale_mi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css2_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -1153,7 +1153,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_css3_relative_scale_mi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css3_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -1171,7 +1171,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_css4_relative_scale_mi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css4_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -1189,7 +1189,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_css5_relative_scale_mi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css5_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -1207,7 +1207,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_css6_relative_scale_mi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css6_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -1225,7 +1225,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_css7_relative_scale_mi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css7_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -1243,7 +1243,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_css8_relative_scale_mi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css8_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -1261,7 +1261,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_css9_relative_scale_mi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css9_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -1279,7 +1279,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_css10_relative_scale_m
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css10_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -1300,7 +1300,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_alpha_md
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->cam1_mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -1321,7 +1321,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_beta_mde
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->cam1_mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -1342,7 +1342,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_cam1_mounting_gamma_md
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->cam1_mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -1361,7 +1361,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_cam1_boresight_x_milli
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->cam1_boresight_x = ICDGEN_U16(icdgen_nearest32(value, 10));
@@ -1380,7 +1380,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_cam1_boresight_y_milli
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->cam1_boresight_y = ICDGEN_U16(icdgen_nearest32(value, 10));
@@ -1401,7 +1401,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_alpha_md
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->cam2_mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -1422,7 +1422,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_beta_mde
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->cam2_mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -1443,7 +1443,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_cam2_mounting_gamma_md
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->cam2_mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -1462,7 +1462,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_cam2_boresight_x_milli
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->cam2_boresight_x = ICDGEN_U16(icdgen_nearest32(value, 10));
@@ -1481,7 +1481,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_cam2_boresight_y_milli
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->cam2_boresight_y = ICDGEN_U16(icdgen_nearest32(value, 10));
@@ -1503,7 +1503,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -1525,7 +1525,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -1547,7 +1547,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_mounting_
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -1566,7 +1566,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_1
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_channel_1_offset = ICDGEN_I16(value);
@@ -1585,7 +1585,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_2
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_channel_2_offset = ICDGEN_I16(value);
@@ -1604,7 +1604,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_channel_3
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_channel_3_offset = ICDGEN_I16(value);
@@ -1625,7 +1625,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_sensitivity_s11 = ICDGEN_I16(value);
@@ -1646,7 +1646,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_sensitivity_s22 = ICDGEN_I16(value);
@@ -1667,7 +1667,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_sensitivity_s33 = ICDGEN_I16(value);
@@ -1688,7 +1688,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_sensitivity_s12 = ICDGEN_I16(value);
@@ -1709,7 +1709,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_sensitivity_s13 = ICDGEN_I16(value);
@@ -1730,7 +1730,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_sensitivity_s21 = ICDGEN_I16(value);
@@ -1751,7 +1751,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_sensitivity_s23 = ICDGEN_I16(value);
@@ -1772,7 +1772,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_sensitivity_s31 = ICDGEN_I16(value);
@@ -1793,7 +1793,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_magnetometer_sensitivi
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_sensitivity_s32 = ICDGEN_I16(value);
@@ -1815,7 +1815,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -1837,7 +1837,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -1859,7 +1859,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_mounting
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -1881,7 +1881,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_channel_1_offset = ICDGEN_I16(value);
@@ -1903,7 +1903,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_channel_2_offset = ICDGEN_I16(value);
@@ -1925,7 +1925,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_channel_
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_channel_3_offset = ICDGEN_I16(value);
@@ -1947,7 +1947,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitiv
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_sensitivity_s11 = ICDGEN_I16(value);
@@ -1969,7 +1969,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitiv
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_sensitivity_s22 = ICDGEN_I16(value);
@@ -1991,7 +1991,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitiv
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_sensitivity_s33 = ICDGEN_I16(value);
@@ -2013,7 +2013,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitiv
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_sensitivity_s12 = ICDGEN_I16(value);
@@ -2035,7 +2035,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitiv
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_sensitivity_s13 = ICDGEN_I16(value);
@@ -2057,7 +2057,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitiv
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_sensitivity_s21 = ICDGEN_I16(value);
@@ -2079,7 +2079,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitiv
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_sensitivity_s23 = ICDGEN_I16(value);
@@ -2101,7 +2101,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitiv
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_sensitivity_s31 = ICDGEN_I16(value);
@@ -2123,7 +2123,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_redundant_mag_sensitiv
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_sensitivity_s32 = ICDGEN_I16(value);
@@ -2145,7 +2145,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->star_tracker_mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -2167,7 +2167,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->star_tracker_mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -2189,7 +2189,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_mounting_
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->star_tracker_mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -2208,7 +2208,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_star_tracker_error_mar
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->star_tracker_error_margin = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -2226,7 +2226,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_star_tracking_margin_m
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->star_tracking_margin = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -2245,7 +2245,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_star_validation_margin
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->star_validation_margin = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -2264,7 +2264,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_star_tracking_search_w
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -100 || value > 51099) {
+    if ((value < -100) || (value > 51099)) {
         return ICD_ERROR_RANGE;
     }
     message->star_tracking_search_width = ICDGEN_U8(icdgen_nearest32(value, 200));
@@ -2283,7 +2283,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_reference_spin_rate_md
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->reference_spin_rate = ICDGEN_I16(value);
@@ -2301,7 +2301,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_incl_coefficient_milli
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < 0 || value > 65535) {
+    if ((value < 0) || (value > 65535)) {
         return ICD_ERROR_RANGE;
     }
     message->incl_coefficient = ICDGEN_U16(value);
@@ -2319,7 +2319,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_raan_coefficient_milli
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < 0 || value > 65535) {
+    if ((value < 0) || (value > 65535)) {
         return ICD_ERROR_RANGE;
     }
     message->raan_coefficient = ICDGEN_U16(value);
@@ -2337,7 +2337,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_ecc_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < 0 || value > 65535) {
+    if ((value < 0) || (value > 65535)) {
         return ICD_ERROR_RANGE;
     }
     message->ecc_coefficient = ICDGEN_U16(value);
@@ -2355,7 +2355,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_aop_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < 0 || value > 65535) {
+    if ((value < 0) || (value > 65535)) {
         return ICD_ERROR_RANGE;
     }
     message->aop_coefficient = ICDGEN_U16(value);
@@ -2373,7 +2373,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_time_coefficient_milli
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < 0 || value > 65535) {
+    if ((value < 0) || (value > 65535)) {
         return ICD_ERROR_RANGE;
     }
     message->time_coefficient = ICDGEN_U16(value);
@@ -2391,7 +2391,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_pos_coefficient_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < 0 || value > 65535) {
+    if ((value < 0) || (value > 65535)) {
         return ICD_ERROR_RANGE;
     }
     message->pos_coefficient = ICDGEN_U16(value);
@@ -2410,7 +2410,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_maximum_position_error
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 25549) {
+    if ((value < -50) || (value > 25549)) {
         return ICD_ERROR_RANGE;
     }
     message->maximum_position_error = ICDGEN_U8(icdgen_nearest32(value, 100));
@@ -2428,7 +2428,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_position_sd_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 25549) {
+    if ((value < -50) || (value > 25549)) {
         return ICD_ERROR_RANGE;
     }
     message->position_sd = ICDGEN_U8(icdgen_nearest32(value, 100));
@@ -2446,7 +2446,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_velocity_sd_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->velocity_sd = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -2464,7 +2464,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_time_gain_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->time_gain = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -2482,7 +2482,7 @@ static inline icd_status_t cubeacp_adcs_configuration_set_max_lag_milli(
     cubeacp_adcs_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->max_lag = ICDGEN_U8(icdgen_nearest32(value, 10));

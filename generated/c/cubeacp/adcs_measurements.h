@@ -154,7 +154,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_adcs_measurements_init(cubeacp_adcs_measurements_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 72 bytes. */
@@ -194,7 +194,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_magnetic_field_x_nt(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetic_field_x = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -212,7 +212,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_magnetic_field_y_nt(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetic_field_y = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -230,7 +230,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_magnetic_field_z_nt(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetic_field_z = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -248,7 +248,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_coarse_sun_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->coarse_sun_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -266,7 +266,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_coarse_sun_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->coarse_sun_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -284,7 +284,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_coarse_sun_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->coarse_sun_z = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -302,7 +302,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_sun_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->sun_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -320,7 +320,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_sun_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->sun_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -338,7 +338,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_sun_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->sun_z = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -356,7 +356,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_nadir_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->nadir_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -374,7 +374,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_nadir_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->nadir_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -392,7 +392,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_nadir_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->nadir_z = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -410,7 +410,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_x_angular_rate_mdeg_per
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->x_angular_rate = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -428,7 +428,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_y_angular_rate_mdeg_per
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->y_angular_rate = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -446,7 +446,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_z_angular_rate_mdeg_per
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->z_angular_rate = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -464,7 +464,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star1_body_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star1_body_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -482,7 +482,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star1_body_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star1_body_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -500,7 +500,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star1_body_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star1_body_z = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -518,7 +518,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star1_orbit_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star1_orbit_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -536,7 +536,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star1_orbit_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star1_orbit_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -554,7 +554,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star1_orbit_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star1_orbit_z = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -572,7 +572,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star2_body_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star2_body_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -590,7 +590,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star2_body_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star2_body_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -608,7 +608,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star2_body_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star2_body_z = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -626,7 +626,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star2_orbit_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star2_orbit_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -644,7 +644,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star2_orbit_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star2_orbit_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -662,7 +662,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star2_orbit_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star2_orbit_z = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -680,7 +680,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star3_body_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star3_body_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -698,7 +698,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star3_body_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star3_body_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -716,7 +716,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star3_body_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star3_body_z = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -734,7 +734,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star3_orbit_x_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star3_orbit_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -752,7 +752,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star3_orbit_y_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star3_orbit_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -770,7 +770,7 @@ static inline icd_status_t cubeacp_adcs_measurements_set_star3_orbit_z_micro(
     cubeacp_adcs_measurements_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star3_orbit_z = ICDGEN_I16(icdgen_nearest32(value, 100));

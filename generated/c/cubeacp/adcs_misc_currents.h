@@ -37,7 +37,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_adcs_misc_currents_init(cubeacp_adcs_misc_currents_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -81,7 +81,7 @@ static inline icd_status_t cubeacp_adcs_misc_currents_set_cubestar_current_ua(
     cubeacp_adcs_misc_currents_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->cubestar_current = ICDGEN_U16(icdgen_nearest32(value, 10));
@@ -99,7 +99,7 @@ static inline icd_status_t cubeacp_adcs_misc_currents_set_magnetorquer_current_u
     cubeacp_adcs_misc_currents_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 6553549) {
+    if ((value < -50) || (value > 6553549)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetorquer_current = ICDGEN_U16(icdgen_nearest32(value, 100));
@@ -118,7 +118,7 @@ static inline icd_status_t cubeacp_adcs_misc_currents_set_cubestar_mcu_temperatu
     cubeacp_adcs_misc_currents_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->cubestar_mcu_temperature = ICDGEN_I16(icdgen_nearest32(value, 10));

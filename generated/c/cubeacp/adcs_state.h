@@ -239,7 +239,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_adcs_state_init(cubeacp_adcs_state_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 54 bytes. */
@@ -459,7 +459,7 @@ static inline icd_status_t cubeacp_adcs_state_encode(
         cubewheel3_runtime_error,
         cubestar_runtime_error);
     buffer[8] = ICDGEN_U8(message->magnetometer_error | (message->rate_sensor_failure << 1));
-    memset(&buffer[9], 0, 3u);
+    (void)memset(&buffer[9], 0, 3u);
     ICDGEN_WRITE_ROW_LE(cubeacp_adcs_state_t, message, &buffer[12], 21u, estimated_roll_angle, ecef_position_z);
     return ICD_OK;
 }
@@ -475,7 +475,7 @@ static inline icd_status_t cubeacp_adcs_state_set_estimated_roll_angle_mdeg(
     cubeacp_adcs_state_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_roll_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -493,7 +493,7 @@ static inline icd_status_t cubeacp_adcs_state_set_estimated_pitch_angle_mdeg(
     cubeacp_adcs_state_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_pitch_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -509,7 +509,7 @@ static inline int32_t cubeacp_adcs_state_estimated_yaw_angle_mdeg(const cubeacp_
 /** Sets Estimated Yaw Angle in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_estimated_yaw_angle_mdeg(cubeacp_adcs_state_t *message, int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_yaw_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -527,7 +527,7 @@ static inline icd_status_t cubeacp_adcs_state_set_estimated_x_angular_rate_mdeg_
     cubeacp_adcs_state_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_x_angular_rate = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -545,7 +545,7 @@ static inline icd_status_t cubeacp_adcs_state_set_estimated_y_angular_rate_mdeg_
     cubeacp_adcs_state_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_y_angular_rate = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -563,7 +563,7 @@ static inline icd_status_t cubeacp_adcs_state_set_estimated_z_angular_rate_mdeg_
     cubeacp_adcs_state_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_z_angular_rate = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -579,7 +579,7 @@ static inline int32_t cubeacp_adcs_state_x_position_m(const cubeacp_adcs_state_t
 /** Sets X position in thousandths of km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_x_position_m(cubeacp_adcs_state_t *message, int32_t value)
 {
-    if (value < -8192125 || value > 8191874) {
+    if ((value < -8192125) || (value > 8191874)) {
         return ICD_ERROR_RANGE;
     }
     message->x_position = ICDGEN_I16(icdgen_nearest32(value, 250));
@@ -595,7 +595,7 @@ static inline int32_t cubeacp_adcs_state_y_position_m(const cubeacp_adcs_state_t
 /** Sets Y position in thousandths of km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_y_position_m(cubeacp_adcs_state_t *message, int32_t value)
 {
-    if (value < -8192125 || value > 8191874) {
+    if ((value < -8192125) || (value > 8191874)) {
         return ICD_ERROR_RANGE;
     }
     message->y_position = ICDGEN_I16(icdgen_nearest32(value, 250));
@@ -611,7 +611,7 @@ static inline int32_t cubeacp_adcs_state_z_position_m(const cubeacp_adcs_state_t
 /** Sets Z position in thousandths of km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_z_position_m(cubeacp_adcs_state_t *message, int32_t value)
 {
-    if (value < -8192125 || value > 8191874) {
+    if ((value < -8192125) || (value > 8191874)) {
         return ICD_ERROR_RANGE;
     }
     message->z_position = ICDGEN_I16(icdgen_nearest32(value, 250));
@@ -627,7 +627,7 @@ static inline int32_t cubeacp_adcs_state_x_velocity_mm_per_s(const cubeacp_adcs_
 /** Sets X Velocity in thousandths of m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_x_velocity_mm_per_s(cubeacp_adcs_state_t *message, int32_t value)
 {
-    if (value < -8192125 || value > 8191874) {
+    if ((value < -8192125) || (value > 8191874)) {
         return ICD_ERROR_RANGE;
     }
     message->x_velocity = ICDGEN_I16(icdgen_nearest32(value, 250));
@@ -643,7 +643,7 @@ static inline int32_t cubeacp_adcs_state_y_velocity_mm_per_s(const cubeacp_adcs_
 /** Sets Y Velocity in thousandths of m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_y_velocity_mm_per_s(cubeacp_adcs_state_t *message, int32_t value)
 {
-    if (value < -8192125 || value > 8191874) {
+    if ((value < -8192125) || (value > 8191874)) {
         return ICD_ERROR_RANGE;
     }
     message->y_velocity = ICDGEN_I16(icdgen_nearest32(value, 250));
@@ -659,7 +659,7 @@ static inline int32_t cubeacp_adcs_state_z_velocity_mm_per_s(const cubeacp_adcs_
 /** Sets Z Velocity in thousandths of m/s to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_z_velocity_mm_per_s(cubeacp_adcs_state_t *message, int32_t value)
 {
-    if (value < -8192125 || value > 8191874) {
+    if ((value < -8192125) || (value > 8191874)) {
         return ICD_ERROR_RANGE;
     }
     message->z_velocity = ICDGEN_I16(icdgen_nearest32(value, 250));
@@ -675,7 +675,7 @@ static inline int32_t cubeacp_adcs_state_latitude_mdeg(const cubeacp_adcs_state_
 /** Sets Latitude in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_latitude_mdeg(cubeacp_adcs_state_t *message, int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->latitude = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -691,7 +691,7 @@ static inline int32_t cubeacp_adcs_state_longitude_mdeg(const cubeacp_adcs_state
 /** Sets Longitude in thousandths of deg to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_longitude_mdeg(cubeacp_adcs_state_t *message, int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->longitude = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -707,7 +707,7 @@ static inline int32_t cubeacp_adcs_state_altitude_m(const cubeacp_adcs_state_t *
 /** Sets Altitude in thousandths of km to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_adcs_state_set_altitude_m(cubeacp_adcs_state_t *message, int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->altitude = ICDGEN_U16(icdgen_nearest32(value, 10));

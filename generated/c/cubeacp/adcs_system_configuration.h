@@ -302,7 +302,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_adcs_system_configuration_init(cubeacp_adcs_system_configuration_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 173 bytes. */

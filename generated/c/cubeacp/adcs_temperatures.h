@@ -41,7 +41,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_adcs_temperatures_init(cubeacp_adcs_temperatures_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -85,7 +85,7 @@ static inline icd_status_t cubeacp_adcs_temperatures_set_magnetometer_temperatur
     cubeacp_adcs_temperatures_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_temperature = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -106,7 +106,7 @@ static inline icd_status_t cubeacp_adcs_temperatures_set_redundant_mag_temperatu
     cubeacp_adcs_temperatures_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_temperature = ICDGEN_I16(icdgen_nearest32(value, 100));

@@ -38,7 +38,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_angular_rate_covariance_init(cubeacp_angular_rate_covariance_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -83,7 +83,7 @@ static inline icd_status_t cubeacp_angular_rate_covariance_set_x_angular_rate_co
     cubeacp_angular_rate_covariance_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->x_angular_rate_covariance = ICDGEN_I16(value);
@@ -102,7 +102,7 @@ static inline icd_status_t cubeacp_angular_rate_covariance_set_y_angular_rate_co
     cubeacp_angular_rate_covariance_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->y_angular_rate_covariance = ICDGEN_I16(value);
@@ -121,7 +121,7 @@ static inline icd_status_t cubeacp_angular_rate_covariance_set_z_angular_rate_co
     cubeacp_angular_rate_covariance_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->z_angular_rate_covariance = ICDGEN_I16(value);

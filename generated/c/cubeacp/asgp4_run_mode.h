@@ -29,7 +29,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_asgp4_run_mode_init(cubeacp_asgp4_run_mode_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 1 byte. */

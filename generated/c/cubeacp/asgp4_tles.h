@@ -76,7 +76,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_asgp4_tles_init(cubeacp_asgp4_tles_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 33 bytes. */

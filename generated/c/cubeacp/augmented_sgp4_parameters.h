@@ -117,7 +117,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_augmented_sgp4_parameters_init(cubeacp_augmented_sgp4_parameters_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 30 bytes. */
@@ -190,7 +190,7 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_incl_coefficien
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
 {
-    if (value < 0 || value > 65535) {
+    if ((value < 0) || (value > 65535)) {
         return ICD_ERROR_RANGE;
     }
     message->incl_coefficient = ICDGEN_U16(value);
@@ -209,7 +209,7 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_raan_coefficien
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
 {
-    if (value < 0 || value > 65535) {
+    if ((value < 0) || (value > 65535)) {
         return ICD_ERROR_RANGE;
     }
     message->raan_coefficient = ICDGEN_U16(value);
@@ -228,7 +228,7 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_ecc_coefficient
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
 {
-    if (value < 0 || value > 65535) {
+    if ((value < 0) || (value > 65535)) {
         return ICD_ERROR_RANGE;
     }
     message->ecc_coefficient = ICDGEN_U16(value);
@@ -247,7 +247,7 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_aop_coefficient
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
 {
-    if (value < 0 || value > 65535) {
+    if ((value < 0) || (value > 65535)) {
         return ICD_ERROR_RANGE;
     }
     message->aop_coefficient = ICDGEN_U16(value);
@@ -266,7 +266,7 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_time_coefficien
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
 {
-    if (value < 0 || value > 65535) {
+    if ((value < 0) || (value > 65535)) {
         return ICD_ERROR_RANGE;
     }
     message->time_coefficient = ICDGEN_U16(value);
@@ -285,7 +285,7 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_pos_coefficient
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
 {
-    if (value < 0 || value > 65535) {
+    if ((value < 0) || (value > 65535)) {
         return ICD_ERROR_RANGE;
     }
     message->pos_coefficient = ICDGEN_U16(value);
@@ -304,7 +304,7 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_maximum_positio
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 25549) {
+    if ((value < -50) || (value > 25549)) {
         return ICD_ERROR_RANGE;
     }
     message->maximum_position_error = ICDGEN_U8(icdgen_nearest32(value, 100));
@@ -323,7 +323,7 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_position_sd_mil
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 25549) {
+    if ((value < -50) || (value > 25549)) {
         return ICD_ERROR_RANGE;
     }
     message->position_sd = ICDGEN_U8(icdgen_nearest32(value, 100));
@@ -342,7 +342,7 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_velocity_sd_mil
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->velocity_sd = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -361,7 +361,7 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_time_gain_milli
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->time_gain = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -380,7 +380,7 @@ static inline icd_status_t cubeacp_augmented_sgp4_parameters_set_max_lag_milli(
     cubeacp_augmented_sgp4_parameters_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->max_lag = ICDGEN_U8(icdgen_nearest32(value, 10));

@@ -31,7 +31,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_coarse_sun_vector_init(cubeacp_coarse_sun_vector_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -75,7 +75,7 @@ static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_x_micro(
     cubeacp_coarse_sun_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->coarse_sun_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -93,7 +93,7 @@ static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_y_micro(
     cubeacp_coarse_sun_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->coarse_sun_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -111,7 +111,7 @@ static inline icd_status_t cubeacp_coarse_sun_vector_set_coarse_sun_z_micro(
     cubeacp_coarse_sun_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->coarse_sun_z = ICDGEN_I16(icdgen_nearest32(value, 100));

@@ -31,7 +31,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_commanded_attitude_angles_init(cubeacp_commanded_attitude_angles_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -76,7 +76,7 @@ static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_roll_
     cubeacp_commanded_attitude_angles_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->commanded_roll_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -95,7 +95,7 @@ static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_pitch
     cubeacp_commanded_attitude_angles_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->commanded_pitch_angle = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -114,7 +114,7 @@ static inline icd_status_t cubeacp_commanded_attitude_angles_set_commanded_yaw_a
     cubeacp_commanded_attitude_angles_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->commanded_yaw_angle = ICDGEN_I16(icdgen_nearest32(value, 10));

@@ -71,7 +71,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_css_configuration_init(cubeacp_css_configuration_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 21 bytes. */
@@ -111,7 +111,7 @@ static inline icd_status_t cubeacp_css_configuration_set_css1_relative_scale_mil
     cubeacp_css_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css1_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -129,7 +129,7 @@ static inline icd_status_t cubeacp_css_configuration_set_css2_relative_scale_mil
     cubeacp_css_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css2_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -147,7 +147,7 @@ static inline icd_status_t cubeacp_css_configuration_set_css3_relative_scale_mil
     cubeacp_css_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css3_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -165,7 +165,7 @@ static inline icd_status_t cubeacp_css_configuration_set_css4_relative_scale_mil
     cubeacp_css_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css4_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -183,7 +183,7 @@ static inline icd_status_t cubeacp_css_configuration_set_css5_relative_scale_mil
     cubeacp_css_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css5_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -201,7 +201,7 @@ static inline icd_status_t cubeacp_css_configuration_set_css6_relative_scale_mil
     cubeacp_css_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css6_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -219,7 +219,7 @@ static inline icd_status_t cubeacp_css_configuration_set_css7_relative_scale_mil
     cubeacp_css_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css7_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -237,7 +237,7 @@ static inline icd_status_t cubeacp_css_configuration_set_css8_relative_scale_mil
     cubeacp_css_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css8_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -255,7 +255,7 @@ static inline icd_status_t cubeacp_css_configuration_set_css9_relative_scale_mil
     cubeacp_css_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css9_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -273,7 +273,7 @@ static inline icd_status_t cubeacp_css_configuration_set_css10_relative_scale_mi
     cubeacp_css_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->css10_relative_scale = ICDGEN_U8(icdgen_nearest32(value, 10));

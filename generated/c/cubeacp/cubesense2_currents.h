@@ -29,7 +29,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_cubesense2_currents_init(cubeacp_cubesense2_currents_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 4 bytes. */
@@ -72,7 +72,7 @@ static inline icd_status_t cubeacp_cubesense2_currents_set_cubesense2_3v3_curren
     cubeacp_cubesense2_currents_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 6553549) {
+    if ((value < -50) || (value > 6553549)) {
         return ICD_ERROR_RANGE;
     }
     message->cubesense2_3v3_current = ICDGEN_U16(icdgen_nearest32(value, 100));
@@ -91,7 +91,7 @@ static inline icd_status_t cubeacp_cubesense2_currents_set_cubesense2_cam_sram_c
     cubeacp_cubesense2_currents_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 6553549) {
+    if ((value < -50) || (value > 6553549)) {
         return ICD_ERROR_RANGE;
     }
     message->cubesense2_cam_sram_current = ICDGEN_U16(icdgen_nearest32(value, 100));

@@ -327,7 +327,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_cubesense_configuration_init(cubeacp_cubesense_configuration_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 112 bytes. */
@@ -423,7 +423,7 @@ static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_alp
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->cam1_mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -445,7 +445,7 @@ static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_bet
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->cam1_mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -467,7 +467,7 @@ static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_mounting_gam
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->cam1_mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -486,7 +486,7 @@ static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_boresight_x_
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->cam1_boresight_x = ICDGEN_U16(icdgen_nearest32(value, 10));
@@ -505,7 +505,7 @@ static inline icd_status_t cubeacp_cubesense_configuration_set_cam1_boresight_y_
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->cam1_boresight_y = ICDGEN_U16(icdgen_nearest32(value, 10));
@@ -527,7 +527,7 @@ static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_alp
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->cam2_mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -549,7 +549,7 @@ static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_bet
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->cam2_mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -571,7 +571,7 @@ static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_mounting_gam
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->cam2_mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -590,7 +590,7 @@ static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_boresight_x_
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->cam2_boresight_x = ICDGEN_U16(icdgen_nearest32(value, 10));
@@ -609,7 +609,7 @@ static inline icd_status_t cubeacp_cubesense_configuration_set_cam2_boresight_y_
     cubeacp_cubesense_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->cam2_boresight_y = ICDGEN_U16(icdgen_nearest32(value, 10));

@@ -42,7 +42,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_cubestar_estimated_quaternion_init(cubeacp_cubestar_estimated_quaternion_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -87,7 +87,7 @@ static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q0_micro(
     cubeacp_cubestar_estimated_quaternion_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->q0 = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -106,7 +106,7 @@ static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q1_micro(
     cubeacp_cubestar_estimated_quaternion_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->q1 = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -125,7 +125,7 @@ static inline icd_status_t cubeacp_cubestar_estimated_quaternion_set_q2_micro(
     cubeacp_cubestar_estimated_quaternion_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->q2 = ICDGEN_I16(icdgen_nearest32(value, 100));

@@ -41,7 +41,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_cubestar_estimated_rates_init(cubeacp_cubestar_estimated_rates_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -86,7 +86,7 @@ static inline icd_status_t cubeacp_cubestar_estimated_rates_set_x_axis_rate_micr
     cubeacp_cubestar_estimated_rates_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->x_axis_rate = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -105,7 +105,7 @@ static inline icd_status_t cubeacp_cubestar_estimated_rates_set_y_axis_rate_micr
     cubeacp_cubestar_estimated_rates_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->y_axis_rate = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -124,7 +124,7 @@ static inline icd_status_t cubeacp_cubestar_estimated_rates_set_z_axis_rate_micr
     cubeacp_cubestar_estimated_rates_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->z_axis_rate = ICDGEN_I16(icdgen_nearest32(value, 100));

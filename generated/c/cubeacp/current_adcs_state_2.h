@@ -73,7 +73,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_current_adcs_state_2_init(cubeacp_current_adcs_state_2_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -163,7 +163,7 @@ static inline icd_status_t cubeacp_current_adcs_state_2_encode(
         cubewheel3_runtime_error,
         cubestar_runtime_error);
     buffer[2] = ICDGEN_U8(message->magnetometer_error | (message->rate_sensor_failure << 1));
-    memset(&buffer[3], 0, 3u);
+    (void)memset(&buffer[3], 0, 3u);
     return ICD_OK;
 }
 

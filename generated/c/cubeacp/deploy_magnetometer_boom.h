@@ -29,7 +29,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_deploy_magnetometer_boom_init(cubeacp_deploy_magnetometer_boom_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 1 byte. */

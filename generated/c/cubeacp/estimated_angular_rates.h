@@ -30,7 +30,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_estimated_angular_rates_init(cubeacp_estimated_angular_rates_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -75,7 +75,7 @@ static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_x_angul
     cubeacp_estimated_angular_rates_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_x_angular_rate = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -94,7 +94,7 @@ static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_y_angul
     cubeacp_estimated_angular_rates_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_y_angular_rate = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -113,7 +113,7 @@ static inline icd_status_t cubeacp_estimated_angular_rates_set_estimated_z_angul
     cubeacp_estimated_angular_rates_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_z_angular_rate = ICDGEN_I16(icdgen_nearest32(value, 10));

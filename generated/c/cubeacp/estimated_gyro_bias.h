@@ -30,7 +30,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_estimated_gyro_bias_init(cubeacp_estimated_gyro_bias_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -75,7 +75,7 @@ static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_x_gyro_bias
     cubeacp_estimated_gyro_bias_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_x_gyro_bias = ICDGEN_I16(value);
@@ -94,7 +94,7 @@ static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_y_gyro_bias
     cubeacp_estimated_gyro_bias_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_y_gyro_bias = ICDGEN_I16(value);
@@ -113,7 +113,7 @@ static inline icd_status_t cubeacp_estimated_gyro_bias_set_estimated_z_gyro_bias
     cubeacp_estimated_gyro_bias_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_z_gyro_bias = ICDGEN_I16(value);

@@ -99,7 +99,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_estimation_data_init(cubeacp_estimation_data_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 42 bytes. */
@@ -154,7 +154,7 @@ static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_fi
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->igrf_modelled_magnetic_field_x = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -175,7 +175,7 @@ static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_fi
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->igrf_modelled_magnetic_field_y = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -196,7 +196,7 @@ static inline icd_status_t cubeacp_estimation_data_set_igrf_modelled_magnetic_fi
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->igrf_modelled_magnetic_field_z = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -214,7 +214,7 @@ static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_x_mic
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->modelled_sun_vector_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -232,7 +232,7 @@ static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_y_mic
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->modelled_sun_vector_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -250,7 +250,7 @@ static inline icd_status_t cubeacp_estimation_data_set_modelled_sun_vector_z_mic
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->modelled_sun_vector_z = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -268,7 +268,7 @@ static inline icd_status_t cubeacp_estimation_data_set_estimated_x_gyro_bias_mde
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_x_gyro_bias = ICDGEN_I16(value);
@@ -286,7 +286,7 @@ static inline icd_status_t cubeacp_estimation_data_set_estimated_y_gyro_bias_mde
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_y_gyro_bias = ICDGEN_I16(value);
@@ -304,7 +304,7 @@ static inline icd_status_t cubeacp_estimation_data_set_estimated_z_gyro_bias_mde
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_z_gyro_bias = ICDGEN_I16(value);
@@ -322,7 +322,7 @@ static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_x_micro
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->innovation_vector_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -340,7 +340,7 @@ static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_y_micro
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->innovation_vector_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -358,7 +358,7 @@ static inline icd_status_t cubeacp_estimation_data_set_innovation_vector_z_micro
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->innovation_vector_z = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -376,7 +376,7 @@ static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q1_micro
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->quaternion_error_q1 = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -394,7 +394,7 @@ static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q2_micro
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->quaternion_error_q2 = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -412,7 +412,7 @@ static inline icd_status_t cubeacp_estimation_data_set_quaternion_error_q3_micro
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->quaternion_error_q3 = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -431,7 +431,7 @@ static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q1_
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->quaternion_covariance_q1_rms = ICDGEN_I16(value);
@@ -450,7 +450,7 @@ static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q2_
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->quaternion_covariance_q2_rms = ICDGEN_I16(value);
@@ -469,7 +469,7 @@ static inline icd_status_t cubeacp_estimation_data_set_quaternion_covariance_q3_
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->quaternion_covariance_q3_rms = ICDGEN_I16(value);
@@ -487,7 +487,7 @@ static inline icd_status_t cubeacp_estimation_data_set_x_angular_rate_covariance
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->x_angular_rate_covariance = ICDGEN_I16(value);
@@ -505,7 +505,7 @@ static inline icd_status_t cubeacp_estimation_data_set_y_angular_rate_covariance
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->y_angular_rate_covariance = ICDGEN_I16(value);
@@ -523,7 +523,7 @@ static inline icd_status_t cubeacp_estimation_data_set_z_angular_rate_covariance
     cubeacp_estimation_data_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->z_angular_rate_covariance = ICDGEN_I16(value);

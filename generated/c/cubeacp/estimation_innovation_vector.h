@@ -38,7 +38,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_estimation_innovation_vector_init(cubeacp_estimation_innovation_vector_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -83,7 +83,7 @@ static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_v
     cubeacp_estimation_innovation_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->innovation_vector_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -102,7 +102,7 @@ static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_v
     cubeacp_estimation_innovation_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->innovation_vector_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -121,7 +121,7 @@ static inline icd_status_t cubeacp_estimation_innovation_vector_set_innovation_v
     cubeacp_estimation_innovation_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->innovation_vector_z = ICDGEN_I16(icdgen_nearest32(value, 100));

@@ -103,7 +103,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_estimation_parameters_init(cubeacp_estimation_parameters_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 31 bytes. */

@@ -42,7 +42,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_fine_angular_rates_init(cubeacp_fine_angular_rates_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -87,7 +87,7 @@ static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_x_angular_ra
     cubeacp_fine_angular_rates_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_x_angular_rate = ICDGEN_I16(value);
@@ -106,7 +106,7 @@ static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_y_angular_ra
     cubeacp_fine_angular_rates_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_y_angular_rate = ICDGEN_I16(value);
@@ -125,7 +125,7 @@ static inline icd_status_t cubeacp_fine_angular_rates_set_estimated_z_angular_ra
     cubeacp_fine_angular_rates_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->estimated_z_angular_rate = ICDGEN_I16(value);

@@ -31,7 +31,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_fine_sun_vector_init(cubeacp_fine_sun_vector_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -73,7 +73,7 @@ static inline int32_t cubeacp_fine_sun_vector_sun_x_micro(const cubeacp_fine_sun
 /** Sets Sun X in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_x_micro(cubeacp_fine_sun_vector_t *message, int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->sun_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -89,7 +89,7 @@ static inline int32_t cubeacp_fine_sun_vector_sun_y_micro(const cubeacp_fine_sun
 /** Sets Sun Y in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_y_micro(cubeacp_fine_sun_vector_t *message, int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->sun_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -105,7 +105,7 @@ static inline int32_t cubeacp_fine_sun_vector_sun_z_micro(const cubeacp_fine_sun
 /** Sets Sun Z in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_fine_sun_vector_set_sun_z_micro(cubeacp_fine_sun_vector_t *message, int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->sun_z = ICDGEN_I16(icdgen_nearest32(value, 100));

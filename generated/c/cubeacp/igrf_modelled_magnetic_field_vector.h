@@ -35,7 +35,7 @@ typedef struct {
 static inline void cubeacp_igrf_modelled_magnetic_field_vector_init(
     cubeacp_igrf_modelled_magnetic_field_vector_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -82,7 +82,7 @@ static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->field_x = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -103,7 +103,7 @@ static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->field_y = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -124,7 +124,7 @@ static inline icd_status_t cubeacp_igrf_modelled_magnetic_field_vector_set_field
     cubeacp_igrf_modelled_magnetic_field_vector_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->field_z = ICDGEN_I16(icdgen_nearest32(value, 10));

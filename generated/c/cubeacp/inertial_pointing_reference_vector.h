@@ -42,7 +42,7 @@ typedef struct {
 static inline void cubeacp_inertial_pointing_reference_vector_init(
     cubeacp_inertial_pointing_reference_vector_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -87,7 +87,7 @@ static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_refere
     cubeacp_inertial_pointing_reference_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->reference_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -106,7 +106,7 @@ static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_refere
     cubeacp_inertial_pointing_reference_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->reference_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -125,7 +125,7 @@ static inline icd_status_t cubeacp_inertial_pointing_reference_vector_set_refere
     cubeacp_inertial_pointing_reference_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->reference_z = ICDGEN_I16(icdgen_nearest32(value, 100));

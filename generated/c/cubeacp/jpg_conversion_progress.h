@@ -32,7 +32,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_jpg_conversion_progress_init(cubeacp_jpg_conversion_progress_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 3 bytes. */

@@ -31,7 +31,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_magnetic_field_vector_init(cubeacp_magnetic_field_vector_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -75,7 +75,7 @@ static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_x_nt
     cubeacp_magnetic_field_vector_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetic_field_x = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -93,7 +93,7 @@ static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_y_nt
     cubeacp_magnetic_field_vector_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetic_field_y = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -111,7 +111,7 @@ static inline icd_status_t cubeacp_magnetic_field_vector_set_magnetic_field_z_nt
     cubeacp_magnetic_field_vector_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetic_field_z = ICDGEN_I16(icdgen_nearest32(value, 10));

@@ -103,7 +103,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_magnetometer_configuration_init(cubeacp_magnetometer_configuration_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 30 bytes. */
@@ -153,7 +153,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_alpha
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -175,7 +175,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_beta_
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -197,7 +197,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_mounting_gamma
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -216,7 +216,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_1_offs
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->channel_1_offset = ICDGEN_I16(value);
@@ -235,7 +235,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_2_offs
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->channel_2_offset = ICDGEN_I16(value);
@@ -254,7 +254,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_channel_3_offs
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->channel_3_offset = ICDGEN_I16(value);
@@ -275,7 +275,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s1
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s11 = ICDGEN_I16(value);
@@ -296,7 +296,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s2
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s22 = ICDGEN_I16(value);
@@ -317,7 +317,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s3
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s33 = ICDGEN_I16(value);
@@ -338,7 +338,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s1
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s12 = ICDGEN_I16(value);
@@ -359,7 +359,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s1
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s13 = ICDGEN_I16(value);
@@ -380,7 +380,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s2
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s21 = ICDGEN_I16(value);
@@ -401,7 +401,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s2
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s23 = ICDGEN_I16(value);
@@ -422,7 +422,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s3
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s31 = ICDGEN_I16(value);
@@ -443,7 +443,7 @@ static inline icd_status_t cubeacp_magnetometer_configuration_set_sensitivity_s3
     cubeacp_magnetometer_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s32 = ICDGEN_I16(value);

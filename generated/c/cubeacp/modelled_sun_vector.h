@@ -30,7 +30,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_modelled_sun_vector_init(cubeacp_modelled_sun_vector_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -75,7 +75,7 @@ static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_x
     cubeacp_modelled_sun_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->modelled_sun_vector_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -94,7 +94,7 @@ static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_y
     cubeacp_modelled_sun_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->modelled_sun_vector_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -113,7 +113,7 @@ static inline icd_status_t cubeacp_modelled_sun_vector_set_modelled_sun_vector_z
     cubeacp_modelled_sun_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->modelled_sun_vector_z = ICDGEN_I16(icdgen_nearest32(value, 100));

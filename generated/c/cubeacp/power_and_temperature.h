@@ -104,7 +104,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_power_and_temperature_init(cubeacp_power_and_temperature_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 38 bytes. */
@@ -157,7 +157,7 @@ static inline icd_status_t cubeacp_power_and_temperature_set_cubesense1_3v3_curr
     cubeacp_power_and_temperature_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 6553549) {
+    if ((value < -50) || (value > 6553549)) {
         return ICD_ERROR_RANGE;
     }
     message->cubesense1_3v3_current = ICDGEN_U16(icdgen_nearest32(value, 100));
@@ -176,7 +176,7 @@ static inline icd_status_t cubeacp_power_and_temperature_set_cubesense1_cam_sram
     cubeacp_power_and_temperature_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 6553549) {
+    if ((value < -50) || (value > 6553549)) {
         return ICD_ERROR_RANGE;
     }
     message->cubesense1_cam_sram_current = ICDGEN_U16(icdgen_nearest32(value, 100));
@@ -195,7 +195,7 @@ static inline icd_status_t cubeacp_power_and_temperature_set_cubesense2_3v3_curr
     cubeacp_power_and_temperature_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 6553549) {
+    if ((value < -50) || (value > 6553549)) {
         return ICD_ERROR_RANGE;
     }
     message->cubesense2_3v3_current = ICDGEN_U16(icdgen_nearest32(value, 100));
@@ -214,7 +214,7 @@ static inline icd_status_t cubeacp_power_and_temperature_set_cubesense2_cam_sram
     cubeacp_power_and_temperature_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 6553549) {
+    if ((value < -50) || (value > 6553549)) {
         return ICD_ERROR_RANGE;
     }
     message->cubesense2_cam_sram_current = ICDGEN_U16(icdgen_nearest32(value, 100));
@@ -232,7 +232,7 @@ static inline icd_status_t cubeacp_power_and_temperature_set_wheel1_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->wheel1_current = ICDGEN_U16(icdgen_nearest32(value, 10));
@@ -250,7 +250,7 @@ static inline icd_status_t cubeacp_power_and_temperature_set_wheel2_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->wheel2_current = ICDGEN_U16(icdgen_nearest32(value, 10));
@@ -268,7 +268,7 @@ static inline icd_status_t cubeacp_power_and_temperature_set_wheel3_current_ua(
     cubeacp_power_and_temperature_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->wheel3_current = ICDGEN_U16(icdgen_nearest32(value, 10));
@@ -286,7 +286,7 @@ static inline icd_status_t cubeacp_power_and_temperature_set_cubestar_current_ua
     cubeacp_power_and_temperature_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->cubestar_current = ICDGEN_U16(icdgen_nearest32(value, 10));
@@ -305,7 +305,7 @@ static inline icd_status_t cubeacp_power_and_temperature_set_magnetorquer_curren
     cubeacp_power_and_temperature_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 6553549) {
+    if ((value < -50) || (value > 6553549)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetorquer_current = ICDGEN_U16(icdgen_nearest32(value, 100));
@@ -324,7 +324,7 @@ static inline icd_status_t cubeacp_power_and_temperature_set_cubestar_mcu_temper
     cubeacp_power_and_temperature_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->cubestar_mcu_temperature = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -343,7 +343,7 @@ static inline icd_status_t cubeacp_power_and_temperature_set_magnetometer_temper
     cubeacp_power_and_temperature_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->magnetometer_temperature = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -365,7 +365,7 @@ static inline icd_status_t cubeacp_power_and_temperature_set_redundant_mag_tempe
     cubeacp_power_and_temperature_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->redundant_mag_temperature = ICDGEN_I16(icdgen_nearest32(value, 100));

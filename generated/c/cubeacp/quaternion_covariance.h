@@ -38,7 +38,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_quaternion_covariance_init(cubeacp_quaternion_covariance_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -82,7 +82,7 @@ static inline icd_status_t cubeacp_quaternion_covariance_set_q1_rms_milli(
     cubeacp_quaternion_covariance_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->q1_rms = ICDGEN_I16(value);
@@ -100,7 +100,7 @@ static inline icd_status_t cubeacp_quaternion_covariance_set_q2_rms_milli(
     cubeacp_quaternion_covariance_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->q2_rms = ICDGEN_I16(value);
@@ -118,7 +118,7 @@ static inline icd_status_t cubeacp_quaternion_covariance_set_q3_rms_milli(
     cubeacp_quaternion_covariance_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->q3_rms = ICDGEN_I16(value);

@@ -30,7 +30,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_quaternion_error_vector_init(cubeacp_quaternion_error_vector_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -75,7 +75,7 @@ static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_
     cubeacp_quaternion_error_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->quaternion_error_q1 = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -94,7 +94,7 @@ static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_
     cubeacp_quaternion_error_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->quaternion_error_q2 = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -113,7 +113,7 @@ static inline icd_status_t cubeacp_quaternion_error_vector_set_quaternion_error_
     cubeacp_quaternion_error_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->quaternion_error_q3 = ICDGEN_I16(icdgen_nearest32(value, 100));

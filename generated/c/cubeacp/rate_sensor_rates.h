@@ -31,7 +31,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_rate_sensor_rates_init(cubeacp_rate_sensor_rates_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -75,7 +75,7 @@ static inline icd_status_t cubeacp_rate_sensor_rates_set_x_angular_rate_mdeg_per
     cubeacp_rate_sensor_rates_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->x_angular_rate = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -93,7 +93,7 @@ static inline icd_status_t cubeacp_rate_sensor_rates_set_y_angular_rate_mdeg_per
     cubeacp_rate_sensor_rates_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->y_angular_rate = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -111,7 +111,7 @@ static inline icd_status_t cubeacp_rate_sensor_rates_set_z_angular_rate_mdeg_per
     cubeacp_rate_sensor_rates_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->z_angular_rate = ICDGEN_I16(icdgen_nearest32(value, 10));

@@ -53,7 +53,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_raw_css_1_to_6_init(cubeacp_raw_css_1_to_6_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */

@@ -44,7 +44,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_raw_css_7_to_10_init(cubeacp_raw_css_7_to_10_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -76,7 +76,7 @@ static inline icd_status_t cubeacp_raw_css_7_to_10_encode(
     buffer[1] = message->css8;
     buffer[2] = message->css9;
     buffer[3] = message->css10;
-    memset(&buffer[4], 0, 2u);
+    (void)memset(&buffer[4], 0, 2u);
     return ICD_OK;
 }
 

@@ -105,7 +105,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_raw_gps_measurements_init(cubeacp_raw_gps_measurements_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 36 bytes. */
@@ -184,7 +184,7 @@ static inline icd_status_t cubeacp_raw_gps_measurements_set_x_pos_standard_devia
     cubeacp_raw_gps_measurements_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 25549) {
+    if ((value < -50) || (value > 25549)) {
         return ICD_ERROR_RANGE;
     }
     message->x_pos_standard_deviation = ICDGEN_U8(icdgen_nearest32(value, 100));
@@ -203,7 +203,7 @@ static inline icd_status_t cubeacp_raw_gps_measurements_set_y_pos_standard_devia
     cubeacp_raw_gps_measurements_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 25549) {
+    if ((value < -50) || (value > 25549)) {
         return ICD_ERROR_RANGE;
     }
     message->y_pos_standard_deviation = ICDGEN_U8(icdgen_nearest32(value, 100));
@@ -222,7 +222,7 @@ static inline icd_status_t cubeacp_raw_gps_measurements_set_z_pos_standard_devia
     cubeacp_raw_gps_measurements_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 25549) {
+    if ((value < -50) || (value > 25549)) {
         return ICD_ERROR_RANGE;
     }
     message->z_pos_standard_deviation = ICDGEN_U8(icdgen_nearest32(value, 100));

@@ -46,7 +46,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_raw_gps_status_init(cubeacp_raw_gps_status_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */

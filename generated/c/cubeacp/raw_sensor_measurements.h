@@ -105,7 +105,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_raw_sensor_measurements_init(cubeacp_raw_sensor_measurements_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 34 bytes. */

@@ -168,7 +168,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_raw_star_tracker_init(cubeacp_raw_star_tracker_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 54 bytes. */
@@ -251,7 +251,7 @@ static inline icd_status_t cubeacp_raw_star_tracker_set_x_axis_rate_micro(
     cubeacp_raw_star_tracker_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->x_axis_rate = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -269,7 +269,7 @@ static inline icd_status_t cubeacp_raw_star_tracker_set_y_axis_rate_micro(
     cubeacp_raw_star_tracker_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->y_axis_rate = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -287,7 +287,7 @@ static inline icd_status_t cubeacp_raw_star_tracker_set_z_axis_rate_micro(
     cubeacp_raw_star_tracker_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->z_axis_rate = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -303,7 +303,7 @@ static inline int32_t cubeacp_raw_star_tracker_q0_micro(const cubeacp_raw_star_t
 /** Sets Q0 in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_q0_micro(cubeacp_raw_star_tracker_t *message, int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->q0 = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -319,7 +319,7 @@ static inline int32_t cubeacp_raw_star_tracker_q1_micro(const cubeacp_raw_star_t
 /** Sets Q1 in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_q1_micro(cubeacp_raw_star_tracker_t *message, int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->q1 = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -335,7 +335,7 @@ static inline int32_t cubeacp_raw_star_tracker_q2_micro(const cubeacp_raw_star_t
 /** Sets Q2 in millionths to the nearest raw value; ICD_ERROR_RANGE if there is none. */
 static inline icd_status_t cubeacp_raw_star_tracker_set_q2_micro(cubeacp_raw_star_tracker_t *message, int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->q2 = ICDGEN_I16(icdgen_nearest32(value, 100));

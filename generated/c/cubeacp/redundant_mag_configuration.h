@@ -107,7 +107,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_redundant_mag_configuration_init(cubeacp_redundant_mag_configuration_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 30 bytes. */
@@ -163,7 +163,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_alph
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -185,7 +185,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_beta
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -207,7 +207,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_mounting_gamm
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -229,7 +229,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_1_off
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->channel_1_offset = ICDGEN_I16(value);
@@ -251,7 +251,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_2_off
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->channel_2_offset = ICDGEN_I16(value);
@@ -273,7 +273,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_channel_3_off
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->channel_3_offset = ICDGEN_I16(value);
@@ -295,7 +295,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s11 = ICDGEN_I16(value);
@@ -317,7 +317,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s22 = ICDGEN_I16(value);
@@ -339,7 +339,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s33 = ICDGEN_I16(value);
@@ -361,7 +361,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s12 = ICDGEN_I16(value);
@@ -383,7 +383,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s13 = ICDGEN_I16(value);
@@ -405,7 +405,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s21 = ICDGEN_I16(value);
@@ -427,7 +427,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s23 = ICDGEN_I16(value);
@@ -449,7 +449,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s31 = ICDGEN_I16(value);
@@ -471,7 +471,7 @@ static inline icd_status_t cubeacp_redundant_mag_configuration_set_sensitivity_s
     cubeacp_redundant_mag_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->sensitivity_s32 = ICDGEN_I16(value);

@@ -29,7 +29,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_satellite_position_eci_init(cubeacp_satellite_position_eci_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -73,7 +73,7 @@ static inline icd_status_t cubeacp_satellite_position_eci_set_x_position_m(
     cubeacp_satellite_position_eci_t *message,
     int32_t value)
 {
-    if (value < -8192125 || value > 8191874) {
+    if ((value < -8192125) || (value > 8191874)) {
         return ICD_ERROR_RANGE;
     }
     message->x_position = ICDGEN_I16(icdgen_nearest32(value, 250));
@@ -91,7 +91,7 @@ static inline icd_status_t cubeacp_satellite_position_eci_set_y_position_m(
     cubeacp_satellite_position_eci_t *message,
     int32_t value)
 {
-    if (value < -8192125 || value > 8191874) {
+    if ((value < -8192125) || (value > 8191874)) {
         return ICD_ERROR_RANGE;
     }
     message->y_position = ICDGEN_I16(icdgen_nearest32(value, 250));
@@ -109,7 +109,7 @@ static inline icd_status_t cubeacp_satellite_position_eci_set_z_position_m(
     cubeacp_satellite_position_eci_t *message,
     int32_t value)
 {
-    if (value < -8192125 || value > 8191874) {
+    if ((value < -8192125) || (value > 8191874)) {
         return ICD_ERROR_RANGE;
     }
     message->z_position = ICDGEN_I16(icdgen_nearest32(value, 250));

@@ -36,7 +36,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_satellite_position_llh_init(cubeacp_satellite_position_llh_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -80,7 +80,7 @@ static inline icd_status_t cubeacp_satellite_position_llh_set_latitude_mdeg(
     cubeacp_satellite_position_llh_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->latitude = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -98,7 +98,7 @@ static inline icd_status_t cubeacp_satellite_position_llh_set_longitude_mdeg(
     cubeacp_satellite_position_llh_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->longitude = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -116,7 +116,7 @@ static inline icd_status_t cubeacp_satellite_position_llh_set_altitude_m(
     cubeacp_satellite_position_llh_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->altitude = ICDGEN_U16(icdgen_nearest32(value, 10));

@@ -29,7 +29,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_satellite_velocity_eci_init(cubeacp_satellite_velocity_eci_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -74,7 +74,7 @@ static inline icd_status_t cubeacp_satellite_velocity_eci_set_x_velocity_mm_per_
     cubeacp_satellite_velocity_eci_t *message,
     int32_t value)
 {
-    if (value < -8192125 || value > 8191874) {
+    if ((value < -8192125) || (value > 8191874)) {
         return ICD_ERROR_RANGE;
     }
     message->x_velocity = ICDGEN_I16(icdgen_nearest32(value, 250));
@@ -93,7 +93,7 @@ static inline icd_status_t cubeacp_satellite_velocity_eci_set_y_velocity_mm_per_
     cubeacp_satellite_velocity_eci_t *message,
     int32_t value)
 {
-    if (value < -8192125 || value > 8191874) {
+    if ((value < -8192125) || (value > 8191874)) {
         return ICD_ERROR_RANGE;
     }
     message->y_velocity = ICDGEN_I16(icdgen_nearest32(value, 250));
@@ -112,7 +112,7 @@ static inline icd_status_t cubeacp_satellite_velocity_eci_set_z_velocity_mm_per_
     cubeacp_satellite_velocity_eci_t *message,
     int32_t value)
 {
-    if (value < -8192125 || value > 8191874) {
+    if ((value < -8192125) || (value > 8191874)) {
         return ICD_ERROR_RANGE;
     }
     message->z_velocity = ICDGEN_I16(icdgen_nearest32(value, 250));

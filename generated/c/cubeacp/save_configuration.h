@@ -26,7 +26,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_save_configuration_init(cubeacp_save_configuration_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 0 bytes. */

@@ -42,7 +42,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_sd_log1_configuration_init(cubeacp_sd_log1_configuration_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 13 bytes. */
@@ -54,7 +54,7 @@ static inline icd_status_t cubeacp_sd_log1_configuration_decode(
     if (length != CUBEACP_SD_LOG1_CONFIGURATION_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    memcpy(message->log_selection, &buffer[0], 10u);
+    (void)memcpy(message->log_selection, &buffer[0], 10u);
     message->log_period = icdgen_load_u16le(&buffer[10]);
     message->log_destination = buffer[12];
     return ICD_OK;
@@ -69,7 +69,7 @@ static inline icd_status_t cubeacp_sd_log1_configuration_encode(
     if (capacity < CUBEACP_SD_LOG1_CONFIGURATION_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    memcpy(&buffer[0], message->log_selection, 10u);
+    (void)memcpy(&buffer[0], message->log_selection, 10u);
     icdgen_store_u16le(&buffer[10], message->log_period);
     buffer[12] = message->log_destination;
     return ICD_OK;

@@ -41,7 +41,7 @@ typedef struct {
 static inline void cubeacp_secondary_magnetometer_raw_measurements_init(
     cubeacp_secondary_magnetometer_raw_measurements_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */

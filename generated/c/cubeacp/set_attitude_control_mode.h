@@ -34,7 +34,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_set_attitude_control_mode_init(cubeacp_set_attitude_control_mode_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 3 bytes. */

@@ -25,7 +25,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_set_attitude_estimation_mode_init(cubeacp_set_attitude_estimation_mode_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 1 byte. */

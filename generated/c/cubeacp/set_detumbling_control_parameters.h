@@ -49,7 +49,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_set_detumbling_control_parameters_init(cubeacp_set_detumbling_control_parameters_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 14 bytes. */
@@ -96,7 +96,7 @@ static inline icd_status_t cubeacp_set_detumbling_control_parameters_set_spin_ra
     cubeacp_set_detumbling_control_parameters_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->spin_rate = ICDGEN_I16(value);

@@ -45,7 +45,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_set_magnetorquer_output_init(cubeacp_set_magnetorquer_output_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -92,7 +92,7 @@ static inline icd_status_t cubeacp_set_magnetorquer_output_set_x_duty_cycle_mill
     cubeacp_set_magnetorquer_output_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->x_duty_cycle = ICDGEN_I16(value);
@@ -113,7 +113,7 @@ static inline icd_status_t cubeacp_set_magnetorquer_output_set_y_duty_cycle_mill
     cubeacp_set_magnetorquer_output_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->y_duty_cycle = ICDGEN_I16(value);
@@ -134,7 +134,7 @@ static inline icd_status_t cubeacp_set_magnetorquer_output_set_z_duty_cycle_mill
     cubeacp_set_magnetorquer_output_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->z_duty_cycle = ICDGEN_I16(value);

@@ -30,7 +30,7 @@ typedef struct {
 static inline void cubeacp_set_mode_of_magnetometer_operation_init(
     cubeacp_set_mode_of_magnetometer_operation_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 1 byte. */

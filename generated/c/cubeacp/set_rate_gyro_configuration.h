@@ -53,7 +53,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_set_rate_gyro_configuration_init(cubeacp_set_rate_gyro_configuration_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 10 bytes. */
@@ -106,7 +106,7 @@ static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_x_rate_sensor
     cubeacp_set_rate_gyro_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->x_rate_sensor_offset = ICDGEN_I16(value);
@@ -125,7 +125,7 @@ static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_y_rate_sensor
     cubeacp_set_rate_gyro_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->y_rate_sensor_offset = ICDGEN_I16(value);
@@ -144,7 +144,7 @@ static inline icd_status_t cubeacp_set_rate_gyro_configuration_set_z_rate_sensor
     cubeacp_set_rate_gyro_configuration_t *message,
     int32_t value)
 {
-    if (value < -32768 || value > 32767) {
+    if ((value < -32768) || (value > 32767)) {
         return ICD_ERROR_RANGE;
     }
     message->z_rate_sensor_offset = ICDGEN_I16(value);

@@ -54,7 +54,7 @@ typedef struct {
 static inline void cubeacp_set_reaction_wheel_control_parameters_init(
     cubeacp_set_reaction_wheel_control_parameters_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 13 bytes. */

@@ -153,7 +153,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_set_star_tracker_configuration_init(cubeacp_set_star_tracker_configuration_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 53 bytes. */
@@ -248,7 +248,7 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_a
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->mounting_alpha = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -270,7 +270,7 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_b
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->mounting_beta = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -292,7 +292,7 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_set_mounting_g
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
 {
-    if (value < -327685 || value > 327674) {
+    if ((value < -327685) || (value > 327674)) {
         return ICD_ERROR_RANGE;
     }
     message->mounting_gamma = ICDGEN_I16(icdgen_nearest32(value, 10));
@@ -311,7 +311,7 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_set_error_marg
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->error_margin = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -330,7 +330,7 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_set_tracking_m
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->tracking_margin = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -349,7 +349,7 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_set_validation
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 2554) {
+    if ((value < -5) || (value > 2554)) {
         return ICD_ERROR_RANGE;
     }
     message->validation_margin = ICDGEN_U8(icdgen_nearest32(value, 10));
@@ -368,7 +368,7 @@ static inline icd_status_t cubeacp_set_star_tracker_configuration_set_search_wid
     cubeacp_set_star_tracker_configuration_t *message,
     int32_t value)
 {
-    if (value < -100 || value > 51099) {
+    if ((value < -100) || (value > 51099)) {
         return ICD_ERROR_RANGE;
     }
     message->search_width = ICDGEN_U8(icdgen_nearest32(value, 200));

@@ -49,7 +49,7 @@ typedef struct {
 static inline void cubeacp_set_tracking_controller_gain_parameters_init(
     cubeacp_set_tracking_controller_gain_parameters_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 13 bytes. */

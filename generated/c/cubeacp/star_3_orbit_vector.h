@@ -40,7 +40,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_star_3_orbit_vector_init(cubeacp_star_3_orbit_vector_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -84,7 +84,7 @@ static inline icd_status_t cubeacp_star_3_orbit_vector_set_star3_orbit_x_micro(
     cubeacp_star_3_orbit_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star3_orbit_x = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -102,7 +102,7 @@ static inline icd_status_t cubeacp_star_3_orbit_vector_set_star3_orbit_y_micro(
     cubeacp_star_3_orbit_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star3_orbit_y = ICDGEN_I16(icdgen_nearest32(value, 100));
@@ -120,7 +120,7 @@ static inline icd_status_t cubeacp_star_3_orbit_vector_set_star3_orbit_z_micro(
     cubeacp_star_3_orbit_vector_t *message,
     int32_t value)
 {
-    if (value < -3276850 || value > 3276749) {
+    if ((value < -3276850) || (value > 3276749)) {
         return ICD_ERROR_RANGE;
     }
     message->star3_orbit_z = ICDGEN_I16(icdgen_nearest32(value, 100));

@@ -39,7 +39,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_star_3_raw_data_init(cubeacp_star_3_raw_data_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */

@@ -64,7 +64,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_star_performance2_init(cubeacp_star_performance2_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */

@@ -32,7 +32,7 @@ typedef struct {
 static inline void cubeacp_status_of_image_capture_and_save_operation_init(
     cubeacp_status_of_image_capture_and_save_operation_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 2 bytes. */

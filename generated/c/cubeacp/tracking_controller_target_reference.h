@@ -43,7 +43,7 @@ typedef struct {
 static inline void cubeacp_tracking_controller_target_reference_init(
     cubeacp_tracking_controller_target_reference_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 12 bytes. */

@@ -25,7 +25,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_trigger_adcs_loop_init(cubeacp_trigger_adcs_loop_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 0 bytes. */

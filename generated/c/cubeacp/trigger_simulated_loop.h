@@ -326,7 +326,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_trigger_simulated_loop_init(cubeacp_trigger_simulated_loop_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 127 bytes. */
@@ -425,7 +425,7 @@ static inline icd_status_t cubeacp_trigger_simulated_loop_set_x_pos_standard_dev
     cubeacp_trigger_simulated_loop_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 25549) {
+    if ((value < -50) || (value > 25549)) {
         return ICD_ERROR_RANGE;
     }
     message->x_pos_standard_deviation = ICDGEN_U8(icdgen_nearest32(value, 100));
@@ -444,7 +444,7 @@ static inline icd_status_t cubeacp_trigger_simulated_loop_set_y_pos_standard_dev
     cubeacp_trigger_simulated_loop_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 25549) {
+    if ((value < -50) || (value > 25549)) {
         return ICD_ERROR_RANGE;
     }
     message->y_pos_standard_deviation = ICDGEN_U8(icdgen_nearest32(value, 100));
@@ -463,7 +463,7 @@ static inline icd_status_t cubeacp_trigger_simulated_loop_set_z_pos_standard_dev
     cubeacp_trigger_simulated_loop_t *message,
     int32_t value)
 {
-    if (value < -50 || value > 25549) {
+    if ((value < -50) || (value > 25549)) {
         return ICD_ERROR_RANGE;
     }
     message->z_pos_standard_deviation = ICDGEN_U8(icdgen_nearest32(value, 100));

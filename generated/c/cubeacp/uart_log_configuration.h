@@ -37,7 +37,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_uart_log_configuration_init(cubeacp_uart_log_configuration_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 12 bytes. */
@@ -49,7 +49,7 @@ static inline icd_status_t cubeacp_uart_log_configuration_decode(
     if (length != CUBEACP_UART_LOG_CONFIGURATION_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    memcpy(message->log_selection, &buffer[0], 10u);
+    (void)memcpy(message->log_selection, &buffer[0], 10u);
     message->log_period = icdgen_load_u16le(&buffer[10]);
     return ICD_OK;
 }
@@ -63,7 +63,7 @@ static inline icd_status_t cubeacp_uart_log_configuration_encode(
     if (capacity < CUBEACP_UART_LOG_CONFIGURATION_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    memcpy(&buffer[0], message->log_selection, 10u);
+    (void)memcpy(&buffer[0], message->log_selection, 10u);
     icdgen_store_u16le(&buffer[10], message->log_period);
     return ICD_OK;
 }

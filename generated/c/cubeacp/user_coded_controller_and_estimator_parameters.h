@@ -36,7 +36,7 @@ typedef struct {
 static inline void cubeacp_user_coded_controller_and_estimator_parameters_init(
     cubeacp_user_coded_controller_and_estimator_parameters_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 96 bytes. */
@@ -48,8 +48,8 @@ static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameter
     if (length != CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    memcpy(message->user_coded_controller_settings, &buffer[0], 48u);
-    memcpy(message->user_coded_estimator_settings, &buffer[48], 48u);
+    (void)memcpy(message->user_coded_controller_settings, &buffer[0], 48u);
+    (void)memcpy(message->user_coded_estimator_settings, &buffer[48], 48u);
     return ICD_OK;
 }
 
@@ -62,8 +62,8 @@ static inline icd_status_t cubeacp_user_coded_controller_and_estimator_parameter
     if (capacity < CUBEACP_USER_CODED_CONTROLLER_AND_ESTIMATOR_PARAMETERS_LENGTH) {
         return ICD_ERROR_LENGTH;
     }
-    memcpy(&buffer[0], message->user_coded_controller_settings, 48u);
-    memcpy(&buffer[48], message->user_coded_estimator_settings, 48u);
+    (void)memcpy(&buffer[0], message->user_coded_controller_settings, 48u);
+    (void)memcpy(&buffer[48], message->user_coded_estimator_settings, 48u);
     return ICD_OK;
 }
 

@@ -42,7 +42,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubeacp_wheel_currents_init(cubeacp_wheel_currents_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 6 bytes. */
@@ -86,7 +86,7 @@ static inline icd_status_t cubeacp_wheel_currents_set_wheel1_current_ua(
     cubeacp_wheel_currents_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->wheel1_current = ICDGEN_U16(icdgen_nearest32(value, 10));
@@ -104,7 +104,7 @@ static inline icd_status_t cubeacp_wheel_currents_set_wheel2_current_ua(
     cubeacp_wheel_currents_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->wheel2_current = ICDGEN_U16(icdgen_nearest32(value, 10));
@@ -122,7 +122,7 @@ static inline icd_status_t cubeacp_wheel_currents_set_wheel3_current_ua(
     cubeacp_wheel_currents_t *message,
     int32_t value)
 {
-    if (value < -5 || value > 655354) {
+    if ((value < -5) || (value > 655354)) {
         return ICD_ERROR_RANGE;
     }
     message->wheel3_current = ICDGEN_U16(icdgen_nearest32(value, 10));

@@ -55,7 +55,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubemag_deployment_status_init(cubemag_deployment_status_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 5 bytes. */

@@ -46,7 +46,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubemag_primary_magnetometer_measurement_init(cubemag_primary_magnetometer_measurement_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 13 bytes. */

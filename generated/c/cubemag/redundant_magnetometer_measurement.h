@@ -47,7 +47,7 @@ typedef struct {
 static inline void cubemag_redundant_magnetometer_measurement_init(
     cubemag_redundant_magnetometer_measurement_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 13 bytes. */

@@ -33,7 +33,7 @@ typedef struct {
 /** Makes every raw value 0. */
 static inline void cubewheel_wheel_reference_speed_init(cubewheel_wheel_reference_speed_t *message)
 {
-    memset(message, 0, sizeof *message);
+    (void)memset(message, 0, sizeof *message);
 }
 
 /** Reads a frame; ICD_ERROR_LENGTH, and nothing changed, unless it has 4 bytes. */

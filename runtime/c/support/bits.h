@@ -8,28 +8,28 @@
 ICDGEN_INLINE int8_t icdgen_i8(uint8_t bits)
 {
     int8_t value;
-    memcpy(&value, &bits, sizeof value);
+    (void)memcpy(&value, &bits, sizeof value);
     return value;
 }
 
 ICDGEN_INLINE int16_t icdgen_i16(uint16_t bits)
 {
     int16_t value;
-    memcpy(&value, &bits, sizeof value);
+    (void)memcpy(&value, &bits, sizeof value);
     return value;
 }
 
 ICDGEN_INLINE int32_t icdgen_i32(uint32_t bits)
 {
     int32_t value;
-    memcpy(&value, &bits, sizeof value);
+    (void)memcpy(&value, &bits, sizeof value);
     return value;
 }
 
 ICDGEN_INLINE int64_t icdgen_i64(uint64_t bits)
 {
     int64_t value;
-    memcpy(&value, &bits, sizeof value);
+    (void)memcpy(&value, &bits, sizeof value);
     return value;
 }
 
@@ -47,25 +47,25 @@ ICDGEN_INLINE int64_t icdgen_extend64(uint64_t bits, uint64_t sign)
 /* Floating-point fields are moved as bits, so that every NaN keeps its payload. */
 ICDGEN_INLINE void icdgen_set_f32(float *value, uint32_t bits)
 {
-    memcpy(value, &bits, sizeof bits);
+    (void)memcpy(value, &bits, sizeof bits);
 }
 
 ICDGEN_INLINE void icdgen_set_f64(double *value, uint64_t bits)
 {
-    memcpy(value, &bits, sizeof bits);
+    (void)memcpy(value, &bits, sizeof bits);
 }
 
 ICDGEN_INLINE uint32_t icdgen_bits_f32(const float *value)
 {
     uint32_t bits;
-    memcpy(&bits, value, sizeof bits);
+    (void)memcpy(&bits, value, sizeof bits);
     return bits;
 }
 
 ICDGEN_INLINE uint64_t icdgen_bits_f64(const double *value)
 {
     uint64_t bits;
-    memcpy(&bits, value, sizeof bits);
+    (void)memcpy(&bits, value, sizeof bits);
     return bits;
 }
 
@@ -87,7 +87,7 @@ ICDGEN_INLINE void icdgen_spread_4(void *message, size_t offset, unsigned bits, 
     const bool reversed = falling == (ICDGEN_LITTLE != 0);
     const uint32_t word = reversed ? ((bits & 0x0Fu) * 0x08040201u) >> 3 : (bits & 0x0Fu) * 0x00204081u;
     const uint32_t flags = word & 0x01010101u;
-    memcpy(&bytes[offset], &flags, sizeof flags);
+    (void)memcpy(&bytes[offset], &flags, sizeof flags);
 }
 
 ICDGEN_INLINE int icdgen_join_4(const void *message, size_t offset, bool falling)
@@ -95,7 +95,7 @@ ICDGEN_INLINE int icdgen_join_4(const void *message, size_t offset, bool falling
     const uint8_t *const bytes = ICDGEN_CAST(const uint8_t *, message);
     const bool reversed = falling == (ICDGEN_LITTLE != 0);
     uint32_t flags;
-    memcpy(&flags, &bytes[offset], sizeof flags);
+    (void)memcpy(&flags, &bytes[offset], sizeof flags);
     return ICDGEN_CAST(int, (flags * (reversed ? 0x08040201u : 0x01020408u)) >> 24);
 }
 
@@ -106,7 +106,7 @@ ICDGEN_INLINE void icdgen_spread_8(void *message, size_t offset, unsigned bits, 
     const bool reversed = falling == (ICDGEN_LITTLE != 0);
     const uint64_t word = (((bits & 0xFFu) * UINT64_C(0x8040201008040201)) >> 7) & UINT64_C(0x0101010101010101);
     const uint64_t flags = reversed ? word : __builtin_bswap64(word);
-    memcpy(&bytes[offset], &flags, sizeof flags);
+    (void)memcpy(&bytes[offset], &flags, sizeof flags);
 #else
     icdgen_spread_4(message, offset, falling ? bits >> 4 : bits, falling);
     icdgen_spread_4(message, offset + 4u, falling ? bits : bits >> 4, falling);
@@ -119,7 +119,7 @@ ICDGEN_INLINE int icdgen_join_8(const void *message, size_t offset, bool falling
     const uint8_t *const bytes = ICDGEN_CAST(const uint8_t *, message);
     const bool reversed = falling == (ICDGEN_LITTLE != 0);
     uint64_t flags;
-    memcpy(&flags, &bytes[offset], sizeof flags);
+    (void)memcpy(&flags, &bytes[offset], sizeof flags);
     flags *= reversed ? UINT64_C(0x8040201008040201) : UINT64_C(0x0102040810204080);
     return ICDGEN_CAST(int, flags >> 56);
 #else

@@ -131,7 +131,7 @@ static inline double icdgen_rounded(icdgen_wide_t value, uint64_t divisor)
         bits |= ICDGEN_U64(value.negative) << 63;
     }
     double result;
-    memcpy(&result, &bits, sizeof result);
+    (void)memcpy(&result, &bits, sizeof result);
     return result;
 }
 
@@ -174,7 +174,7 @@ static inline icd_status_t icdgen_nearest(
     double value, int64_t factor, int64_t offset, int64_t divisor, bool *negative, uint64_t *magnitude)
 {
     uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
+    (void)memcpy(&bits, &value, sizeof bits);
     const uint32_t exponent = ICDGEN_U32(bits >> 52) & 0x7FFu;
     if (exponent == 0x7FFu) {
         return ICD_ERROR_RANGE;
@@ -227,6 +227,8 @@ static inline icd_status_t icdgen_nearest(
     } else if (rest + 1u == missing) {
         up = half && more;
         tie = half && !more;
+    } else {
+        /* the fraction decides nothing */
     }
     const bool odd = ((whole.low & 1u) != 0u) != below;
     up = up || (tie && odd);

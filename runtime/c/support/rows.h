@@ -15,7 +15,7 @@ ICDGEN_INLINE bool icdgen_is_little(void)
 #else
     const uint16_t word = 1u;
     uint8_t first;
-    memcpy(&first, &word, sizeof first);
+    (void)memcpy(&first, &word, sizeof first);
     return first == 1u;
 #endif
 }
@@ -23,7 +23,7 @@ ICDGEN_INLINE bool icdgen_is_little(void)
 ICDGEN_INLINE void icdgen_copy(void *target, const void *source, size_t length, size_t size, bool little)
 {
     if (size == 1u || icdgen_is_little() == little) {
-        memcpy(target, source, length);
+        (void)memcpy(target, source, length);
     } else {
         uint8_t *const to = ICDGEN_CAST(uint8_t *, target);
         const uint8_t *const from = ICDGEN_CAST(const uint8_t *, source);

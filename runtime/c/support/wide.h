@@ -169,7 +169,7 @@ static inline double icdgen_wide_physical(uint64_t raw, bool is_negative, const 
         bits |= ICDGEN_U64(icdgen_big_is_negative(&value) ? 1u : 0u) << 63;
     }
     double result;
-    memcpy(&result, &bits, sizeof result);
+    (void)memcpy(&result, &bits, sizeof result);
     return result;
 }
 
@@ -208,7 +208,7 @@ static inline icd_status_t icdgen_wide_nearest(
     uint64_t *raw, double physical, const icdgen_scale_t *scale, int64_t low, uint64_t high)
 {
     uint64_t bits;
-    memcpy(&bits, &physical, sizeof bits);
+    (void)memcpy(&bits, &physical, sizeof bits);
     const uint32_t exponent = ICDGEN_U32(bits >> 52) & 0x7FFu;
     if (exponent == 0x7FFu) {
         return ICD_ERROR_RANGE;

@@ -35,7 +35,7 @@ ICDGEN_INLINE uint16_t icdgen_load_u16le(const uint8_t *bytes)
 {
 #if ICDGEN_WORDS
     uint16_t word;
-    memcpy(&word, bytes, sizeof word);
+    (void)memcpy(&word, bytes, sizeof word);
     return ICDGEN_FOR_LE(16, word);
 #else
     return ICDGEN_U16(bytes[0] | (ICDGEN_U32(bytes[1]) << 8));
@@ -46,7 +46,7 @@ ICDGEN_INLINE void icdgen_store_u16le(uint8_t *bytes, uint16_t value)
 {
 #if ICDGEN_WORDS
     const uint16_t word = ICDGEN_FOR_LE(16, value);
-    memcpy(bytes, &word, sizeof word);
+    (void)memcpy(bytes, &word, sizeof word);
 #else
     bytes[0] = ICDGEN_U8(value);
     bytes[1] = ICDGEN_U8(value >> 8);
@@ -57,7 +57,7 @@ ICDGEN_INLINE uint32_t icdgen_load_u32le(const uint8_t *bytes)
 {
 #if ICDGEN_WORDS
     uint32_t word;
-    memcpy(&word, bytes, sizeof word);
+    (void)memcpy(&word, bytes, sizeof word);
     return ICDGEN_FOR_LE(32, word);
 #else
     const uint32_t low = icdgen_load_u16le(&bytes[0]);
@@ -70,7 +70,7 @@ ICDGEN_INLINE void icdgen_store_u32le(uint8_t *bytes, uint32_t value)
 {
 #if ICDGEN_WORDS
     const uint32_t word = ICDGEN_FOR_LE(32, value);
-    memcpy(bytes, &word, sizeof word);
+    (void)memcpy(bytes, &word, sizeof word);
 #else
     icdgen_store_u16le(&bytes[0], ICDGEN_U16(value));
     icdgen_store_u16le(&bytes[2], ICDGEN_U16(value >> 16));
@@ -81,7 +81,7 @@ ICDGEN_INLINE uint64_t icdgen_load_u64le(const uint8_t *bytes)
 {
 #if ICDGEN_WORDS
     uint64_t word;
-    memcpy(&word, bytes, sizeof word);
+    (void)memcpy(&word, bytes, sizeof word);
     return ICDGEN_FOR_LE(64, word);
 #else
     const uint64_t low = icdgen_load_u32le(&bytes[0]);
@@ -94,7 +94,7 @@ ICDGEN_INLINE void icdgen_store_u64le(uint8_t *bytes, uint64_t value)
 {
 #if ICDGEN_WORDS
     const uint64_t word = ICDGEN_FOR_LE(64, value);
-    memcpy(bytes, &word, sizeof word);
+    (void)memcpy(bytes, &word, sizeof word);
 #else
     icdgen_store_u32le(&bytes[0], ICDGEN_U32(value));
     icdgen_store_u32le(&bytes[4], ICDGEN_U32(value >> 32));
@@ -105,7 +105,7 @@ ICDGEN_INLINE uint16_t icdgen_load_u16be(const uint8_t *bytes)
 {
 #if ICDGEN_WORDS
     uint16_t word;
-    memcpy(&word, bytes, sizeof word);
+    (void)memcpy(&word, bytes, sizeof word);
     return ICDGEN_FOR_BE(16, word);
 #else
     return ICDGEN_U16(bytes[1] | (ICDGEN_U32(bytes[0]) << 8));
@@ -116,7 +116,7 @@ ICDGEN_INLINE void icdgen_store_u16be(uint8_t *bytes, uint16_t value)
 {
 #if ICDGEN_WORDS
     const uint16_t word = ICDGEN_FOR_BE(16, value);
-    memcpy(bytes, &word, sizeof word);
+    (void)memcpy(bytes, &word, sizeof word);
 #else
     bytes[1] = ICDGEN_U8(value);
     bytes[0] = ICDGEN_U8(value >> 8);
@@ -127,7 +127,7 @@ ICDGEN_INLINE uint32_t icdgen_load_u32be(const uint8_t *bytes)
 {
 #if ICDGEN_WORDS
     uint32_t word;
-    memcpy(&word, bytes, sizeof word);
+    (void)memcpy(&word, bytes, sizeof word);
     return ICDGEN_FOR_BE(32, word);
 #else
     const uint32_t low = icdgen_load_u16be(&bytes[2]);
@@ -140,7 +140,7 @@ ICDGEN_INLINE void icdgen_store_u32be(uint8_t *bytes, uint32_t value)
 {
 #if ICDGEN_WORDS
     const uint32_t word = ICDGEN_FOR_BE(32, value);
-    memcpy(bytes, &word, sizeof word);
+    (void)memcpy(bytes, &word, sizeof word);
 #else
     icdgen_store_u16be(&bytes[2], ICDGEN_U16(value));
     icdgen_store_u16be(&bytes[0], ICDGEN_U16(value >> 16));
@@ -151,7 +151,7 @@ ICDGEN_INLINE uint64_t icdgen_load_u64be(const uint8_t *bytes)
 {
 #if ICDGEN_WORDS
     uint64_t word;
-    memcpy(&word, bytes, sizeof word);
+    (void)memcpy(&word, bytes, sizeof word);
     return ICDGEN_FOR_BE(64, word);
 #else
     const uint64_t low = icdgen_load_u32be(&bytes[4]);
@@ -164,7 +164,7 @@ ICDGEN_INLINE void icdgen_store_u64be(uint8_t *bytes, uint64_t value)
 {
 #if ICDGEN_WORDS
     const uint64_t word = ICDGEN_FOR_BE(64, value);
-    memcpy(bytes, &word, sizeof word);
+    (void)memcpy(bytes, &word, sizeof word);
 #else
     icdgen_store_u32be(&bytes[4], ICDGEN_U32(value));
     icdgen_store_u32be(&bytes[0], ICDGEN_U32(value >> 32));

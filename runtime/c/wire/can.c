@@ -35,7 +35,7 @@ ICDGEN_API icd_status_t icd_can_split(
 {
     const icd_can_form_t *const can = link->can;
     int32_t type;
-    memset(splitter, 0, sizeof *splitter);
+    (void)memset(splitter, 0, sizeof *splitter);
     if (can == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
@@ -73,14 +73,14 @@ ICDGEN_API bool icd_can_next(icd_can_splitter_t *splitter, icd_can_packet_t *pac
     packet->id = splitter->id;
     at = splitter->extended ? ICDGEN_SIZE(splitter->next * form->data_bytes) : 0u;
     size = splitter->length - at;
-    memset(packet->data, 0, sizeof packet->data);
+    (void)memset(packet->data, 0, sizeof packet->data);
     if (splitter->extended) {
         size = size < form->data_bytes ? size : form->data_bytes;
-        memset(packet->data, form->fill, form->left_at);
+        (void)memset(packet->data, form->fill, form->left_at);
         packet->data[form->left_at] = ICDGEN_U8(form->left_in_last + splitter->count - 1u - splitter->next);
     }
     if (size != 0u) {
-        memcpy(packet->data, splitter->data + at, size);
+        (void)memcpy(packet->data, splitter->data + at, size);
     }
     packet->length = ICDGEN_U8(splitter->extended ? form->left_at + 1u : size);
     splitter->next++;

@@ -22,7 +22,7 @@ ICDGEN_API icd_status_t icd_can_joiner_init(
     size_t size)
 {
     size_t each;
-    memset(joiner, 0, sizeof *joiner);
+    (void)memset(joiner, 0, sizeof *joiner);
     if (link->can == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
@@ -30,9 +30,9 @@ ICDGEN_API icd_status_t icd_can_joiner_init(
     if (size / each < count) {
         return ICD_ERROR_LENGTH;
     }
-    memset(slots, 0, count * sizeof *slots);
+    (void)memset(slots, 0, count * sizeof *slots);
     for (size_t i = 0; i < count; ++i) {
-        slots[i].data = buffer + (i * each) + 1;
+        slots[i].data = buffer + (i * each) + 1u;
     }
     joiner->link = link;
     joiner->address = address;
@@ -87,8 +87,8 @@ static inline void icdgen_can_free(icd_can_joiner_t *joiner, size_t index)
     icd_can_slot_t *const slots = joiner->slots;
     uint8_t *const data = slots[index].data;
     joiner->used--;
-    memmove(&slots[index], &slots[index + 1u], (joiner->used - index) * sizeof *slots);
-    memset(&slots[joiner->used], 0, sizeof *slots);
+    (void)memmove(&slots[index], &slots[index + 1u], (joiner->used - index) * sizeof *slots);
+    (void)memset(&slots[joiner->used], 0, sizeof *slots);
     slots[joiner->used].data = data;
 }
 
@@ -106,7 +106,8 @@ static inline void icdgen_can_give_up(icd_can_joiner_t *joiner, size_t index, ic
 
 ICDGEN_API void icd_can_expire(icd_can_joiner_t *joiner, uint32_t now, icd_event_fn *on_event, void *context)
 {
-    for (size_t i = 0; i < joiner->used;) {
+    size_t i = 0;
+    while (i < joiner->used) {
         if (icdgen_reached(now, joiner->slots[i].last + joiner->link->can->extended->packet_timeout)) {
             icdgen_can_give_up(joiner, i, on_event, context);
         } else {
@@ -123,6 +124,8 @@ static inline void icdgen_can_came(icd_can_slot_t *slot, uint32_t number, uint32
         slot->run++;
     } else if (number + 1u != slot->run) {
         slot->run = number == 0u ? 1u : 0u;
+    } else {
+        /* the one before came again */
     }
 }
 
@@ -208,7 +211,7 @@ static inline void icdgen_can_extended(
         icdgen_can_tell(link, packet->id, ICD_EVENT_DUPLICATE, 0, on_event, context);
         return;
     }
-    memset(&fresh, 0, sizeof fresh);
+    (void)memset(&fresh, 0, sizeof fresh);
     if (slot != NULL && (slot->done || slot->count != count || icdgen_can_got(slot, number))) {
         icdgen_can_replace(joiner, index, number, &fresh, on_event, context); /* the next free slot has its memory */
         slot = NULL;
@@ -226,7 +229,7 @@ static inline void icdgen_can_extended(
         slot->count = count;
         slot->length = length;
     }
-    memcpy(slot->data + (number * size), packet->data, size);
+    (void)memcpy(slot->data + (number * size), packet->data, size);
     slot->got[number / 8u] = ICDGEN_U8(slot->got[number / 8u] | (1u << (number % 8u)));
     slot->there++;
     icdgen_can_came(slot, number, now);
@@ -258,7 +261,7 @@ ICDGEN_API void icd_can_feed(
                 icdgen_can_tell(link, packet->id, ICD_EVENT_MALFORMED, 0, on_event, context);
                 return;
             }
-            memcpy(message + 1, packet->data, sizeof packet->data);
+            (void)memcpy(message + 1, packet->data, sizeof packet->data);
             icdgen_can_tell_message(link, packet->id, kind, message + 1, packet->length, on_event, context);
             return;
         }

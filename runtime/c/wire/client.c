@@ -32,7 +32,7 @@ ICDGEN_API icd_status_t
 icd_client_init(icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uint8_t *buffer, size_t size)
 {
     icd_status_t status;
-    memset(client, 0, sizeof *client);
+    (void)memset(client, 0, sizeof *client);
     client->link = link;
     client->bus = bus;
     client->settings = link->client;
@@ -46,8 +46,10 @@ icd_client_init(icd_client_t *client, const icd_link_t *link, icd_bus_t bus, uin
 ICDGEN_API void icd_client_use_checksums(icd_client_t *client)
 {
     const icd_checksum_form_t *const form = client->link->checksum;
-    client->checks_telecommands = form != NULL && ((ICDGEN_U32(form->telecommand_buses) >> client->bus) & 1u) != 0u;
-    client->checks_telemetry = form != NULL && ((ICDGEN_U32(form->telemetry_buses) >> client->bus) & 1u) != 0u;
+    client->checks_telecommands =
+        form != NULL && ((ICDGEN_U32(form->telecommand_buses) >> ICDGEN_U32(client->bus)) & 1u) != 0u;
+    client->checks_telemetry =
+        form != NULL && ((ICDGEN_U32(form->telemetry_buses) >> ICDGEN_U32(client->bus)) & 1u) != 0u;
 }
 
 ICDGEN_API void icd_client_set_address(icd_client_t *client, uint8_t address)
@@ -184,7 +186,7 @@ static inline void icdgen_client_ignore(void *context, const icd_event_t *event)
 ICDGEN_API icd_status_t icd_client_request(icd_client_t *client, uint32_t now, uint8_t id)
 {
     icd_request_t request;
-    memset(&request, 0, sizeof request);
+    (void)memset(&request, 0, sizeof request);
     request.direction = ICD_TELEMETRY;
     request.id = id;
     return icd_client_start(client, now, &request, icdgen_client_ignore, NULL);
@@ -201,7 +203,7 @@ ICDGEN_API icd_status_t icd_client_send(
     void *context)
 {
     icd_request_t request;
-    memset(&request, 0, sizeof request);
+    (void)memset(&request, 0, sizeof request);
     request.direction = ICD_TELECOMMAND;
     request.id = id;
     request.data = data;

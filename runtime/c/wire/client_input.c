@@ -11,8 +11,8 @@ static inline void icdgen_client_refused(
     icd_client_t *client, uint32_t now, int64_t code, int64_t parameter, icd_event_fn *on_event, void *context)
 {
     icd_event_t event = icdgen_event(ICD_EVENT_REFUSED, 0);
-    for (size_t i = client->link->error_count; i-- != 0u;) {
-        if (client->link->errors[i].code == code) {
+    for (size_t i = 0; i < client->link->error_count; ++i) {
+        if (event.reason == ICD_REASON_UNKNOWN && ICDGEN_I64(client->link->errors[i].code) == code) {
             event.reason = client->link->errors[i].reason;
         }
     }
@@ -89,7 +89,7 @@ static inline void icdgen_client_uart_message(const icdgen_client_call_t *call, 
     if (kind == ICD_UART_PACKET) {
         icd_event_t event = icdgen_event(ICD_EVENT_PACKET, message[0]);
         event.number = icdgen_number(link, message + 1, link->files->counter_bytes);
-        event.data = message + 1 + link->files->counter_bytes;
+        event.data = message + 1u + link->files->counter_bytes;
         event.length = link->files->packet_bytes;
         call->on_event(call->context, &event);
         return;

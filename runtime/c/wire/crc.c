@@ -38,8 +38,8 @@ ICDGEN_API void icd_crc_feed(icd_crc_t *crc, const uint8_t *bytes, size_t length
             continue;
         }
 #endif
-        for (unsigned bit = 8; bit-- != 0u;) {
-            const bool out = ((value & top) != 0u) != (((byte >> bit) & 1u) != 0u);
+        for (unsigned bit = 0; bit < 8u; ++bit) {
+            const bool out = ((value & top) != 0u) != (((byte >> (7u - bit)) & 1u) != 0u);
             value = ((value << 1) & mask) ^ (out ? form->polynomial : 0u);
         }
     }

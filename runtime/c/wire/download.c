@@ -59,7 +59,7 @@ static inline void icdgen_download_packet(
     }
     if (!icdgen_bit(download->got, position)) {
         icdgen_set_bit(download->got, position, true);
-        memcpy(download->buffer + (ICDGEN_CAST(size_t, position) * length), data, length);
+        (void)memcpy(download->buffer + (ICDGEN_CAST(size_t, position) * length), data, length);
         download->there++;
     }
     download->last = procedure->now;
@@ -119,7 +119,7 @@ static inline void icdgen_download_map(icd_download_t *download)
         icdgen_download_burst(download);
         return;
     }
-    memset(&step, 0, sizeof step);
+    (void)memset(&step, 0, sizeof step);
     step.telecommand = message->telecommand;
     step.length = message->length;
     icdgen_command(procedure, &step, true, ICDGEN_DOWNLOAD_MAPPED);
@@ -199,7 +199,7 @@ static inline void icdgen_download_ready(icd_download_t *download, const uint8_t
         return;
     }
     download->count = (download->length + link->files->packet_bytes - 1u) / link->files->packet_bytes;
-    memset(download->got, 0, icd_block_bitmap(link, download->length));
+    (void)memset(download->got, 0, icd_block_bitmap(link, download->length));
     icdgen_download_round(download);
 }
 
@@ -291,7 +291,7 @@ ICDGEN_API icd_status_t icd_download_init(
 {
     const bool known = link->download != NULL && link->files != NULL && link->crc16 != NULL && link->hole_map != NULL &&
         (bus == ICD_BUS_UART || link->files->packet_ids[bus] >= 0);
-    memset(download, 0, sizeof *download);
+    (void)memset(download, 0, sizeof *download);
     if (icdgen_procedure_init(&download->procedure, link, known, icdgen_download_resume) != ICD_OK) {
         return ICD_ERROR_UNSUPPORTED;
     }

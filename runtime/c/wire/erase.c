@@ -28,7 +28,7 @@ static inline void icdgen_erase_resume(icd_procedure_t *procedure, const icd_eve
 ICDGEN_API icd_status_t
 icd_erase_init(icd_erase_t *erase, const icd_link_t *link, uint8_t type, uint8_t counter, bool all)
 {
-    memset(erase, 0, sizeof *erase);
+    (void)memset(erase, 0, sizeof *erase);
     erase->form = link->erase;
     erase->type = type;
     erase->counter = counter;
@@ -38,7 +38,7 @@ icd_erase_init(icd_erase_t *erase, const icd_link_t *link, uint8_t type, uint8_t
 
 ICDGEN_API icd_status_t icd_format_init(icd_format_t *format, const icd_link_t *link)
 {
-    memset(format, 0, sizeof *format);
+    (void)memset(format, 0, sizeof *format);
     format->form = link->format;
     format->all = true;
     return icdgen_procedure_init(&format->procedure, link, link->format != NULL, icdgen_erase_resume);

@@ -6,7 +6,7 @@
 static inline icd_event_t icdgen_event(icd_event_kind_t kind, uint8_t id)
 {
     icd_event_t event;
-    memset(&event, 0, sizeof event);
+    (void)memset(&event, 0, sizeof event);
     event.kind = kind;
     event.id = id;
     event.code = -1;

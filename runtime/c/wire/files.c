@@ -85,7 +85,7 @@ icd_index_entry_encode(const icd_link_t *link, const icd_index_entry_t *entry, u
     if (capacity < form->entry_bytes) {
         return ICD_ERROR_LENGTH;
     }
-    memset(bytes, 0, form->entry_bytes);
+    (void)memset(bytes, 0, form->entry_bytes);
     if (icdgen_put_number(link, bytes + form->type.at, form->type.bytes, entry->type) != ICD_OK ||
         icdgen_put_number(link, bytes + form->counter.at, form->counter.bytes, entry->counter) != ICD_OK ||
         icdgen_put_number(link, bytes + form->checksum.at, form->checksum.bytes, entry->checksum) != ICD_OK ||
@@ -97,7 +97,7 @@ icd_index_entry_encode(const icd_link_t *link, const icd_index_entry_t *entry, u
         return ICD_ERROR_LENGTH;
     }
     if (entry->meta_length != 0u) {
-        memcpy(bytes + form->meta.at, entry->meta, entry->meta_length);
+        (void)memcpy(bytes + form->meta.at, entry->meta, entry->meta_length);
     }
     return ICD_OK;
 }

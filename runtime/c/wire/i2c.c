@@ -37,10 +37,10 @@ ICDGEN_API icd_status_t icd_i2c_write(
     }
     buffer[0] = id;
     if (length != 0u) {
-        memmove(buffer + 1, data, length);
+        (void)memmove(buffer + 1, data, length);
     }
     *written = 1u + length + extra;
-    return checked ? icdgen_put_number(link, buffer + 1 + length, extra, icd_checksum(link, id, buffer + 1, length))
+    return checked ? icdgen_put_number(link, buffer + 1u + length, extra, icd_checksum(link, id, buffer + 1, length))
                    : ICD_OK;
 }
 

@@ -44,8 +44,10 @@ static inline void icdgen_list_frame(icd_list_t *list, const uint8_t *frame, siz
     } else if (list->again > procedure->link->client.retries) {
         icdgen_end(procedure, ICD_TIMED_OUT);
         return;
+    } else {
+        /* perhaps the node has not gone on yet */
     }
-    memcpy(list->last, frame, length);
+    (void)memcpy(list->last, frame, length);
     list->has_last = true;
     list->again++;
     /* Sent once: if only its acknowledge was lost, the next frame tells that it arrived. */
@@ -79,7 +81,7 @@ static inline void icdgen_list_resume(icd_procedure_t *procedure, const icd_even
 
 ICDGEN_API icd_status_t icd_list_init(icd_list_t *list, const icd_link_t *link, icd_file_fn *on_file, void *context)
 {
-    memset(list, 0, sizeof *list);
+    (void)memset(list, 0, sizeof *list);
     list->on_file = on_file;
     list->context = context;
     return icdgen_procedure_init(&list->procedure, link, link->list != NULL, icdgen_list_resume);

@@ -23,8 +23,9 @@ ICDGEN_API bool icd_log_next(icd_log_frames_t *frames, icd_log_frame_t *frame)
 {
     const icd_log_mask_form_t *const form = frames->form;
     while (frames->bit < form->size * 8u) {
-        const unsigned bit = frames->bit++;
+        const unsigned bit = frames->bit;
         const unsigned weight = form->msb0 ? 7u - (bit % 8u) : bit % 8u;
+        frames->bit++;
         if (((ICDGEN_U32(frames->mask[bit / 8u]) >> weight) & 1u) != 0u) {
             frame->bit = ICDGEN_U16(bit);
             frame->id = form->bits[bit].id;
@@ -48,7 +49,7 @@ ICDGEN_API size_t icd_log_bytes(const icd_link_t *link)
 ICDGEN_API icd_status_t
 icd_log_reader_init(icd_log_reader_t *reader, const icd_link_t *link, uint8_t *buffer, size_t capacity)
 {
-    memset(reader, 0, sizeof *reader);
+    (void)memset(reader, 0, sizeof *reader);
     if (link->log_file == NULL || link->log_mask == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
@@ -63,7 +64,7 @@ icd_log_reader_init(icd_log_reader_t *reader, const icd_link_t *link, uint8_t *b
 static inline void icdgen_log_header(icd_log_reader_t *reader)
 {
     const icd_link_t *const link = reader->link;
-    memmove(reader->buffer, reader->buffer + link->log_file->mask_at, link->log_mask->size);
+    (void)memmove(reader->buffer, reader->buffer + link->log_file->mask_at, link->log_mask->size);
     reader->entry_bytes =
         link->log_file->frames_at + (icd_log_count(link, reader->buffer) * link->log_mask->slot_bytes);
     reader->has_mask = true;
@@ -91,7 +92,7 @@ ICDGEN_API void icd_log_feed(
         const size_t before = reader->has_mask ? reader->link->log_mask->size : 0u;
         const size_t wanted = whole - reader->length;
         const size_t taken = wanted < count ? wanted : count;
-        memcpy(reader->buffer + before + reader->length, bytes, taken);
+        (void)memcpy(reader->buffer + before + reader->length, bytes, taken);
         reader->length += taken;
         bytes += taken;
         count -= taken;
@@ -115,8 +116,8 @@ ICDGEN_API icd_status_t icd_log_write_header(
     if (mask_length != link->log_mask->size || capacity < link->log_file->header_bytes) {
         return ICD_ERROR_LENGTH;
     }
-    memset(buffer, 0, link->log_file->header_bytes);
-    memcpy(buffer + link->log_file->mask_at, mask, mask_length);
+    (void)memset(buffer, 0, link->log_file->header_bytes);
+    (void)memcpy(buffer + link->log_file->mask_at, mask, mask_length);
     *written = link->log_file->header_bytes;
     return ICD_OK;
 }
@@ -134,18 +135,20 @@ static inline icd_status_t icdgen_log_slots_write(
     const size_t size = link->log_mask->slot_bytes;
     icd_log_frames_t frames;
     icd_log_frame_t frame;
+    size_t i = 0;
     if (count != icd_log_count(link, mask) || capacity / (size != 0u ? size : 1u) < count) {
         return ICD_ERROR_LENGTH;
     }
     icd_log_frames(&frames, link, mask, NULL);
-    for (size_t i = 0; icd_log_next(&frames, &frame); ++i) {
+    while (icd_log_next(&frames, &frame)) {
         if (given[i].length != frame.length) {
             return ICD_ERROR_LENGTH;
         }
-        memset(buffer + (i * size), link->log_mask->fill, size);
+        (void)memset(buffer + (i * size), link->log_mask->fill, size);
         if (frame.length != 0u) {
-            memcpy(buffer + (i * size), given[i].data, frame.length);
+            (void)memcpy(buffer + (i * size), given[i].data, frame.length);
         }
+        ++i;
     }
     *written = count * size;
     return ICD_OK;
@@ -171,7 +174,7 @@ ICDGEN_API icd_status_t icd_log_write_entry(
     if (capacity < form->frames_at) {
         return ICD_ERROR_LENGTH;
     }
-    memset(buffer, 0, form->frames_at);
+    (void)memset(buffer, 0, form->frames_at);
     status = icdgen_put_number(link, buffer + form->seconds.at, form->seconds.bytes, seconds);
     if (status == ICD_OK) {
         status = icdgen_put_number(link, buffer + form->milliseconds.at, form->milliseconds.bytes, milliseconds);
@@ -225,9 +228,9 @@ ICDGEN_API icd_status_t icd_log_message_encode(
     if (mask_length != link->log_mask->size || capacity < form->frames_at) {
         return ICD_ERROR_LENGTH;
     }
-    memset(buffer, 0, form->frames_at);
+    (void)memset(buffer, 0, form->frames_at);
     buffer[0] = form->id;
-    memcpy(buffer + form->mask_at, mask, mask_length);
+    (void)memcpy(buffer + form->mask_at, mask, mask_length);
     status =
         icdgen_log_slots_write(link, mask, frames, count, buffer + form->frames_at, capacity - form->frames_at, &slots);
     *written = form->frames_at + slots;

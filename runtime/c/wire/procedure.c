@@ -21,7 +21,7 @@ static inline void icdgen_wait(icd_procedure_t *procedure, uint32_t until)
 /* Requests a frame. */
 static inline void icdgen_ask(icd_procedure_t *procedure, int16_t id, uint8_t state)
 {
-    memset(&procedure->request, 0, sizeof procedure->request);
+    (void)memset(&procedure->request, 0, sizeof procedure->request);
     procedure->request.direction = ICD_TELEMETRY;
     procedure->request.id = ICDGEN_U8(id);
     procedure->request.repeat = true;
@@ -34,9 +34,9 @@ static inline void icdgen_ask(icd_procedure_t *procedure, int16_t id, uint8_t st
 static inline void icdgen_command(icd_procedure_t *procedure, const icd_step_t *step, bool repeat, uint8_t state)
 {
     if (step->fresh != NULL) {
-        memcpy(procedure->data, step->fresh, step->length);
+        (void)memcpy(procedure->data, step->fresh, step->length);
     } else {
-        memset(procedure->data, 0, step->length);
+        (void)memset(procedure->data, 0, step->length);
     }
     procedure->request.direction = ICD_TELECOMMAND;
     procedure->request.id = ICDGEN_U8(step->telecommand);
@@ -108,6 +108,8 @@ static inline void icdgen_resume(icd_procedure_t *procedure, const icd_event_t *
         icdgen_end(procedure, outcome->kind == ICD_EVENT_REFUSED ? ICD_REFUSED : ICD_TIMED_OUT);
     } else if (procedure->polled == NULL || !icdgen_polls_on(procedure, outcome)) {
         procedure->resume(procedure, outcome);
+    } else {
+        /* the frame is polled again */
     }
 }
 
@@ -162,6 +164,8 @@ ICDGEN_API void icd_procedure_event(icd_procedure_t *procedure, uint32_t now, co
             procedure->damaged = 0;
             icdgen_resume(procedure, event);
         }
+    } else {
+        /* it is of no concern */
     }
 }
 
@@ -188,7 +192,7 @@ static inline icd_status_t icdgen_procedure_init(
     bool supported,
     void (*resume)(icd_procedure_t *procedure, const icd_event_t *outcome))
 {
-    memset(procedure, 0, sizeof *procedure);
+    (void)memset(procedure, 0, sizeof *procedure);
     procedure->link = link;
     procedure->resume = resume;
     procedure->result = ICD_RUNNING;

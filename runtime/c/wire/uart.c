@@ -7,7 +7,7 @@
 ICDGEN_API icd_status_t
 icd_uart_encode_begin(icd_uart_encoder_t *encoder, const icd_link_t *link, const uint8_t *message, size_t length)
 {
-    memset(encoder, 0, sizeof *encoder);
+    (void)memset(encoder, 0, sizeof *encoder);
     encoder->ended = true;
     if (link->framing == NULL) {
         return ICD_ERROR_UNSUPPORTED;
@@ -31,14 +31,17 @@ ICDGEN_API size_t icd_uart_encode_some(icd_uart_encoder_t *encoder, uint8_t *buf
     size_t count = 0;
     while (count < capacity) {
         if (encoder->pending != 0u) {
-            buffer[count++] = encoder->next[--encoder->pending];
+            encoder->pending--;
+            buffer[count] = encoder->next[encoder->pending];
+            count++;
         } else if (encoder->at < encoder->length) {
             const uint8_t byte = encoder->message[encoder->at];
             if (byte == framing->escape && (encoder->at != 0u || framing->escapes_id)) {
                 encoder->next[0] = framing->escaped;
                 encoder->pending = 1;
             }
-            buffer[count++] = byte;
+            buffer[count] = byte;
+            count++;
             encoder->at++;
         } else if (!encoder->ended) {
             encoder->next[0] = framing->end;
@@ -68,7 +71,7 @@ ICDGEN_API icd_status_t icd_uart_encode(
 ICDGEN_API icd_status_t
 icd_uart_decoder_init(icd_uart_decoder_t *decoder, const icd_link_t *link, uint8_t *buffer, size_t capacity)
 {
-    memset(decoder, 0, sizeof *decoder);
+    (void)memset(decoder, 0, sizeof *decoder);
     if (link->framing == NULL) {
         return ICD_ERROR_UNSUPPORTED;
     }
@@ -112,7 +115,8 @@ static inline void icdgen_uart_tell(
 static inline void icdgen_uart_data(icd_uart_decoder_t *decoder, uint8_t byte, icd_event_fn *on_event, void *context)
 {
     if (decoder->length < decoder->capacity) {
-        decoder->buffer[decoder->length++] = byte;
+        decoder->buffer[decoder->length] = byte;
+        decoder->length++;
     } else {
         icdgen_uart_tell(decoder, ICD_EVENT_OVERRUN, on_event, context);
         icdgen_uart_outside(decoder, false);
@@ -145,6 +149,8 @@ static inline void icdgen_uart_escaped(icd_uart_decoder_t *decoder, uint8_t byte
     } else if (!framing->ignores_other) {
         icdgen_uart_tell(decoder, ICD_EVENT_PROTOCOL_ERROR, on_event, context);
         icdgen_uart_outside(decoder, byte == framing->escape);
+    } else {
+        /* both bytes are skipped */
     }
 }
 
@@ -199,7 +205,7 @@ ICDGEN_API icd_uart_kind_t icd_uart_kind(const icd_link_t *link, const uint8_t *
     if (link->acknowledge != NULL && length == link->acknowledge->length) {
         return ICD_UART_ACKNOWLEDGE;
     }
-    if (files != NULL && id == files->packet_ids[ICD_BUS_UART] &&
+    if (files != NULL && ICDGEN_I16(id) == files->packet_ids[ICD_BUS_UART] &&
         length == 1u + ICDGEN_U32(files->counter_bytes) + files->packet_bytes) {
         return ICD_UART_PACKET;
     }

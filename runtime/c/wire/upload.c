@@ -32,7 +32,7 @@ static inline void icdgen_upload_begin(icd_upload_t *upload)
     icd_procedure_t *const procedure = &upload->procedure;
     const uint32_t packet_bytes = procedure->link->files->packet_bytes;
     upload->count = (icdgen_upload_length(upload) + packet_bytes - 1u) / packet_bytes;
-    memset(upload->missing, 0xFF, ICDGEN_SIZE((upload->count + 7u) / 8u));
+    (void)memset(upload->missing, 0xFF, ICDGEN_SIZE((upload->count + 7u) / 8u));
     icdgen_command(procedure, &procedure->link->upload->begin, true, ICDGEN_UPLOAD_BEGUN);
 }
 
@@ -52,8 +52,8 @@ static inline void icdgen_upload_packet(const icd_upload_t *upload, uint32_t pos
     const icd_files_form_t *const files = upload->procedure.link->files;
     const uint32_t at = position * files->packet_bytes;
     const uint32_t left = icdgen_upload_length(upload) - at;
-    memset(packet, files->fill, files->packet_bytes);
-    memcpy(
+    (void)memset(packet, files->fill, files->packet_bytes);
+    (void)memcpy(
         packet, upload->file + upload->sent + at, ICDGEN_SIZE(left < files->packet_bytes ? left : files->packet_bytes));
 }
 
@@ -250,7 +250,7 @@ ICDGEN_API icd_status_t icd_upload_init(
     size_t bitmap_size)
 {
     const bool known = link->upload != NULL && link->crc16 != NULL && link->hole_map != NULL;
-    memset(upload, 0, sizeof *upload);
+    (void)memset(upload, 0, sizeof *upload);
     if (icdgen_procedure_init(&upload->procedure, link, known, icdgen_upload_resume) != ICD_OK) {
         return ICD_ERROR_UNSUPPORTED;
     }

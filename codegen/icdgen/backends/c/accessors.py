@@ -75,6 +75,6 @@ def _whole(field: FieldDescription, whole: physical.Whole) -> Accessor:
         what=what,
         expression=whole.getter.format(raw=_member(field)),
         assignment=f"{_member(field)} = {whole.setter};",
-        test=" || ".join(tests),
+        test=" || ".join(f"({test})" for test in tests) if len(tests) > 1 else "".join(tests),
         elements=field.count,
     )

@@ -36,7 +36,7 @@ def _group(group: Flags | Row, message: MessageDescription) -> str:
 def _one(field: FieldDescription) -> str:
     one = field.model
     if one.is_bytes:
-        return f"memcpy(message->{field.name}, &buffer[{one.at // 8}], {one.bits // 8}u);"
+        return f"(void)memcpy(message->{field.name}, &buffer[{one.at // 8}], {one.bits // 8}u);"
     read = bits.read(field)
     line = _assigned(field, read.whole)
     if len(STEP) + len(line) <= WIDTH or len(read.terms) == 1:

@@ -39,7 +39,7 @@ class _Frame:
         one = field.model
         first, size = one.at // 8, one.bits // 8
         if one.is_bytes:
-            self.whole[first] = size, f"memcpy(&buffer[{first}], message->{field.name}, {size}u);"
+            self.whole[first] = size, f"(void)memcpy(&buffer[{first}], message->{field.name}, {size}u);"
         elif bits.is_word(field):
             self.whole[first] = size, bits.store(field)
         else:
@@ -82,4 +82,4 @@ class _Frame:
 
 
 def _zero(first: int, count: int) -> str:
-    return f"buffer[{first}] = 0u;" if count == 1 else f"memset(&buffer[{first}], 0, {count}u);"
+    return f"buffer[{first}] = 0u;" if count == 1 else f"(void)memset(&buffer[{first}], 0, {count}u);"
