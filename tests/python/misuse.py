@@ -11,7 +11,7 @@ angles.roll = 1  # expect
 angles.estimated_roll_angle = "1"  # expect
 EstimatedAttitudeAngles(estimated_roll_angle=b"1")  # expect
 EstimatedAttitudeAngles.from_bytes("2efb")  # expect
-EstimatedAttitudeAngles.from_physical(estimated_roll_angle=1)  # expect
+EstimatedAttitudeAngles.from_physical(estimated_roll_angle_deg="1")  # expect
 print(cubeacp.Nonsense)  # expect
 text: str = angles.estimated_roll_angle_deg  # expect
 Client(LINK, "spi")  # expect

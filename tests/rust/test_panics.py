@@ -27,9 +27,6 @@ MESSAGE = """\
 #[no_mangle] pub fn decode_{name}(bytes: &[u8]) -> Result<{type}, icd::Error> {{ {type}::from_bytes(bytes) }}
 #[no_mangle] pub fn encode_{name}(message: &{type}) -> impl Copy {{ message.to_bytes() }}
 """
-CHECKED = """\
-#[no_mangle] pub fn try_encode_{name}(message: &{type}) -> impl Copy {{ message.try_to_bytes() }}
-"""
 SCALED = """\
 #[no_mangle] pub fn get_{name}(message: &{type}) -> f64 {{ message.{getter}() }}
 #[no_mangle] pub fn set_{name}(message: &mut {type}, to: f64) -> Result<(), icd::Error> {{ message.{setter}(to) }}
@@ -53,8 +50,6 @@ def everything(icd: Icd) -> Iterator[str]:
         for message in node.messages:
             name, type_ = f"{node.name}_{message.name}", f"icd::{node.name}::{type_name(message)}"
             yield MESSAGE.format(name=name, type=type_)
-            if message.is_narrow:
-                yield CHECKED.format(name=name, type=type_)
             for one in (field.physical_name for field in message.fields if field.steps):
                 yield SCALED.format(name=f"{name}_{one}", type=type_, getter=one, setter=f"set_{one}")
         for way, messages in (("telecommand", node.telecommands), ("telemetry", node.telemetry)):

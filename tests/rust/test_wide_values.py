@@ -1,4 +1,4 @@
-"""A raw value with more bits than its field: what fits is written, and nothing beside the field."""
+"""A raw value with more bits than its field is refused, and the field is named; the largest that fits is written."""
 
 from __future__ import annotations
 
@@ -6,41 +6,43 @@ from collections.abc import Iterator
 
 from icdgen import codec
 from icdgen.backends.rust.names import field_name, integer_type, type_name
+from icdgen.backends.rust.text import string
 from icdgen.describe import describe
 from icdgen.icd.model import Icd
 from tests.rust.tools import Toolchain, run
 
 CASE = """\
     let mut message = icd::{node}::{type}::from_array(&[0; {length}]);
-    message.{field} = {value};
-    assert_eq!(message.to_bytes(), {bytes}, {name});
-    assert!(message.try_to_bytes().is_err(), {name});
+    message.{field} = {widest};
+    assert_eq!(message.to_bytes(), Err(icd::Error::Range {{ field: {title} }}));
+    message.{field} = {largest};
+    assert_eq!(message.to_bytes(), Ok({bytes}), "{{}}", {title});
 """
 
 
 def cases(icd: Icd) -> Iterator[str]:
-    """Each narrow field with all bits of its type set: its own bits are set then, and no others."""
+    """Each narrow field with the largest value of its type, and with its own."""
     for node in describe(icd).nodes:
         for message in node.messages:
             for one in (field for field in message.fields if field.is_narrow):
                 field, length = one.model, message.model.length
                 zeros = codec.decode(node.model, message.model, bytes(length))
-                ones = -1 if field.type == "int" else (1 << field.bits) - 1
-                frame = codec.encode(node.model, message.model, {**zeros, field.name: ones})
-                # All ones fit a signed field: it is -1. The widest value has one bit less, and is cut to the same.
-                widest = "Coded::from_raw(!0)" if field.type == "enum" else f"{integer_type(one)}::MAX"
+                frame = codec.encode(node.model, message.model, {**zeros, field.name: field.raw_max})
+                kind = integer_type(one)
+                coded = "Coded::from_raw({})" if field.type == "enum" else "{}"
                 yield CASE.format(
                     bytes=list(frame),
                     node=node.name,
                     type=type_name(message),
                     length=length,
                     field=field_name(one),
-                    value=widest,
-                    name=f'"{one.name}"',
+                    widest=coded.format(f"{kind}::MAX"),
+                    largest=coded.format(f"{field.raw_max}_{kind}"),
+                    title=string(field.name),
                 )
 
 
-def test_what_does_not_fit_touches_no_other_field(subject, tmp_path):
+def test_what_does_not_fit_is_refused_by_name(subject, tmp_path):
     tools = Toolchain("default")
     found = list(cases(subject.icd))
     assert found

@@ -36,6 +36,7 @@ class Erratum:
     held: tuple[tuple[str, object], ...] = ()
     changes: bool = False
     is_note: bool = False
+    source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property
     def label(self) -> str:

@@ -11,9 +11,9 @@
 //! - [`cubewheel`], CubeWheel. Reaction or momentum wheel.
 //!
 //! A message holds raw values, as they are on the wire. `from_bytes` takes exactly `LENGTH` bytes and
-//! ignores reserved bits, which `to_bytes` writes as 0. Where the type of a field can hold values that
-//! do not fit its bits, `to_bytes` drops their upper bits, so that no other field is touched, and
-//! `try_to_bytes` beside it refuses them; `write_to` refuses them too.
+//! ignores reserved bits, which `to_bytes` writes as 0. `to_bytes` refuses values that do not fit the
+//! bits of their field, which its type may hold. In memory the fields lie as in the frame, as C has
+//! them (`repr(C)`): that makes decoders shorter.
 //!
 //! An enumeration is held as its number, in a [`Coded`], so that numbers without a name are kept; its
 //! `get` gives the enumeration to be matched, and a `Coded` can be made from one with `into` and

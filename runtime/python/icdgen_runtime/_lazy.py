@@ -8,20 +8,44 @@ from importlib import import_module
 from . import _lazy  # noqa: PLW0406
 from ._errors import UnknownIdError
 
-__all__ = ["Any", "Buffer", "Iterator", "Message", "Messages", "attribute"]
+__all__ = [
+    "Any",
+    "Buffer",
+    "Callable",
+    "FieldInfo",
+    "Iterator",
+    "Literal",
+    "M",
+    "Mapping",
+    "Message",
+    "Messages",
+    "OpenEnum",
+    "Optional",
+    "attribute",
+]
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Any
+    from collections.abc import Callable, Iterator, Mapping
+    from typing import Any, Literal, Optional
 
-    from ._base import Buffer, Message
+    from ._base import Message
+    from ._enumeration import OpenEnum
+    from ._fields import FieldInfo
+    from ._hints import Buffer, M
 else:
     _NAMED = {
         "Any": "typing",
-        "Buffer": "._base",
+        "Buffer": "._hints",
+        "Callable": "collections.abc",
+        "FieldInfo": "._fields",
         "Iterator": "collections.abc",
+        "Literal": "typing",
+        "M": "._hints",
+        "Mapping": "collections.abc",
         "Message": "._base",
+        "OpenEnum": "._enumeration",
+        "Optional": "typing",
     }
 
     def __getattr__(name):
@@ -30,9 +54,7 @@ else:
         return getattr(import_module(_NAMED[name], __package__), name)
 
 
-def attribute(
-    module: dict[str, _lazy.Any], homes: dict[str, str], name: str
-) -> _lazy.Any:
+def attribute(module: dict[str, _lazy.Any], homes: dict[str, str], name: str) -> _lazy.Any:
     """The class ``name`` of the node ``module``, from the file that ``homes`` gives; ``__all__``: the names of all."""
     if name == "__all__":  # `from node import *` asks for it
         public = {one for one in module if not one.startswith("_")}
@@ -47,9 +69,7 @@ def attribute(
 class Messages:
     """The messages of a node by id: ``TELEMETRY[146]`` is a class."""
 
-    def __init__(
-        self, module: dict[str, _lazy.Any], node: str, kind: str, names: dict[int, str]
-    ) -> None:
+    def __init__(self, module: dict[str, _lazy.Any], node: str, kind: str, names: dict[int, str]) -> None:
         self._module, self._node, self._kind, self._names = module, node, kind, names
         self._loaded: dict[int, type[Message]] = {}
 

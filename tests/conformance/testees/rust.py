@@ -53,7 +53,6 @@ class MessageEntry(NamedTuple):
 
     type: str
     ids: str
-    encode: str
     fields: list[FieldEntry]
 
 
@@ -100,8 +99,7 @@ class NodeEntry:
 
     def _message(self, message: MessageDescription) -> MessageEntry:
         ids = ", ".join(f"Self::{id.name.upper()} as u32" for id in message.ids)
-        encode = "self.try_to_bytes().map(Vec::from)" if message.is_narrow else "Ok(Vec::from(self.to_bytes()))"
-        return MessageEntry(self._path(message), ids, encode, [_field(field) for field in message.fields])
+        return MessageEntry(self._path(message), ids, [_field(field) for field in message.fields])
 
 
 def _field(field: FieldDescription) -> FieldEntry:

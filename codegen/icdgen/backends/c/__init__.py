@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 _SPELLING = (
     byte_count, call, comment, define, described, head, literal, prose, names.constant, names.enumerator, names.stem,
-    text_comment, words,
+    sentence, text_comment, words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}
 """What templates spell names and text with."""
@@ -63,6 +63,7 @@ class CBackend:
                 link = {**_link(node, links[node.name]), **shared}
                 yield folder / "link.h", render("link.h.j2", **link)
                 yield folder / "link.c", render("link.c.j2", **link)
+                yield folder / "client.h", render("client.h.j2", **_client(node, links[node.name]), **shared)
             values = {**_node(node), "id_type": f"uint{description.id_bits}_t"}
             yield PurePosixPath(f"{node.name}.h"), render("node.h.j2", node=node, **values, **shared)
 
@@ -109,8 +110,24 @@ def _link(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
         "node": node.name,
         "about": comment(["@file", f"{words(node.model.title)}: how its messages travel."]),
         "sizes": links.sizes(link),
-        "requested": [one for one in node.messages if one.model.telemetry_id is not None],
         "tables": links.tables(link),
+    }
+
+
+def _client(node: NodeDescription, link: LinkDescription) -> dict[str, object]:
+    buses = (
+        ("uart", link.facts.framing is not None),
+        ("i2c", link.facts.i2c_address is not None),
+        ("can", link.can is not None),
+    )
+    headers = sorted({*(f"../{name}.h" for name in node.model.includes), *(f"{one.name}.h" for one in node.messages)})
+    return {
+        "node": node.name,
+        "about": comment(["@file", f"{words(node.model.title)}: a client that takes its messages only."]),
+        "includes": ["link.h", *headers],
+        "buses": [bus for bus, is_known in buses if is_known],
+        "telecommands": [(one, one.telecommand_id_name) for one in node.telecommands],
+        "telemetry": [(one, one.telemetry_id_name) for one in node.telemetry],
     }
 
 
@@ -118,7 +135,7 @@ def _node(node: NodeDescription) -> dict[str, object]:
     headers = [f"{name}.h" for name in node.model.includes]
     headers += [f"{node.name}/enums.h"] if node.enums else []
     headers += [f"{node.name}/{message.name}.h" for message in node.messages]
-    headers += [f"{node.name}/link.h"] if node.is_linked else []
+    headers += [f"{node.name}/link.h", f"{node.name}/client.h"] if node.is_linked else []
     return {
         "about": comment(["@file", f"{words(node.model.title)}: all messages.", sentence(node.model.summary)]),
         "includes": ["icdgen.h", *headers],

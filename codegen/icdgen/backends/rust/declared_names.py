@@ -9,7 +9,7 @@ from icdgen.backends.rust import names
 from icdgen.describe import Description, MessageDescription, NodeDescription
 from icdgen.naming import DEVICES
 
-_METHODS = ("from_bytes", "from_array", "to_bytes", "try_to_bytes", "default")
+_METHODS = ("from_bytes", "from_array", "to_bytes", "default")
 _CONSTANTS = ("NAME", "LENGTH", "ID", "SET_ID", "GET_ID")
 _ENUM_USES = ("Option", "From", "Enumeration")
 _OURS = "a name of the generated code"

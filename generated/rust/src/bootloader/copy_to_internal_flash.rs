@@ -14,6 +14,7 @@ use crate::support::{Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct CopyToInternalFlash {
     /// Source Program Index: bits 0 to 7.
     ///
@@ -63,13 +64,16 @@ impl CopyToInternalFlash {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 2] {
+    pub fn to_bytes(&self) -> Result<[u8; 2], Error> {
         let mut bytes = [0; 2];
         bytes[0] = self.source_program_index.raw();
         bytes[1] = self.overwrite;
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -79,6 +83,6 @@ impl crate::wire::Telecommand for CopyToInternalFlash {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

@@ -12,6 +12,7 @@ use crate::support::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct CopyToInternalFlashProgress {
     /// Busy: bit 0.
     pub busy: bool,
@@ -51,13 +52,16 @@ impl CopyToInternalFlashProgress {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 1] {
+    pub fn to_bytes(&self) -> Result<[u8; 1], Error> {
         let mut bytes = [0; 1];
         bytes[0] |= u8::from(self.busy);
         bytes[0] |= u8::from(self.error) << 1;
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -119,93 +119,130 @@ impl Telecommand {
     /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
-            crate::common::Reset::ID => Self::Reset(crate::common::Reset::from_bytes(bytes)?),
-            crate::common::ResetLogPointer::ID => {
-                Self::ResetLogPointer(crate::common::ResetLogPointer::from_bytes(bytes)?)
-            }
-            crate::common::AdvanceLogPointer::ID => {
-                Self::AdvanceLogPointer(crate::common::AdvanceLogPointer::from_bytes(bytes)?)
-            }
-            crate::common::ResetBootRegisters::ID => {
-                Self::ResetBootRegisters(crate::common::ResetBootRegisters::from_bytes(bytes)?)
-            }
-            crate::common::FormatSdCard::ID => {
-                Self::FormatSdCard(crate::common::FormatSdCard::from_bytes(bytes)?)
-            }
-            crate::common::EraseFile::ID => {
-                Self::EraseFile(crate::common::EraseFile::from_bytes(bytes)?)
-            }
-            crate::common::LoadFileDownloadBlock::ID => {
-                Self::LoadFileDownloadBlock(crate::common::LoadFileDownloadBlock::from_bytes(bytes)?)
-            }
-            crate::common::AdvanceFileListReadPointer::ID => {
-                Self::AdvanceFileListReadPointer(crate::common::AdvanceFileListReadPointer::from_bytes(bytes)?)
-            }
-            crate::common::InitiateFileUpload::ID => {
-                Self::InitiateFileUpload(crate::common::InitiateFileUpload::from_bytes(bytes)?)
-            }
-            crate::common::FileUploadPacket::ID => {
-                Self::FileUploadPacket(crate::common::FileUploadPacket::from_bytes(bytes)?)
-            }
-            crate::common::FinalizeUploadBlock::ID => {
-                Self::FinalizeUploadBlock(crate::common::FinalizeUploadBlock::from_bytes(bytes)?)
-            }
-            crate::common::ResetUploadBlock::ID => {
-                Self::ResetUploadBlock(crate::common::ResetUploadBlock::from_bytes(bytes)?)
-            }
-            crate::common::ResetFileListReadPointer::ID => {
-                Self::ResetFileListReadPointer(crate::common::ResetFileListReadPointer::from_bytes(bytes)?)
-            }
-            crate::common::InitiateDownloadBurst::ID => {
-                Self::InitiateDownloadBurst(crate::common::InitiateDownloadBurst::from_bytes(bytes)?)
-            }
-            crate::common::CacheEnabledState::SET_ID => {
-                Self::CacheEnabledState(crate::common::CacheEnabledState::from_bytes(bytes)?)
-            }
-            crate::common::SramScrubParameters::SET_ID => {
-                Self::SramScrubParameters(crate::common::SramScrubParameters::from_bytes(bytes)?)
-            }
-            crate::common::CurrentUnixTime::SET_ID => {
-                Self::CurrentUnixTime(crate::common::CurrentUnixTime::from_bytes(bytes)?)
-            }
-            crate::common::UnixTimeSaveToFlash::SET_ID => {
-                Self::UnixTimeSaveToFlash(crate::common::UnixTimeSaveToFlash::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap1::SET_ID => {
-                Self::HoleMap1(crate::common::HoleMap1::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap2::SET_ID => {
-                Self::HoleMap2(crate::common::HoleMap2::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap3::SET_ID => {
-                Self::HoleMap3(crate::common::HoleMap3::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap4::SET_ID => {
-                Self::HoleMap4(crate::common::HoleMap4::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap5::SET_ID => {
-                Self::HoleMap5(crate::common::HoleMap5::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap6::SET_ID => {
-                Self::HoleMap6(crate::common::HoleMap6::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap7::SET_ID => {
-                Self::HoleMap7(crate::common::HoleMap7::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap8::SET_ID => {
-                Self::HoleMap8(crate::common::HoleMap8::from_bytes(bytes)?)
-            }
-            ClearErrorFlags::ID => Self::ClearErrorFlags(ClearErrorFlags::from_bytes(bytes)?),
-            SetBootIndex::ID => Self::SetBootIndex(SetBootIndex::from_bytes(bytes)?),
-            RunSelectedProgram::ID => {
-                Self::RunSelectedProgram(RunSelectedProgram::from_bytes(bytes)?)
-            }
-            ReadProgramInformation::ID => {
-                Self::ReadProgramInformation(ReadProgramInformation::from_bytes(bytes)?)
-            }
-            CopyToInternalFlash::ID => {
-                Self::CopyToInternalFlash(CopyToInternalFlash::from_bytes(bytes)?)
-            }
+            crate::common::Reset::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Reset(crate::common::Reset::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::Reset::LENGTH, bytes.len()),
+            },
+            crate::common::ResetLogPointer::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ResetLogPointer(crate::common::ResetLogPointer::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::ResetLogPointer::LENGTH, bytes.len()),
+            },
+            crate::common::AdvanceLogPointer::ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdvanceLogPointer(crate::common::AdvanceLogPointer::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::AdvanceLogPointer::LENGTH, bytes.len()),
+            },
+            crate::common::ResetBootRegisters::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ResetBootRegisters(crate::common::ResetBootRegisters::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::ResetBootRegisters::LENGTH, bytes.len()),
+            },
+            crate::common::FormatSdCard::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FormatSdCard(crate::common::FormatSdCard::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::FormatSdCard::LENGTH, bytes.len()),
+            },
+            crate::common::EraseFile::ID => match bytes.try_into() {
+                Ok(bytes) => Self::EraseFile(crate::common::EraseFile::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::EraseFile::LENGTH, bytes.len()),
+            },
+            crate::common::LoadFileDownloadBlock::ID => match bytes.try_into() {
+                Ok(bytes) => Self::LoadFileDownloadBlock(crate::common::LoadFileDownloadBlock::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::LoadFileDownloadBlock::LENGTH, bytes.len()),
+            },
+            crate::common::AdvanceFileListReadPointer::ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdvanceFileListReadPointer(crate::common::AdvanceFileListReadPointer::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::AdvanceFileListReadPointer::LENGTH, bytes.len()),
+            },
+            crate::common::InitiateFileUpload::ID => match bytes.try_into() {
+                Ok(bytes) => Self::InitiateFileUpload(crate::common::InitiateFileUpload::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::InitiateFileUpload::LENGTH, bytes.len()),
+            },
+            crate::common::FileUploadPacket::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FileUploadPacket(crate::common::FileUploadPacket::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::FileUploadPacket::LENGTH, bytes.len()),
+            },
+            crate::common::FinalizeUploadBlock::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FinalizeUploadBlock(crate::common::FinalizeUploadBlock::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::FinalizeUploadBlock::LENGTH, bytes.len()),
+            },
+            crate::common::ResetUploadBlock::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ResetUploadBlock(crate::common::ResetUploadBlock::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::ResetUploadBlock::LENGTH, bytes.len()),
+            },
+            crate::common::ResetFileListReadPointer::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ResetFileListReadPointer(crate::common::ResetFileListReadPointer::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::ResetFileListReadPointer::LENGTH, bytes.len()),
+            },
+            crate::common::InitiateDownloadBurst::ID => match bytes.try_into() {
+                Ok(bytes) => Self::InitiateDownloadBurst(crate::common::InitiateDownloadBurst::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::InitiateDownloadBurst::LENGTH, bytes.len()),
+            },
+            crate::common::CacheEnabledState::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CacheEnabledState(crate::common::CacheEnabledState::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::CacheEnabledState::LENGTH, bytes.len()),
+            },
+            crate::common::SramScrubParameters::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SramScrubParameters(crate::common::SramScrubParameters::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::SramScrubParameters::LENGTH, bytes.len()),
+            },
+            crate::common::CurrentUnixTime::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CurrentUnixTime(crate::common::CurrentUnixTime::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::CurrentUnixTime::LENGTH, bytes.len()),
+            },
+            crate::common::UnixTimeSaveToFlash::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::UnixTimeSaveToFlash(crate::common::UnixTimeSaveToFlash::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::UnixTimeSaveToFlash::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap1::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap1(crate::common::HoleMap1::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap1::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap2::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap2(crate::common::HoleMap2::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap2::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap3::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap3(crate::common::HoleMap3::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap3::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap4::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap4(crate::common::HoleMap4::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap4::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap5::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap5(crate::common::HoleMap5::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap5::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap6::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap6(crate::common::HoleMap6::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap6::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap7::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap7(crate::common::HoleMap7::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap7::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap8::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap8(crate::common::HoleMap8::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap8::LENGTH, bytes.len()),
+            },
+            ClearErrorFlags::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ClearErrorFlags(ClearErrorFlags::from_array(bytes)),
+                Err(_) => return Error::length(ClearErrorFlags::LENGTH, bytes.len()),
+            },
+            SetBootIndex::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetBootIndex(SetBootIndex::from_array(bytes)),
+                Err(_) => return Error::length(SetBootIndex::LENGTH, bytes.len()),
+            },
+            RunSelectedProgram::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RunSelectedProgram(RunSelectedProgram::from_array(bytes)),
+                Err(_) => return Error::length(RunSelectedProgram::LENGTH, bytes.len()),
+            },
+            ReadProgramInformation::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ReadProgramInformation(ReadProgramInformation::from_array(bytes)),
+                Err(_) => return Error::length(ReadProgramInformation::LENGTH, bytes.len()),
+            },
+            CopyToInternalFlash::ID => match bytes.try_into() {
+                Ok(bytes) => Self::CopyToInternalFlash(CopyToInternalFlash::from_array(bytes)),
+                Err(_) => return Error::length(CopyToInternalFlash::LENGTH, bytes.len()),
+            },
             _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
@@ -217,37 +254,37 @@ impl Telecommand {
     /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
-            Self::Reset(message) => write_to(buffer, &message.to_bytes()),
-            Self::ResetLogPointer(message) => write_to(buffer, &message.to_bytes()),
-            Self::AdvanceLogPointer(message) => write_to(buffer, &message.to_bytes()),
-            Self::ResetBootRegisters(message) => write_to(buffer, &message.to_bytes()),
-            Self::FormatSdCard(message) => write_to(buffer, &message.to_bytes()),
-            Self::EraseFile(message) => write_to(buffer, &message.to_bytes()),
-            Self::LoadFileDownloadBlock(message) => write_to(buffer, &message.to_bytes()),
-            Self::AdvanceFileListReadPointer(message) => write_to(buffer, &message.to_bytes()),
-            Self::InitiateFileUpload(message) => write_to(buffer, &message.to_bytes()),
-            Self::FileUploadPacket(message) => write_to(buffer, &message.to_bytes()),
-            Self::FinalizeUploadBlock(message) => write_to(buffer, &message.to_bytes()),
-            Self::ResetUploadBlock(message) => write_to(buffer, &message.to_bytes()),
-            Self::ResetFileListReadPointer(message) => write_to(buffer, &message.to_bytes()),
-            Self::InitiateDownloadBurst(message) => write_to(buffer, &message.to_bytes()),
-            Self::CacheEnabledState(message) => write_to(buffer, &message.to_bytes()),
-            Self::SramScrubParameters(message) => write_to(buffer, &message.to_bytes()),
-            Self::CurrentUnixTime(message) => write_to(buffer, &message.to_bytes()),
-            Self::UnixTimeSaveToFlash(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap1(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap2(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap3(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap4(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap5(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap6(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap7(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap8(message) => write_to(buffer, &message.to_bytes()),
-            Self::ClearErrorFlags(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetBootIndex(message) => write_to(buffer, &message.to_bytes()),
-            Self::RunSelectedProgram(message) => write_to(buffer, &message.to_bytes()),
-            Self::ReadProgramInformation(message) => write_to(buffer, &message.to_bytes()),
-            Self::CopyToInternalFlash(message) => write_to(buffer, &message.to_bytes()),
+            Self::Reset(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ResetLogPointer(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdvanceLogPointer(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ResetBootRegisters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::FormatSdCard(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EraseFile(message) => write_to(buffer, &message.to_bytes()?),
+            Self::LoadFileDownloadBlock(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdvanceFileListReadPointer(message) => write_to(buffer, &message.to_bytes()?),
+            Self::InitiateFileUpload(message) => write_to(buffer, &message.to_bytes()?),
+            Self::FileUploadPacket(message) => write_to(buffer, &message.to_bytes()?),
+            Self::FinalizeUploadBlock(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ResetUploadBlock(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ResetFileListReadPointer(message) => write_to(buffer, &message.to_bytes()?),
+            Self::InitiateDownloadBurst(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CacheEnabledState(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SramScrubParameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CurrentUnixTime(message) => write_to(buffer, &message.to_bytes()?),
+            Self::UnixTimeSaveToFlash(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap1(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap2(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap3(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap4(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap5(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap6(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap7(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap8(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ClearErrorFlags(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetBootIndex(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RunSelectedProgram(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ReadProgramInformation(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CopyToInternalFlash(message) => write_to(buffer, &message.to_bytes()?),
         }
     }
 
@@ -443,94 +480,126 @@ impl Telemetry {
     /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
-            crate::common::Identification::ID => {
-                Self::Identification(crate::common::Identification::from_bytes(bytes)?)
-            }
-            crate::common::BootAndRunningProgramStatus::ID => {
-                Self::BootAndRunningProgramStatus(crate::common::BootAndRunningProgramStatus::from_bytes(bytes)?)
-            }
-            crate::common::BootIndexAndStatus::ID => {
-                Self::BootIndexAndStatus(crate::common::BootIndexAndStatus::from_bytes(bytes)?)
-            }
-            crate::common::LastLoggedEvent::ID => {
-                Self::LastLoggedEvent(crate::common::LastLoggedEvent::from_bytes(bytes)?)
-            }
-            crate::common::SramLatchupCounters::ID => {
-                Self::SramLatchupCounters(crate::common::SramLatchupCounters::from_bytes(bytes)?)
-            }
-            crate::common::EdacErrorCounters::ID => {
-                Self::EdacErrorCounters(crate::common::EdacErrorCounters::from_bytes(bytes)?)
-            }
-            crate::common::CommunicationStatus::ID => {
-                Self::CommunicationStatus(crate::common::CommunicationStatus::from_bytes(bytes)?)
-            }
-            crate::common::SdCardFormatEraseProgress::ID => {
-                Self::SdCardFormatEraseProgress(crate::common::SdCardFormatEraseProgress::from_bytes(bytes)?)
-            }
-            crate::common::TelecommandAcknowledge::ID => {
-                Self::TelecommandAcknowledge(crate::common::TelecommandAcknowledge::from_bytes(bytes)?)
-            }
-            crate::common::FileDownloadBufferWithFileContents::ID => {
-                Self::FileDownloadBufferWithFileContents(crate::common::FileDownloadBufferWithFileContents::from_bytes(bytes)?)
-            }
-            crate::common::DownloadBlockReady::ID => {
-                Self::DownloadBlockReady(crate::common::DownloadBlockReady::from_bytes(bytes)?)
-            }
-            crate::common::FileInformation::ID => {
-                Self::FileInformation(crate::common::FileInformation::from_bytes(bytes)?)
-            }
-            crate::common::InitializeUploadComplete::ID => {
-                Self::InitializeUploadComplete(crate::common::InitializeUploadComplete::from_bytes(bytes)?)
-            }
-            crate::common::UploadBlockComplete::ID => {
-                Self::UploadBlockComplete(crate::common::UploadBlockComplete::from_bytes(bytes)?)
-            }
-            crate::common::BlockChecksum::ID => {
-                Self::BlockChecksum(crate::common::BlockChecksum::from_bytes(bytes)?)
-            }
-            crate::common::CacheEnabledState::GET_ID => {
-                Self::CacheEnabledState(crate::common::CacheEnabledState::from_bytes(bytes)?)
-            }
-            crate::common::SramScrubParameters::GET_ID => {
-                Self::SramScrubParameters(crate::common::SramScrubParameters::from_bytes(bytes)?)
-            }
-            crate::common::CurrentUnixTime::GET_ID => {
-                Self::CurrentUnixTime(crate::common::CurrentUnixTime::from_bytes(bytes)?)
-            }
-            crate::common::UnixTimeSaveToFlash::GET_ID => {
-                Self::UnixTimeSaveToFlash(crate::common::UnixTimeSaveToFlash::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap1::GET_ID => {
-                Self::HoleMap1(crate::common::HoleMap1::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap2::GET_ID => {
-                Self::HoleMap2(crate::common::HoleMap2::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap3::GET_ID => {
-                Self::HoleMap3(crate::common::HoleMap3::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap4::GET_ID => {
-                Self::HoleMap4(crate::common::HoleMap4::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap5::GET_ID => {
-                Self::HoleMap5(crate::common::HoleMap5::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap6::GET_ID => {
-                Self::HoleMap6(crate::common::HoleMap6::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap7::GET_ID => {
-                Self::HoleMap7(crate::common::HoleMap7::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap8::GET_ID => {
-                Self::HoleMap8(crate::common::HoleMap8::from_bytes(bytes)?)
-            }
-            State::ID => Self::State(State::from_bytes(bytes)?),
-            ProgramInformation::ID => {
-                Self::ProgramInformation(ProgramInformation::from_bytes(bytes)?)
-            }
-            CopyToInternalFlashProgress::ID => {
-                Self::CopyToInternalFlashProgress(CopyToInternalFlashProgress::from_bytes(bytes)?)
-            }
+            crate::common::Identification::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Identification(crate::common::Identification::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::Identification::LENGTH, bytes.len()),
+            },
+            crate::common::BootAndRunningProgramStatus::ID => match bytes.try_into() {
+                Ok(bytes) => Self::BootAndRunningProgramStatus(crate::common::BootAndRunningProgramStatus::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::BootAndRunningProgramStatus::LENGTH, bytes.len()),
+            },
+            crate::common::BootIndexAndStatus::ID => match bytes.try_into() {
+                Ok(bytes) => Self::BootIndexAndStatus(crate::common::BootIndexAndStatus::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::BootIndexAndStatus::LENGTH, bytes.len()),
+            },
+            crate::common::LastLoggedEvent::ID => match bytes.try_into() {
+                Ok(bytes) => Self::LastLoggedEvent(crate::common::LastLoggedEvent::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::LastLoggedEvent::LENGTH, bytes.len()),
+            },
+            crate::common::SramLatchupCounters::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SramLatchupCounters(crate::common::SramLatchupCounters::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::SramLatchupCounters::LENGTH, bytes.len()),
+            },
+            crate::common::EdacErrorCounters::ID => match bytes.try_into() {
+                Ok(bytes) => Self::EdacErrorCounters(crate::common::EdacErrorCounters::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::EdacErrorCounters::LENGTH, bytes.len()),
+            },
+            crate::common::CommunicationStatus::ID => match bytes.try_into() {
+                Ok(bytes) => Self::CommunicationStatus(crate::common::CommunicationStatus::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::CommunicationStatus::LENGTH, bytes.len()),
+            },
+            crate::common::SdCardFormatEraseProgress::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SdCardFormatEraseProgress(crate::common::SdCardFormatEraseProgress::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::SdCardFormatEraseProgress::LENGTH, bytes.len()),
+            },
+            crate::common::TelecommandAcknowledge::ID => match bytes.try_into() {
+                Ok(bytes) => Self::TelecommandAcknowledge(crate::common::TelecommandAcknowledge::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::TelecommandAcknowledge::LENGTH, bytes.len()),
+            },
+            crate::common::FileDownloadBufferWithFileContents::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FileDownloadBufferWithFileContents(crate::common::FileDownloadBufferWithFileContents::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::FileDownloadBufferWithFileContents::LENGTH, bytes.len()),
+            },
+            crate::common::DownloadBlockReady::ID => match bytes.try_into() {
+                Ok(bytes) => Self::DownloadBlockReady(crate::common::DownloadBlockReady::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::DownloadBlockReady::LENGTH, bytes.len()),
+            },
+            crate::common::FileInformation::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FileInformation(crate::common::FileInformation::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::FileInformation::LENGTH, bytes.len()),
+            },
+            crate::common::InitializeUploadComplete::ID => match bytes.try_into() {
+                Ok(bytes) => Self::InitializeUploadComplete(crate::common::InitializeUploadComplete::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::InitializeUploadComplete::LENGTH, bytes.len()),
+            },
+            crate::common::UploadBlockComplete::ID => match bytes.try_into() {
+                Ok(bytes) => Self::UploadBlockComplete(crate::common::UploadBlockComplete::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::UploadBlockComplete::LENGTH, bytes.len()),
+            },
+            crate::common::BlockChecksum::ID => match bytes.try_into() {
+                Ok(bytes) => Self::BlockChecksum(crate::common::BlockChecksum::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::BlockChecksum::LENGTH, bytes.len()),
+            },
+            crate::common::CacheEnabledState::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CacheEnabledState(crate::common::CacheEnabledState::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::CacheEnabledState::LENGTH, bytes.len()),
+            },
+            crate::common::SramScrubParameters::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SramScrubParameters(crate::common::SramScrubParameters::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::SramScrubParameters::LENGTH, bytes.len()),
+            },
+            crate::common::CurrentUnixTime::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CurrentUnixTime(crate::common::CurrentUnixTime::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::CurrentUnixTime::LENGTH, bytes.len()),
+            },
+            crate::common::UnixTimeSaveToFlash::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::UnixTimeSaveToFlash(crate::common::UnixTimeSaveToFlash::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::UnixTimeSaveToFlash::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap1::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap1(crate::common::HoleMap1::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap1::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap2::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap2(crate::common::HoleMap2::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap2::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap3::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap3(crate::common::HoleMap3::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap3::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap4::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap4(crate::common::HoleMap4::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap4::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap5::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap5(crate::common::HoleMap5::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap5::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap6::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap6(crate::common::HoleMap6::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap6::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap7::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap7(crate::common::HoleMap7::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap7::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap8::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap8(crate::common::HoleMap8::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap8::LENGTH, bytes.len()),
+            },
+            State::ID => match bytes.try_into() {
+                Ok(bytes) => Self::State(State::from_array(bytes)),
+                Err(_) => return Error::length(State::LENGTH, bytes.len()),
+            },
+            ProgramInformation::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ProgramInformation(ProgramInformation::from_array(bytes)),
+                Err(_) => return Error::length(ProgramInformation::LENGTH, bytes.len()),
+            },
+            CopyToInternalFlashProgress::ID => match bytes.try_into() {
+                Ok(bytes) => Self::CopyToInternalFlashProgress(CopyToInternalFlashProgress::from_array(bytes)),
+                Err(_) => return Error::length(CopyToInternalFlashProgress::LENGTH, bytes.len()),
+            },
             _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
@@ -542,40 +611,38 @@ impl Telemetry {
     /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
-            Self::Identification(message) => write_to(buffer, &message.to_bytes()),
-            Self::BootAndRunningProgramStatus(message) => {
-                write_to(buffer, &message.try_to_bytes()?)
-            }
-            Self::BootIndexAndStatus(message) => write_to(buffer, &message.to_bytes()),
-            Self::LastLoggedEvent(message) => write_to(buffer, &message.to_bytes()),
-            Self::SramLatchupCounters(message) => write_to(buffer, &message.to_bytes()),
-            Self::EdacErrorCounters(message) => write_to(buffer, &message.to_bytes()),
-            Self::CommunicationStatus(message) => write_to(buffer, &message.to_bytes()),
-            Self::SdCardFormatEraseProgress(message) => write_to(buffer, &message.to_bytes()),
-            Self::TelecommandAcknowledge(message) => write_to(buffer, &message.to_bytes()),
+            Self::Identification(message) => write_to(buffer, &message.to_bytes()?),
+            Self::BootAndRunningProgramStatus(message) => write_to(buffer, &message.to_bytes()?),
+            Self::BootIndexAndStatus(message) => write_to(buffer, &message.to_bytes()?),
+            Self::LastLoggedEvent(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SramLatchupCounters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EdacErrorCounters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CommunicationStatus(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SdCardFormatEraseProgress(message) => write_to(buffer, &message.to_bytes()?),
+            Self::TelecommandAcknowledge(message) => write_to(buffer, &message.to_bytes()?),
             Self::FileDownloadBufferWithFileContents(message) => {
-                write_to(buffer, &message.to_bytes())
+                write_to(buffer, &message.to_bytes()?)
             }
-            Self::DownloadBlockReady(message) => write_to(buffer, &message.to_bytes()),
-            Self::FileInformation(message) => write_to(buffer, &message.try_to_bytes()?),
-            Self::InitializeUploadComplete(message) => write_to(buffer, &message.to_bytes()),
-            Self::UploadBlockComplete(message) => write_to(buffer, &message.to_bytes()),
-            Self::BlockChecksum(message) => write_to(buffer, &message.to_bytes()),
-            Self::CacheEnabledState(message) => write_to(buffer, &message.to_bytes()),
-            Self::SramScrubParameters(message) => write_to(buffer, &message.to_bytes()),
-            Self::CurrentUnixTime(message) => write_to(buffer, &message.to_bytes()),
-            Self::UnixTimeSaveToFlash(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap1(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap2(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap3(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap4(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap5(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap6(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap7(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap8(message) => write_to(buffer, &message.to_bytes()),
-            Self::State(message) => write_to(buffer, &message.to_bytes()),
-            Self::ProgramInformation(message) => write_to(buffer, &message.to_bytes()),
-            Self::CopyToInternalFlashProgress(message) => write_to(buffer, &message.to_bytes()),
+            Self::DownloadBlockReady(message) => write_to(buffer, &message.to_bytes()?),
+            Self::FileInformation(message) => write_to(buffer, &message.to_bytes()?),
+            Self::InitializeUploadComplete(message) => write_to(buffer, &message.to_bytes()?),
+            Self::UploadBlockComplete(message) => write_to(buffer, &message.to_bytes()?),
+            Self::BlockChecksum(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CacheEnabledState(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SramScrubParameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CurrentUnixTime(message) => write_to(buffer, &message.to_bytes()?),
+            Self::UnixTimeSaveToFlash(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap1(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap2(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap3(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap4(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap5(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap6(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap7(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap8(message) => write_to(buffer, &message.to_bytes()?),
+            Self::State(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ProgramInformation(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CopyToInternalFlashProgress(message) => write_to(buffer, &message.to_bytes()?),
         }
     }
 

@@ -13,6 +13,7 @@ use crate::support::{put, take, Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct ProgramInformation {
     /// Program Index: bits 0 to 7.
     ///
@@ -70,15 +71,18 @@ impl ProgramInformation {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 8] {
+    pub fn to_bytes(&self) -> Result<[u8; 8], Error> {
         let mut bytes = [0; 8];
         bytes[0] = self.program_index.raw();
         bytes[1] |= u8::from(self.busy);
         put!(self.file_size.to_le_bytes() => bytes[2; 4]);
         put!(self.checksum.to_le_bytes() => bytes[6; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -14,6 +14,7 @@ use crate::support::{flags, put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct State {
     /// Up-time (s): bits 0 to 15, raw 0 to 65535, in s.
     ///
@@ -104,9 +105,12 @@ impl State {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.uptime.to_le_bytes() => bytes[0; 2]);
         bytes[2] |= u8::from(self.sram1_is_enabled);
@@ -121,7 +125,7 @@ impl State {
         bytes[3] |= u8::from(self.eeprom_error) << 1;
         bytes[3] |= u8::from(self.boot_register_corrupt) << 2;
         bytes[3] |= u8::from(self.communications_error_with_radio) << 3;
-        bytes
+        Ok(bytes)
     }
 }
 

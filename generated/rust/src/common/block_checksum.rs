@@ -12,6 +12,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct BlockChecksum {
     /// Checksum: bits 0 to 15, raw 0 to 65535.
     ///
@@ -50,12 +51,15 @@ impl BlockChecksum {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 2] {
+    pub fn to_bytes(&self) -> Result<[u8; 2], Error> {
         let mut bytes = [0; 2];
         put!(self.checksum.to_le_bytes() => bytes[0; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -13,6 +13,7 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct BootAndRunningProgramStatus {
     /// Cause of MCU Reset: bits 0 to 3.
     ///
@@ -83,10 +84,13 @@ impl BootAndRunningProgramStatus {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
+        CAUSE_OF_MCU_RESET.fit(self.cause_of_mcu_reset.raw())?;
+        BOOT_CAUSE.fit(self.boot_cause.raw())?;
         let mut bytes = [0; 6];
         bytes[0] |= self.cause_of_mcu_reset.raw() & 0x0f;
         bytes[0] |= self.boot_cause.raw() << 4;
@@ -94,19 +98,7 @@ impl BootAndRunningProgramStatus {
         bytes[3] = self.boot_program_index.raw();
         bytes[4] = self.firmware_version_major;
         bytes[5] = self.firmware_version_minor;
-        bytes
-    }
-
-    /// Encodes the message if every value fits its field; reserved bits are 0.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
-    #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 6], Error> {
-        CAUSE_OF_MCU_RESET.fit(self.cause_of_mcu_reset.raw())?;
-        BOOT_CAUSE.fit(self.boot_cause.raw())?;
-        Ok(self.to_bytes())
+        Ok(bytes)
     }
 }
 

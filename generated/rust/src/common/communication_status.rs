@@ -12,6 +12,7 @@ use crate::support::{flags, put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct CommunicationStatus {
     /// Telecommand counter: bits 0 to 15, raw 0 to 65535.
     ///
@@ -115,9 +116,12 @@ impl CommunicationStatus {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.telecommand_counter.to_le_bytes() => bytes[0; 2]);
         put!(self.telemetry_request_counter.to_le_bytes() => bytes[2; 2]);
@@ -127,7 +131,7 @@ impl CommunicationStatus {
         bytes[4] |= u8::from(self.i2c_telemetry_error) << 3;
         bytes[4] |= u8::from(self.i2c_telecommand_buffer_error) << 4;
         bytes[4] |= u8::from(self.can_telecommand_buffer_error) << 5;
-        bytes
+        Ok(bytes)
     }
 }
 

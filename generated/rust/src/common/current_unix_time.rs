@@ -8,6 +8,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct CurrentUnixTime {
     /// Current Unix Time: bits 0 to 31, raw 0 to 4294967295, in s.
     ///
@@ -55,13 +56,16 @@ impl CurrentUnixTime {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.current_unix_time.to_le_bytes() => bytes[0; 4]);
         put!(self.milliseconds.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -71,7 +75,7 @@ impl crate::wire::Telecommand for CurrentUnixTime {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

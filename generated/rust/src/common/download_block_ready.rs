@@ -12,6 +12,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct DownloadBlockReady {
     /// Ready: bit 0.
     pub ready: bool,
@@ -63,15 +64,18 @@ impl DownloadBlockReady {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 5] {
+    pub fn to_bytes(&self) -> Result<[u8; 5], Error> {
         let mut bytes = [0; 5];
         bytes[0] |= u8::from(self.ready);
         bytes[0] |= u8::from(self.parameter_error) << 1;
         put!(self.block_crc16_checksum.to_le_bytes() => bytes[1; 2]);
         put!(self.block_length.to_le_bytes() => bytes[3; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 

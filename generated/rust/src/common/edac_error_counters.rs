@@ -10,6 +10,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct EdacErrorCounters {
     /// Single SRAM upsets: bits 0 to 15, raw 0 to 65535.
     ///
@@ -62,14 +63,17 @@ impl EdacErrorCounters {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.single_sram_upsets.to_le_bytes() => bytes[0; 2]);
         put!(self.double_sram_upsets.to_le_bytes() => bytes[2; 2]);
         put!(self.multiple_sram_upsets.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 

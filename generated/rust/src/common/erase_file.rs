@@ -16,6 +16,7 @@ use crate::support::{Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct EraseFile {
     /// File Type: bits 0 to 7.
     pub file_type: Coded<enums::FileType>,
@@ -62,14 +63,17 @@ impl EraseFile {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 3] {
+    pub fn to_bytes(&self) -> Result<[u8; 3], Error> {
         let mut bytes = [0; 3];
         bytes[0] = self.file_type.raw();
         bytes[1] = self.file_counter;
         bytes[2] |= u8::from(self.erase_all);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -79,6 +83,6 @@ impl crate::wire::Telecommand for EraseFile {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

@@ -15,6 +15,7 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct FileInformation {
     /// File Type: bits 0 to 3.
     pub file_type: Coded<enums::FileType>,
@@ -85,10 +86,12 @@ impl FileInformation {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 12] {
+    pub fn to_bytes(&self) -> Result<[u8; 12], Error> {
+        FILE_TYPE.fit(self.file_type.raw())?;
         let mut bytes = [0; 12];
         bytes[0] |= self.file_type.raw() & 0x0f;
         bytes[0] |= u8::from(self.busy_updating) << 4;
@@ -96,18 +99,7 @@ impl FileInformation {
         put!(self.file_size.to_le_bytes() => bytes[2; 4]);
         put!(self.file_date_and_time.to_le_bytes() => bytes[6; 4]);
         put!(self.file_crc16_checksum.to_le_bytes() => bytes[10; 2]);
-        bytes
-    }
-
-    /// Encodes the message if every value fits its field; reserved bits are 0.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
-    #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 12], Error> {
-        FILE_TYPE.fit(self.file_type.raw())?;
-        Ok(self.to_bytes())
+        Ok(bytes)
     }
 }
 

@@ -18,6 +18,7 @@ use crate::support::{array, put, put_array, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct FileUploadPacket {
     /// Packet Number: bits 0 to 15, raw 0 to 65535.
     ///
@@ -62,13 +63,16 @@ impl FileUploadPacket {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 22] {
+    pub fn to_bytes(&self) -> Result<[u8; 22], Error> {
         let mut bytes = [0; 22];
         put!(self.packet_number.to_le_bytes() => bytes[0; 2]);
         put_array(&mut bytes, 2, &self.file_bytes);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -78,6 +82,6 @@ impl crate::wire::Telecommand for FileUploadPacket {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

@@ -15,6 +15,7 @@ use crate::support::{put, take, Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct FinalizeUploadBlock {
     /// Destination: bits 0 to 7.
     pub destination: Coded<enums::FileUploadDestination>,
@@ -63,14 +64,17 @@ impl FinalizeUploadBlock {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 7] {
+    pub fn to_bytes(&self) -> Result<[u8; 7], Error> {
         let mut bytes = [0; 7];
         bytes[0] = self.destination.raw();
         put!(self.offset.to_le_bytes() => bytes[1; 4]);
         put!(self.block_length.to_le_bytes() => bytes[5; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -80,6 +84,6 @@ impl crate::wire::Telecommand for FinalizeUploadBlock {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

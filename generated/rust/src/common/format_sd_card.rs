@@ -12,6 +12,7 @@ use crate::support::Error;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct FormatSdCard {
     /// Magic Number: bits 0 to 7, raw 0 to 255.
     ///
@@ -54,12 +55,15 @@ impl FormatSdCard {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 1] {
+    pub fn to_bytes(&self) -> Result<[u8; 1], Error> {
         let mut bytes = [0; 1];
         bytes[0] = self.magic_number;
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -77,6 +81,6 @@ impl crate::wire::Telecommand for FormatSdCard {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

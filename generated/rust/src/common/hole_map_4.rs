@@ -18,6 +18,7 @@ use crate::support::{array, put_array, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct HoleMap4 {
     /// Hole Map: bytes 0 to 15.
     ///
@@ -59,12 +60,15 @@ impl HoleMap4 {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 16] {
+    pub fn to_bytes(&self) -> Result<[u8; 16], Error> {
         let mut bytes = [0; 16];
         put_array(&mut bytes, 0, &self.hole_map);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -74,7 +78,7 @@ impl crate::wire::Telecommand for HoleMap4 {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct Identification {
     /// Node type: bits 0 to 7, raw 0 to 255.
     ///
@@ -77,9 +78,12 @@ impl Identification {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 8] {
+    pub fn to_bytes(&self) -> Result<[u8; 8], Error> {
         let mut bytes = [0; 8];
         bytes[0] = self.node_type;
         bytes[1] = self.interface_version;
@@ -87,7 +91,7 @@ impl Identification {
         bytes[3] = self.firmware_version_minor;
         put!(self.runtime_seconds.to_le_bytes() => bytes[4; 2]);
         put!(self.runtime_milliseconds.to_le_bytes() => bytes[6; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -17,6 +17,7 @@ use crate::support::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct InitiateDownloadBurst {
     /// Message Length: bits 0 to 7, raw 0 to 255.
     ///
@@ -60,13 +61,16 @@ impl InitiateDownloadBurst {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 2] {
+    pub fn to_bytes(&self) -> Result<[u8; 2], Error> {
         let mut bytes = [0; 2];
         bytes[0] = self.message_length;
         bytes[1] |= u8::from(self.ignore_hole_map);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -76,6 +80,6 @@ impl crate::wire::Telecommand for InitiateDownloadBurst {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

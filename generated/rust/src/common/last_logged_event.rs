@@ -12,6 +12,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct LastLoggedEvent {
     /// Time of Event: bits 0 to 31, raw 0 to 4294967295.
     ///
@@ -60,14 +61,17 @@ impl LastLoggedEvent {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.time_of_event.to_le_bytes() => bytes[0; 4]);
         bytes[4] = self.event_id;
         bytes[5] = self.event_parameter;
-        bytes
+        Ok(bytes)
     }
 }
 

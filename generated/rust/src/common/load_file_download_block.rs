@@ -11,6 +11,7 @@ use crate::support::{put, take, Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct LoadFileDownloadBlock {
     /// File Type: bits 0 to 7.
     pub file_type: Coded<enums::FileType>,
@@ -76,15 +77,18 @@ impl LoadFileDownloadBlock {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 8] {
+    pub fn to_bytes(&self) -> Result<[u8; 8], Error> {
         let mut bytes = [0; 8];
         bytes[0] = self.file_type.raw();
         bytes[1] = self.counter;
         put!(self.offset.to_le_bytes() => bytes[2; 4]);
         put!(self.block_length.to_le_bytes() => bytes[6; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -94,6 +98,6 @@ impl crate::wire::Telecommand for LoadFileDownloadBlock {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

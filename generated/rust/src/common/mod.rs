@@ -200,52 +200,110 @@ impl Telecommand {
     /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
-            Reset::ID => Self::Reset(Reset::from_bytes(bytes)?),
-            ResetLogPointer::ID => Self::ResetLogPointer(ResetLogPointer::from_bytes(bytes)?),
-            AdvanceLogPointer::ID => Self::AdvanceLogPointer(AdvanceLogPointer::from_bytes(bytes)?),
-            ResetBootRegisters::ID => {
-                Self::ResetBootRegisters(ResetBootRegisters::from_bytes(bytes)?)
-            }
-            FormatSdCard::ID => Self::FormatSdCard(FormatSdCard::from_bytes(bytes)?),
-            EraseFile::ID => Self::EraseFile(EraseFile::from_bytes(bytes)?),
-            LoadFileDownloadBlock::ID => {
-                Self::LoadFileDownloadBlock(LoadFileDownloadBlock::from_bytes(bytes)?)
-            }
-            AdvanceFileListReadPointer::ID => {
-                Self::AdvanceFileListReadPointer(AdvanceFileListReadPointer::from_bytes(bytes)?)
-            }
-            InitiateFileUpload::ID => {
-                Self::InitiateFileUpload(InitiateFileUpload::from_bytes(bytes)?)
-            }
-            FileUploadPacket::ID => Self::FileUploadPacket(FileUploadPacket::from_bytes(bytes)?),
-            FinalizeUploadBlock::ID => {
-                Self::FinalizeUploadBlock(FinalizeUploadBlock::from_bytes(bytes)?)
-            }
-            ResetUploadBlock::ID => Self::ResetUploadBlock(ResetUploadBlock::from_bytes(bytes)?),
-            ResetFileListReadPointer::ID => {
-                Self::ResetFileListReadPointer(ResetFileListReadPointer::from_bytes(bytes)?)
-            }
-            InitiateDownloadBurst::ID => {
-                Self::InitiateDownloadBurst(InitiateDownloadBurst::from_bytes(bytes)?)
-            }
-            CacheEnabledState::SET_ID => {
-                Self::CacheEnabledState(CacheEnabledState::from_bytes(bytes)?)
-            }
-            SramScrubParameters::SET_ID => {
-                Self::SramScrubParameters(SramScrubParameters::from_bytes(bytes)?)
-            }
-            CurrentUnixTime::SET_ID => Self::CurrentUnixTime(CurrentUnixTime::from_bytes(bytes)?),
-            UnixTimeSaveToFlash::SET_ID => {
-                Self::UnixTimeSaveToFlash(UnixTimeSaveToFlash::from_bytes(bytes)?)
-            }
-            HoleMap1::SET_ID => Self::HoleMap1(HoleMap1::from_bytes(bytes)?),
-            HoleMap2::SET_ID => Self::HoleMap2(HoleMap2::from_bytes(bytes)?),
-            HoleMap3::SET_ID => Self::HoleMap3(HoleMap3::from_bytes(bytes)?),
-            HoleMap4::SET_ID => Self::HoleMap4(HoleMap4::from_bytes(bytes)?),
-            HoleMap5::SET_ID => Self::HoleMap5(HoleMap5::from_bytes(bytes)?),
-            HoleMap6::SET_ID => Self::HoleMap6(HoleMap6::from_bytes(bytes)?),
-            HoleMap7::SET_ID => Self::HoleMap7(HoleMap7::from_bytes(bytes)?),
-            HoleMap8::SET_ID => Self::HoleMap8(HoleMap8::from_bytes(bytes)?),
+            Reset::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Reset(Reset::from_array(bytes)),
+                Err(_) => return Error::length(Reset::LENGTH, bytes.len()),
+            },
+            ResetLogPointer::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ResetLogPointer(ResetLogPointer::from_array(bytes)),
+                Err(_) => return Error::length(ResetLogPointer::LENGTH, bytes.len()),
+            },
+            AdvanceLogPointer::ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdvanceLogPointer(AdvanceLogPointer::from_array(bytes)),
+                Err(_) => return Error::length(AdvanceLogPointer::LENGTH, bytes.len()),
+            },
+            ResetBootRegisters::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ResetBootRegisters(ResetBootRegisters::from_array(bytes)),
+                Err(_) => return Error::length(ResetBootRegisters::LENGTH, bytes.len()),
+            },
+            FormatSdCard::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FormatSdCard(FormatSdCard::from_array(bytes)),
+                Err(_) => return Error::length(FormatSdCard::LENGTH, bytes.len()),
+            },
+            EraseFile::ID => match bytes.try_into() {
+                Ok(bytes) => Self::EraseFile(EraseFile::from_array(bytes)),
+                Err(_) => return Error::length(EraseFile::LENGTH, bytes.len()),
+            },
+            LoadFileDownloadBlock::ID => match bytes.try_into() {
+                Ok(bytes) => Self::LoadFileDownloadBlock(LoadFileDownloadBlock::from_array(bytes)),
+                Err(_) => return Error::length(LoadFileDownloadBlock::LENGTH, bytes.len()),
+            },
+            AdvanceFileListReadPointer::ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdvanceFileListReadPointer(AdvanceFileListReadPointer::from_array(bytes)),
+                Err(_) => return Error::length(AdvanceFileListReadPointer::LENGTH, bytes.len()),
+            },
+            InitiateFileUpload::ID => match bytes.try_into() {
+                Ok(bytes) => Self::InitiateFileUpload(InitiateFileUpload::from_array(bytes)),
+                Err(_) => return Error::length(InitiateFileUpload::LENGTH, bytes.len()),
+            },
+            FileUploadPacket::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FileUploadPacket(FileUploadPacket::from_array(bytes)),
+                Err(_) => return Error::length(FileUploadPacket::LENGTH, bytes.len()),
+            },
+            FinalizeUploadBlock::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FinalizeUploadBlock(FinalizeUploadBlock::from_array(bytes)),
+                Err(_) => return Error::length(FinalizeUploadBlock::LENGTH, bytes.len()),
+            },
+            ResetUploadBlock::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ResetUploadBlock(ResetUploadBlock::from_array(bytes)),
+                Err(_) => return Error::length(ResetUploadBlock::LENGTH, bytes.len()),
+            },
+            ResetFileListReadPointer::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ResetFileListReadPointer(ResetFileListReadPointer::from_array(bytes)),
+                Err(_) => return Error::length(ResetFileListReadPointer::LENGTH, bytes.len()),
+            },
+            InitiateDownloadBurst::ID => match bytes.try_into() {
+                Ok(bytes) => Self::InitiateDownloadBurst(InitiateDownloadBurst::from_array(bytes)),
+                Err(_) => return Error::length(InitiateDownloadBurst::LENGTH, bytes.len()),
+            },
+            CacheEnabledState::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CacheEnabledState(CacheEnabledState::from_array(bytes)),
+                Err(_) => return Error::length(CacheEnabledState::LENGTH, bytes.len()),
+            },
+            SramScrubParameters::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SramScrubParameters(SramScrubParameters::from_array(bytes)),
+                Err(_) => return Error::length(SramScrubParameters::LENGTH, bytes.len()),
+            },
+            CurrentUnixTime::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CurrentUnixTime(CurrentUnixTime::from_array(bytes)),
+                Err(_) => return Error::length(CurrentUnixTime::LENGTH, bytes.len()),
+            },
+            UnixTimeSaveToFlash::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::UnixTimeSaveToFlash(UnixTimeSaveToFlash::from_array(bytes)),
+                Err(_) => return Error::length(UnixTimeSaveToFlash::LENGTH, bytes.len()),
+            },
+            HoleMap1::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap1(HoleMap1::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap1::LENGTH, bytes.len()),
+            },
+            HoleMap2::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap2(HoleMap2::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap2::LENGTH, bytes.len()),
+            },
+            HoleMap3::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap3(HoleMap3::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap3::LENGTH, bytes.len()),
+            },
+            HoleMap4::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap4(HoleMap4::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap4::LENGTH, bytes.len()),
+            },
+            HoleMap5::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap5(HoleMap5::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap5::LENGTH, bytes.len()),
+            },
+            HoleMap6::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap6(HoleMap6::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap6::LENGTH, bytes.len()),
+            },
+            HoleMap7::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap7(HoleMap7::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap7::LENGTH, bytes.len()),
+            },
+            HoleMap8::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap8(HoleMap8::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap8::LENGTH, bytes.len()),
+            },
             _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
@@ -257,32 +315,32 @@ impl Telecommand {
     /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
-            Self::Reset(message) => write_to(buffer, &message.to_bytes()),
-            Self::ResetLogPointer(message) => write_to(buffer, &message.to_bytes()),
-            Self::AdvanceLogPointer(message) => write_to(buffer, &message.to_bytes()),
-            Self::ResetBootRegisters(message) => write_to(buffer, &message.to_bytes()),
-            Self::FormatSdCard(message) => write_to(buffer, &message.to_bytes()),
-            Self::EraseFile(message) => write_to(buffer, &message.to_bytes()),
-            Self::LoadFileDownloadBlock(message) => write_to(buffer, &message.to_bytes()),
-            Self::AdvanceFileListReadPointer(message) => write_to(buffer, &message.to_bytes()),
-            Self::InitiateFileUpload(message) => write_to(buffer, &message.to_bytes()),
-            Self::FileUploadPacket(message) => write_to(buffer, &message.to_bytes()),
-            Self::FinalizeUploadBlock(message) => write_to(buffer, &message.to_bytes()),
-            Self::ResetUploadBlock(message) => write_to(buffer, &message.to_bytes()),
-            Self::ResetFileListReadPointer(message) => write_to(buffer, &message.to_bytes()),
-            Self::InitiateDownloadBurst(message) => write_to(buffer, &message.to_bytes()),
-            Self::CacheEnabledState(message) => write_to(buffer, &message.to_bytes()),
-            Self::SramScrubParameters(message) => write_to(buffer, &message.to_bytes()),
-            Self::CurrentUnixTime(message) => write_to(buffer, &message.to_bytes()),
-            Self::UnixTimeSaveToFlash(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap1(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap2(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap3(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap4(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap5(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap6(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap7(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap8(message) => write_to(buffer, &message.to_bytes()),
+            Self::Reset(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ResetLogPointer(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdvanceLogPointer(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ResetBootRegisters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::FormatSdCard(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EraseFile(message) => write_to(buffer, &message.to_bytes()?),
+            Self::LoadFileDownloadBlock(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdvanceFileListReadPointer(message) => write_to(buffer, &message.to_bytes()?),
+            Self::InitiateFileUpload(message) => write_to(buffer, &message.to_bytes()?),
+            Self::FileUploadPacket(message) => write_to(buffer, &message.to_bytes()?),
+            Self::FinalizeUploadBlock(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ResetUploadBlock(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ResetFileListReadPointer(message) => write_to(buffer, &message.to_bytes()?),
+            Self::InitiateDownloadBurst(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CacheEnabledState(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SramScrubParameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CurrentUnixTime(message) => write_to(buffer, &message.to_bytes()?),
+            Self::UnixTimeSaveToFlash(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap1(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap2(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap3(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap4(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap5(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap6(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap7(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap8(message) => write_to(buffer, &message.to_bytes()?),
         }
     }
 
@@ -455,59 +513,114 @@ impl Telemetry {
     /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
-            Identification::ID => Self::Identification(Identification::from_bytes(bytes)?),
-            BootAndRunningProgramStatus::ID => {
-                Self::BootAndRunningProgramStatus(BootAndRunningProgramStatus::from_bytes(bytes)?)
-            }
-            BootIndexAndStatus::ID => {
-                Self::BootIndexAndStatus(BootIndexAndStatus::from_bytes(bytes)?)
-            }
-            LastLoggedEvent::ID => Self::LastLoggedEvent(LastLoggedEvent::from_bytes(bytes)?),
-            SramLatchupCounters::ID => {
-                Self::SramLatchupCounters(SramLatchupCounters::from_bytes(bytes)?)
-            }
-            EdacErrorCounters::ID => Self::EdacErrorCounters(EdacErrorCounters::from_bytes(bytes)?),
-            CommunicationStatus::ID => {
-                Self::CommunicationStatus(CommunicationStatus::from_bytes(bytes)?)
-            }
-            SdCardFormatEraseProgress::ID => {
-                Self::SdCardFormatEraseProgress(SdCardFormatEraseProgress::from_bytes(bytes)?)
-            }
-            TelecommandAcknowledge::ID => {
-                Self::TelecommandAcknowledge(TelecommandAcknowledge::from_bytes(bytes)?)
-            }
-            FileDownloadBufferWithFileContents::ID => {
-                Self::FileDownloadBufferWithFileContents(FileDownloadBufferWithFileContents::from_bytes(bytes)?)
-            }
-            DownloadBlockReady::ID => {
-                Self::DownloadBlockReady(DownloadBlockReady::from_bytes(bytes)?)
-            }
-            FileInformation::ID => Self::FileInformation(FileInformation::from_bytes(bytes)?),
-            InitializeUploadComplete::ID => {
-                Self::InitializeUploadComplete(InitializeUploadComplete::from_bytes(bytes)?)
-            }
-            UploadBlockComplete::ID => {
-                Self::UploadBlockComplete(UploadBlockComplete::from_bytes(bytes)?)
-            }
-            BlockChecksum::ID => Self::BlockChecksum(BlockChecksum::from_bytes(bytes)?),
-            CacheEnabledState::GET_ID => {
-                Self::CacheEnabledState(CacheEnabledState::from_bytes(bytes)?)
-            }
-            SramScrubParameters::GET_ID => {
-                Self::SramScrubParameters(SramScrubParameters::from_bytes(bytes)?)
-            }
-            CurrentUnixTime::GET_ID => Self::CurrentUnixTime(CurrentUnixTime::from_bytes(bytes)?),
-            UnixTimeSaveToFlash::GET_ID => {
-                Self::UnixTimeSaveToFlash(UnixTimeSaveToFlash::from_bytes(bytes)?)
-            }
-            HoleMap1::GET_ID => Self::HoleMap1(HoleMap1::from_bytes(bytes)?),
-            HoleMap2::GET_ID => Self::HoleMap2(HoleMap2::from_bytes(bytes)?),
-            HoleMap3::GET_ID => Self::HoleMap3(HoleMap3::from_bytes(bytes)?),
-            HoleMap4::GET_ID => Self::HoleMap4(HoleMap4::from_bytes(bytes)?),
-            HoleMap5::GET_ID => Self::HoleMap5(HoleMap5::from_bytes(bytes)?),
-            HoleMap6::GET_ID => Self::HoleMap6(HoleMap6::from_bytes(bytes)?),
-            HoleMap7::GET_ID => Self::HoleMap7(HoleMap7::from_bytes(bytes)?),
-            HoleMap8::GET_ID => Self::HoleMap8(HoleMap8::from_bytes(bytes)?),
+            Identification::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Identification(Identification::from_array(bytes)),
+                Err(_) => return Error::length(Identification::LENGTH, bytes.len()),
+            },
+            BootAndRunningProgramStatus::ID => match bytes.try_into() {
+                Ok(bytes) => Self::BootAndRunningProgramStatus(BootAndRunningProgramStatus::from_array(bytes)),
+                Err(_) => return Error::length(BootAndRunningProgramStatus::LENGTH, bytes.len()),
+            },
+            BootIndexAndStatus::ID => match bytes.try_into() {
+                Ok(bytes) => Self::BootIndexAndStatus(BootIndexAndStatus::from_array(bytes)),
+                Err(_) => return Error::length(BootIndexAndStatus::LENGTH, bytes.len()),
+            },
+            LastLoggedEvent::ID => match bytes.try_into() {
+                Ok(bytes) => Self::LastLoggedEvent(LastLoggedEvent::from_array(bytes)),
+                Err(_) => return Error::length(LastLoggedEvent::LENGTH, bytes.len()),
+            },
+            SramLatchupCounters::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SramLatchupCounters(SramLatchupCounters::from_array(bytes)),
+                Err(_) => return Error::length(SramLatchupCounters::LENGTH, bytes.len()),
+            },
+            EdacErrorCounters::ID => match bytes.try_into() {
+                Ok(bytes) => Self::EdacErrorCounters(EdacErrorCounters::from_array(bytes)),
+                Err(_) => return Error::length(EdacErrorCounters::LENGTH, bytes.len()),
+            },
+            CommunicationStatus::ID => match bytes.try_into() {
+                Ok(bytes) => Self::CommunicationStatus(CommunicationStatus::from_array(bytes)),
+                Err(_) => return Error::length(CommunicationStatus::LENGTH, bytes.len()),
+            },
+            SdCardFormatEraseProgress::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SdCardFormatEraseProgress(SdCardFormatEraseProgress::from_array(bytes)),
+                Err(_) => return Error::length(SdCardFormatEraseProgress::LENGTH, bytes.len()),
+            },
+            TelecommandAcknowledge::ID => match bytes.try_into() {
+                Ok(bytes) => Self::TelecommandAcknowledge(TelecommandAcknowledge::from_array(bytes)),
+                Err(_) => return Error::length(TelecommandAcknowledge::LENGTH, bytes.len()),
+            },
+            FileDownloadBufferWithFileContents::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FileDownloadBufferWithFileContents(FileDownloadBufferWithFileContents::from_array(bytes)),
+                Err(_) => return Error::length(FileDownloadBufferWithFileContents::LENGTH, bytes.len()),
+            },
+            DownloadBlockReady::ID => match bytes.try_into() {
+                Ok(bytes) => Self::DownloadBlockReady(DownloadBlockReady::from_array(bytes)),
+                Err(_) => return Error::length(DownloadBlockReady::LENGTH, bytes.len()),
+            },
+            FileInformation::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FileInformation(FileInformation::from_array(bytes)),
+                Err(_) => return Error::length(FileInformation::LENGTH, bytes.len()),
+            },
+            InitializeUploadComplete::ID => match bytes.try_into() {
+                Ok(bytes) => Self::InitializeUploadComplete(InitializeUploadComplete::from_array(bytes)),
+                Err(_) => return Error::length(InitializeUploadComplete::LENGTH, bytes.len()),
+            },
+            UploadBlockComplete::ID => match bytes.try_into() {
+                Ok(bytes) => Self::UploadBlockComplete(UploadBlockComplete::from_array(bytes)),
+                Err(_) => return Error::length(UploadBlockComplete::LENGTH, bytes.len()),
+            },
+            BlockChecksum::ID => match bytes.try_into() {
+                Ok(bytes) => Self::BlockChecksum(BlockChecksum::from_array(bytes)),
+                Err(_) => return Error::length(BlockChecksum::LENGTH, bytes.len()),
+            },
+            CacheEnabledState::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CacheEnabledState(CacheEnabledState::from_array(bytes)),
+                Err(_) => return Error::length(CacheEnabledState::LENGTH, bytes.len()),
+            },
+            SramScrubParameters::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SramScrubParameters(SramScrubParameters::from_array(bytes)),
+                Err(_) => return Error::length(SramScrubParameters::LENGTH, bytes.len()),
+            },
+            CurrentUnixTime::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CurrentUnixTime(CurrentUnixTime::from_array(bytes)),
+                Err(_) => return Error::length(CurrentUnixTime::LENGTH, bytes.len()),
+            },
+            UnixTimeSaveToFlash::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::UnixTimeSaveToFlash(UnixTimeSaveToFlash::from_array(bytes)),
+                Err(_) => return Error::length(UnixTimeSaveToFlash::LENGTH, bytes.len()),
+            },
+            HoleMap1::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap1(HoleMap1::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap1::LENGTH, bytes.len()),
+            },
+            HoleMap2::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap2(HoleMap2::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap2::LENGTH, bytes.len()),
+            },
+            HoleMap3::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap3(HoleMap3::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap3::LENGTH, bytes.len()),
+            },
+            HoleMap4::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap4(HoleMap4::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap4::LENGTH, bytes.len()),
+            },
+            HoleMap5::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap5(HoleMap5::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap5::LENGTH, bytes.len()),
+            },
+            HoleMap6::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap6(HoleMap6::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap6::LENGTH, bytes.len()),
+            },
+            HoleMap7::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap7(HoleMap7::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap7::LENGTH, bytes.len()),
+            },
+            HoleMap8::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap8(HoleMap8::from_array(bytes)),
+                Err(_) => return Error::length(HoleMap8::LENGTH, bytes.len()),
+            },
             _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
@@ -519,37 +632,35 @@ impl Telemetry {
     /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
-            Self::Identification(message) => write_to(buffer, &message.to_bytes()),
-            Self::BootAndRunningProgramStatus(message) => {
-                write_to(buffer, &message.try_to_bytes()?)
-            }
-            Self::BootIndexAndStatus(message) => write_to(buffer, &message.to_bytes()),
-            Self::LastLoggedEvent(message) => write_to(buffer, &message.to_bytes()),
-            Self::SramLatchupCounters(message) => write_to(buffer, &message.to_bytes()),
-            Self::EdacErrorCounters(message) => write_to(buffer, &message.to_bytes()),
-            Self::CommunicationStatus(message) => write_to(buffer, &message.to_bytes()),
-            Self::SdCardFormatEraseProgress(message) => write_to(buffer, &message.to_bytes()),
-            Self::TelecommandAcknowledge(message) => write_to(buffer, &message.to_bytes()),
+            Self::Identification(message) => write_to(buffer, &message.to_bytes()?),
+            Self::BootAndRunningProgramStatus(message) => write_to(buffer, &message.to_bytes()?),
+            Self::BootIndexAndStatus(message) => write_to(buffer, &message.to_bytes()?),
+            Self::LastLoggedEvent(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SramLatchupCounters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EdacErrorCounters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CommunicationStatus(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SdCardFormatEraseProgress(message) => write_to(buffer, &message.to_bytes()?),
+            Self::TelecommandAcknowledge(message) => write_to(buffer, &message.to_bytes()?),
             Self::FileDownloadBufferWithFileContents(message) => {
-                write_to(buffer, &message.to_bytes())
+                write_to(buffer, &message.to_bytes()?)
             }
-            Self::DownloadBlockReady(message) => write_to(buffer, &message.to_bytes()),
-            Self::FileInformation(message) => write_to(buffer, &message.try_to_bytes()?),
-            Self::InitializeUploadComplete(message) => write_to(buffer, &message.to_bytes()),
-            Self::UploadBlockComplete(message) => write_to(buffer, &message.to_bytes()),
-            Self::BlockChecksum(message) => write_to(buffer, &message.to_bytes()),
-            Self::CacheEnabledState(message) => write_to(buffer, &message.to_bytes()),
-            Self::SramScrubParameters(message) => write_to(buffer, &message.to_bytes()),
-            Self::CurrentUnixTime(message) => write_to(buffer, &message.to_bytes()),
-            Self::UnixTimeSaveToFlash(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap1(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap2(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap3(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap4(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap5(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap6(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap7(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap8(message) => write_to(buffer, &message.to_bytes()),
+            Self::DownloadBlockReady(message) => write_to(buffer, &message.to_bytes()?),
+            Self::FileInformation(message) => write_to(buffer, &message.to_bytes()?),
+            Self::InitializeUploadComplete(message) => write_to(buffer, &message.to_bytes()?),
+            Self::UploadBlockComplete(message) => write_to(buffer, &message.to_bytes()?),
+            Self::BlockChecksum(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CacheEnabledState(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SramScrubParameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CurrentUnixTime(message) => write_to(buffer, &message.to_bytes()?),
+            Self::UnixTimeSaveToFlash(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap1(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap2(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap3(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap4(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap5(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap6(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap7(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap8(message) => write_to(buffer, &message.to_bytes()?),
         }
     }
 

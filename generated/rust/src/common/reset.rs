@@ -15,6 +15,7 @@ use crate::support::Error;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct Reset {
     /// Magic number: bits 0 to 7, raw 0 to 255.
     ///
@@ -59,12 +60,15 @@ impl Reset {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 1] {
+    pub fn to_bytes(&self) -> Result<[u8; 1], Error> {
         let mut bytes = [0; 1];
         bytes[0] = self.magic_number;
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -82,6 +86,6 @@ impl crate::wire::Telecommand for Reset {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

@@ -12,6 +12,7 @@ use crate::support::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SdCardFormatEraseProgress {
     /// Format Busy: bit 0.
     pub format_busy: bool,
@@ -55,13 +56,16 @@ impl SdCardFormatEraseProgress {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 1] {
+    pub fn to_bytes(&self) -> Result<[u8; 1], Error> {
         let mut bytes = [0; 1];
         bytes[0] |= u8::from(self.format_busy);
         bytes[0] |= u8::from(self.erase_all_busy) << 1;
-        bytes
+        Ok(bytes)
     }
 }
 

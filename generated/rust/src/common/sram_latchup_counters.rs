@@ -10,6 +10,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SramLatchupCounters {
     /// SRAM1 latchups: bits 0 to 15, raw 0 to 65535.
     pub sram1_latchups: u16,
@@ -49,13 +50,16 @@ impl SramLatchupCounters {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.sram1_latchups.to_le_bytes() => bytes[0; 2]);
         put!(self.sram2_latchups.to_le_bytes() => bytes[2; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 

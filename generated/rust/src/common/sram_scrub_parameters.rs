@@ -9,6 +9,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SramScrubParameters {
     /// Scrub Size: bits 0 to 15, raw 0 to 65535.
     ///
@@ -49,12 +50,15 @@ impl SramScrubParameters {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 2] {
+    pub fn to_bytes(&self) -> Result<[u8; 2], Error> {
         let mut bytes = [0; 2];
         put!(self.scrub_size.to_le_bytes() => bytes[0; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -64,7 +68,7 @@ impl crate::wire::Telecommand for SramScrubParameters {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -16,6 +16,7 @@ use crate::support::{Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct TelecommandAcknowledge {
     /// Last TC ID: bits 0 to 7, raw 0 to 255.
     ///
@@ -77,15 +78,18 @@ impl TelecommandAcknowledge {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 4] {
+    pub fn to_bytes(&self) -> Result<[u8; 4], Error> {
         let mut bytes = [0; 4];
         bytes[0] = self.last_tc_id;
         bytes[1] |= u8::from(self.processed_flag);
         bytes[2] = self.tc_error_status.raw();
         bytes[3] = self.tc_parameter_error_index;
-        bytes
+        Ok(bytes)
     }
 }
 

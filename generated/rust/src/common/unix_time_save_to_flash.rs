@@ -13,6 +13,7 @@ use crate::support::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct UnixTimeSaveToFlash {
     /// Save Now: bit 0.
     ///
@@ -70,15 +71,18 @@ impl UnixTimeSaveToFlash {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 2] {
+    pub fn to_bytes(&self) -> Result<[u8; 2], Error> {
         let mut bytes = [0; 2];
         bytes[0] |= u8::from(self.save_now);
         bytes[0] |= u8::from(self.save_on_update) << 1;
         bytes[0] |= u8::from(self.save_periodic) << 2;
         bytes[1] = self.period;
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -88,7 +92,7 @@ impl crate::wire::Telecommand for UnixTimeSaveToFlash {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

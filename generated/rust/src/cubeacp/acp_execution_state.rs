@@ -11,6 +11,7 @@ use crate::support::{put, take, Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct AcpExecutionState {
     /// Time Since Iteration Start: bits 0 to 15, raw 0 to 65535, in ms.
     pub time_since_iteration_start: u16,
@@ -52,13 +53,16 @@ impl AcpExecutionState {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 3] {
+    pub fn to_bytes(&self) -> Result<[u8; 3], Error> {
         let mut bytes = [0; 3];
         put!(self.time_since_iteration_start.to_le_bytes() => bytes[0; 2]);
         bytes[2] = self.current_execution_point.raw();
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -10,6 +10,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct ActuatorCommands {
     /// X Magnetorquer Command: bits 0 to 15, raw -32768 to 32767, in 10ms units.
     ///
@@ -85,9 +86,12 @@ impl ActuatorCommands {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 12] {
+    pub fn to_bytes(&self) -> Result<[u8; 12], Error> {
         let mut bytes = [0; 12];
         put!(self.x_magnetorquer_command.to_le_bytes() => bytes[0; 2]);
         put!(self.y_magnetorquer_command.to_le_bytes() => bytes[2; 2]);
@@ -95,7 +99,7 @@ impl ActuatorCommands {
         put!(self.commanded_x_wheel_speed.to_le_bytes() => bytes[6; 2]);
         put!(self.commanded_y_wheel_speed.to_le_bytes() => bytes[8; 2]);
         put!(self.commanded_z_wheel_speed.to_le_bytes() => bytes[10; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -26,6 +26,7 @@ use crate::support::{array, flags, put, put_array, take, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct AdcsConfiguration {
     /// Magnetorquer 1 Configuration: bits 0 to 7.
     pub magnetorquer_1_configuration: Coded<enums::AxisSelect>,
@@ -955,10 +956,16 @@ impl AdcsConfiguration {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 504] {
+    pub fn to_bytes(&self) -> Result<[u8; 504], Error> {
+        SUN_POINTING_FACET.fit(self.sun_pointing_facet.raw())?;
+        MAGNETOMETER_MODE.fit(self.magnetometer_mode.raw())?;
+        RAW_MAGNETOMETER_SELECTION.fit(self.raw_magnetometer_selection.raw())?;
+        CAM1_PERIOD.fit(self.cam1_period)?;
+        CAM2_PERIOD.fit(self.cam2_period)?;
         let mut bytes = [0; 504];
         bytes[0] = self.magnetorquer_1_configuration.raw();
         bytes[1] = self.magnetorquer_2_configuration.raw();
@@ -1172,22 +1179,7 @@ impl AdcsConfiguration {
         put!(self.min_samples.to_le_bytes() => bytes[406; 2]);
         put_array(&mut bytes, 408, &self.user_coded_controller_settings);
         put_array(&mut bytes, 456, &self.user_coded_estimator_settings);
-        bytes
-    }
-
-    /// Encodes the message if every value fits its field; reserved bits are 0.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
-    #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 504], Error> {
-        SUN_POINTING_FACET.fit(self.sun_pointing_facet.raw())?;
-        MAGNETOMETER_MODE.fit(self.magnetometer_mode.raw())?;
-        RAW_MAGNETOMETER_SELECTION.fit(self.raw_magnetometer_selection.raw())?;
-        CAM1_PERIOD.fit(self.cam1_period)?;
-        CAM2_PERIOD.fit(self.cam2_period)?;
-        Ok(self.to_bytes())
+        Ok(bytes)
     }
 
     /// X-Rate Sensor Offset in deg/s: -32.768 to 32.767.
@@ -3351,7 +3343,7 @@ impl crate::wire::Telecommand for AdcsConfiguration {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.try_to_bytes()?)
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct AdcsExecutionTimes {
     /// Time to Perform ADCS Update: bits 0 to 15, raw 0 to 65535, in ms.
     pub time_to_perform_adcs_update: u16,
@@ -57,15 +58,18 @@ impl AdcsExecutionTimes {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 8] {
+    pub fn to_bytes(&self) -> Result<[u8; 8], Error> {
         let mut bytes = [0; 8];
         put!(self.time_to_perform_adcs_update.to_le_bytes() => bytes[0; 2]);
         put!(self.time_to_perform_sensor_actuator_communications.to_le_bytes() => bytes[2; 2]);
         put!(self.time_to_execute_sgp4_propagator.to_le_bytes() => bytes[4; 2]);
         put!(self.time_to_execute_igrf_model.to_le_bytes() => bytes[6; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 

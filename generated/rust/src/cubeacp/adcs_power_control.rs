@@ -14,6 +14,7 @@ use crate::support::{Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct AdcsPowerControl {
     /// CubeControl Signal Power Selection: bits 0 to 1.
     ///
@@ -108,10 +109,21 @@ impl AdcsPowerControl {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 3] {
+    pub fn to_bytes(&self) -> Result<[u8; 3], Error> {
+        CUBECONTROL_SIGNAL_POWER_SELECTION.fit(self.cubecontrol_signal_power_selection.raw())?;
+        CUBECONTROL_MOTOR_POWER_SELECTION.fit(self.cubecontrol_motor_power_selection.raw())?;
+        CUBESENSE1_POWER_SELECTION.fit(self.cubesense1_power_selection.raw())?;
+        CUBESENSE2_POWER_SELECTION.fit(self.cubesense2_power_selection.raw())?;
+        CUBESTAR_POWER_SELECTION.fit(self.cubestar_power_selection.raw())?;
+        CUBEWHEEL1_POWER_SELECTION.fit(self.cubewheel1_power_selection.raw())?;
+        CUBEWHEEL2_POWER_SELECTION.fit(self.cubewheel2_power_selection.raw())?;
+        CUBEWHEEL3_POWER_SELECTION.fit(self.cubewheel3_power_selection.raw())?;
+        MOTOR_POWER.fit(self.motor_power.raw())?;
+        GPS_POWER.fit(self.gps_power.raw())?;
         let mut bytes = [0; 3];
         bytes[0] |= self.cubecontrol_signal_power_selection.raw() & 0x03;
         bytes[0] |= (self.cubecontrol_motor_power_selection.raw() & 0x03) << 2;
@@ -123,27 +135,7 @@ impl AdcsPowerControl {
         bytes[1] |= self.cubewheel3_power_selection.raw() << 6;
         bytes[2] |= self.motor_power.raw() & 0x03;
         bytes[2] |= (self.gps_power.raw() & 0x03) << 2;
-        bytes
-    }
-
-    /// Encodes the message if every value fits its field; reserved bits are 0.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
-    #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 3], Error> {
-        CUBECONTROL_SIGNAL_POWER_SELECTION.fit(self.cubecontrol_signal_power_selection.raw())?;
-        CUBECONTROL_MOTOR_POWER_SELECTION.fit(self.cubecontrol_motor_power_selection.raw())?;
-        CUBESENSE1_POWER_SELECTION.fit(self.cubesense1_power_selection.raw())?;
-        CUBESENSE2_POWER_SELECTION.fit(self.cubesense2_power_selection.raw())?;
-        CUBESTAR_POWER_SELECTION.fit(self.cubestar_power_selection.raw())?;
-        CUBEWHEEL1_POWER_SELECTION.fit(self.cubewheel1_power_selection.raw())?;
-        CUBEWHEEL2_POWER_SELECTION.fit(self.cubewheel2_power_selection.raw())?;
-        CUBEWHEEL3_POWER_SELECTION.fit(self.cubewheel3_power_selection.raw())?;
-        MOTOR_POWER.fit(self.motor_power.raw())?;
-        GPS_POWER.fit(self.gps_power.raw())?;
-        Ok(self.to_bytes())
+        Ok(bytes)
     }
 }
 
@@ -243,7 +235,7 @@ impl crate::wire::Telecommand for AdcsPowerControl {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.try_to_bytes()?)
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -21,6 +21,7 @@ use crate::support::{flags, put, take, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct AdcsState {
     /// Attitude Estimation Mode: bits 0 to 3.
     pub attitude_estimation_mode: Coded<enums::EstimModeSelect>,
@@ -380,10 +381,16 @@ impl AdcsState {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 54] {
+    pub fn to_bytes(&self) -> Result<[u8; 54], Error> {
+        ATTITUDE_ESTIMATION_MODE.fit(self.attitude_estimation_mode.raw())?;
+        CONTROL_MODE.fit(self.control_mode.raw())?;
+        ADCS_RUN_MODE.fit(self.adcs_run_mode.raw())?;
+        ASGP4_MODE.fit(self.asgp4_mode.raw())?;
+        CURRENT_MAGNETOMETER_SAMPLING_MODE.fit(self.current_magnetometer_sampling_mode.raw())?;
         let mut bytes = [0; 54];
         bytes[0] |= self.attitude_estimation_mode.raw() & 0x0f;
         bytes[0] |= self.control_mode.raw() << 4;
@@ -463,22 +470,7 @@ impl AdcsState {
         put!(self.ecef_position_x.to_le_bytes() => bytes[48; 2]);
         put!(self.ecef_position_y.to_le_bytes() => bytes[50; 2]);
         put!(self.ecef_position_z.to_le_bytes() => bytes[52; 2]);
-        bytes
-    }
-
-    /// Encodes the message if every value fits its field; reserved bits are 0.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
-    #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 54], Error> {
-        ATTITUDE_ESTIMATION_MODE.fit(self.attitude_estimation_mode.raw())?;
-        CONTROL_MODE.fit(self.control_mode.raw())?;
-        ADCS_RUN_MODE.fit(self.adcs_run_mode.raw())?;
-        ASGP4_MODE.fit(self.asgp4_mode.raw())?;
-        CURRENT_MAGNETOMETER_SAMPLING_MODE.fit(self.current_magnetometer_sampling_mode.raw())?;
-        Ok(self.to_bytes())
+        Ok(bytes)
     }
 
     /// Estimated Roll Angle in deg: -327.68 to 327.67.

@@ -16,6 +16,7 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct AdcsSystemConfiguration {
     /// ACP Type: bits 0 to 3.
     pub acp_type: Coded<enums::AcpProgramType>,
@@ -352,10 +353,34 @@ impl AdcsSystemConfiguration {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 173] {
+    pub fn to_bytes(&self) -> Result<[u8; 173], Error> {
+        ACP_TYPE.fit(self.acp_type.raw())?;
+        SPECIAL_CONTROL_SELECTION.fit(self.special_control_selection.raw())?;
+        CUBESENSE1_CAMERA_TYPE.fit(self.cubesense1_camera_type.raw())?;
+        CUBESENSE2_CAMERA_TYPE.fit(self.cubesense2_camera_type.raw())?;
+        GPS_TYPE.fit(self.gps_type.raw())?;
+        CC_SIGNAL_ENABLE_PORT.fit(self.cc_signal_enable_port.raw())?;
+        CC_SIGNAL_ENABLE_PIN.fit(self.cc_signal_enable_pin.raw())?;
+        CC_MOTOR_ENABLE_PORT.fit(self.cc_motor_enable_port.raw())?;
+        CC_MOTOR_ENABLE_PIN.fit(self.cc_motor_enable_pin.raw())?;
+        CC_COMMON_ENABLE_PORT.fit(self.cc_common_enable_port.raw())?;
+        CC_COMMON_ENABLE_PIN.fit(self.cc_common_enable_pin.raw())?;
+        CUBESENSE1_ENABLE_PORT.fit(self.cubesense1_enable_port.raw())?;
+        CUBESENSE1_ENABLE_PIN.fit(self.cubesense1_enable_pin.raw())?;
+        CUBESENSE2_ENABLE_PORT.fit(self.cubesense2_enable_port.raw())?;
+        CUBESENSE2_ENABLE_PIN.fit(self.cubesense2_enable_pin.raw())?;
+        CUBESTAR_ENABLE_PORT.fit(self.cubestar_enable_port.raw())?;
+        CUBESTAR_ENABLE_PIN.fit(self.cubestar_enable_pin.raw())?;
+        CUBEWHEEL1_ENABLE_PORT.fit(self.cubewheel1_enable_port.raw())?;
+        CUBEWHEEL1_ENABLE_PIN.fit(self.cubewheel1_enable_pin.raw())?;
+        CUBEWHEEL2_ENABLE_PORT.fit(self.cubewheel2_enable_port.raw())?;
+        CUBEWHEEL2_ENABLE_PIN.fit(self.cubewheel2_enable_pin.raw())?;
+        CUBEWHEEL3_ENABLE_PORT.fit(self.cubewheel3_enable_port.raw())?;
+        CUBEWHEEL3_ENABLE_PIN.fit(self.cubewheel3_enable_pin.raw())?;
         let mut bytes = [0; 173];
         bytes[0] |= self.acp_type.raw() & 0x0f;
         bytes[0] |= self.special_control_selection.raw() << 4;
@@ -425,40 +450,7 @@ impl AdcsSystemConfiguration {
         bytes[171] |= self.cubewheel2_enable_pin.raw() << 4;
         bytes[172] |= self.cubewheel3_enable_port.raw() & 0x0f;
         bytes[172] |= self.cubewheel3_enable_pin.raw() << 4;
-        bytes
-    }
-
-    /// Encodes the message if every value fits its field; reserved bits are 0.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
-    #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 173], Error> {
-        ACP_TYPE.fit(self.acp_type.raw())?;
-        SPECIAL_CONTROL_SELECTION.fit(self.special_control_selection.raw())?;
-        CUBESENSE1_CAMERA_TYPE.fit(self.cubesense1_camera_type.raw())?;
-        CUBESENSE2_CAMERA_TYPE.fit(self.cubesense2_camera_type.raw())?;
-        GPS_TYPE.fit(self.gps_type.raw())?;
-        CC_SIGNAL_ENABLE_PORT.fit(self.cc_signal_enable_port.raw())?;
-        CC_SIGNAL_ENABLE_PIN.fit(self.cc_signal_enable_pin.raw())?;
-        CC_MOTOR_ENABLE_PORT.fit(self.cc_motor_enable_port.raw())?;
-        CC_MOTOR_ENABLE_PIN.fit(self.cc_motor_enable_pin.raw())?;
-        CC_COMMON_ENABLE_PORT.fit(self.cc_common_enable_port.raw())?;
-        CC_COMMON_ENABLE_PIN.fit(self.cc_common_enable_pin.raw())?;
-        CUBESENSE1_ENABLE_PORT.fit(self.cubesense1_enable_port.raw())?;
-        CUBESENSE1_ENABLE_PIN.fit(self.cubesense1_enable_pin.raw())?;
-        CUBESENSE2_ENABLE_PORT.fit(self.cubesense2_enable_port.raw())?;
-        CUBESENSE2_ENABLE_PIN.fit(self.cubesense2_enable_pin.raw())?;
-        CUBESTAR_ENABLE_PORT.fit(self.cubestar_enable_port.raw())?;
-        CUBESTAR_ENABLE_PIN.fit(self.cubestar_enable_pin.raw())?;
-        CUBEWHEEL1_ENABLE_PORT.fit(self.cubewheel1_enable_port.raw())?;
-        CUBEWHEEL1_ENABLE_PIN.fit(self.cubewheel1_enable_pin.raw())?;
-        CUBEWHEEL2_ENABLE_PORT.fit(self.cubewheel2_enable_port.raw())?;
-        CUBEWHEEL2_ENABLE_PIN.fit(self.cubewheel2_enable_pin.raw())?;
-        CUBEWHEEL3_ENABLE_PORT.fit(self.cubewheel3_enable_port.raw())?;
-        CUBEWHEEL3_ENABLE_PIN.fit(self.cubewheel3_enable_pin.raw())?;
-        Ok(self.to_bytes())
+        Ok(bytes)
     }
 }
 
@@ -675,7 +667,7 @@ impl crate::wire::Telecommand for AdcsSystemConfiguration {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.try_to_bytes()?)
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -11,6 +11,7 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct Asgp4Tles {
     /// ASGP4 complete: bit 0.
     ///
@@ -121,10 +122,12 @@ impl Asgp4Tles {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 33] {
+    pub fn to_bytes(&self) -> Result<[u8; 33], Error> {
+        ASGP4_ERROR.fit(self.asgp4_error.raw())?;
         let mut bytes = [0; 33];
         bytes[0] |= u8::from(self.asgp4_complete);
         bytes[0] |= self.asgp4_error.raw() << 1;
@@ -136,18 +139,7 @@ impl Asgp4Tles {
         put!(self.asgp4_ma.to_le_bytes() => bytes[21; 4]);
         put!(self.asgp4_mm.to_le_bytes() => bytes[25; 4]);
         put!(self.asgp4_bstar.to_le_bytes() => bytes[29; 4]);
-        bytes
-    }
-
-    /// Encodes the message if every value fits its field; reserved bits are 0.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
-    #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 33], Error> {
-        ASGP4_ERROR.fit(self.asgp4_error.raw())?;
-        Ok(self.to_bytes())
+        Ok(bytes)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct AugmentedSgp4Parameters {
     /// Incl. coefficient: bits 0 to 15, raw 0 to 65535; physical `raw*0.001`, 0 to 65.535.
     ///
@@ -170,9 +171,12 @@ impl AugmentedSgp4Parameters {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 30] {
+    pub fn to_bytes(&self) -> Result<[u8; 30], Error> {
         let mut bytes = [0; 30];
         put!(self.incl_coefficient.to_le_bytes() => bytes[0; 2]);
         put!(self.raan_coefficient.to_le_bytes() => bytes[2; 2]);
@@ -191,7 +195,7 @@ impl AugmentedSgp4Parameters {
         bytes[26] = self.time_gain;
         bytes[27] = self.max_lag;
         put!(self.min_samples.to_le_bytes() => bytes[28; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// Incl. coefficient, as a physical value: 0 to 65.535.
@@ -526,7 +530,7 @@ impl crate::wire::Telecommand for AugmentedSgp4Parameters {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::support::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct ClearErrors {
     /// ADCS Error Flags: bit 0.
     ///
@@ -57,13 +58,16 @@ impl ClearErrors {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 1] {
+    pub fn to_bytes(&self) -> Result<[u8; 1], Error> {
         let mut bytes = [0; 1];
         bytes[0] |= u8::from(self.adcs_error_flags);
         bytes[0] |= u8::from(self.hk_error_flags) << 1;
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -73,6 +77,6 @@ impl crate::wire::Telecommand for ClearErrors {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

@@ -11,6 +11,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct CommandedAttitudeAngles {
     /// Commanded Roll Angle: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     /// 327.67 deg.
@@ -58,14 +59,17 @@ impl CommandedAttitudeAngles {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.commanded_roll_angle.to_le_bytes() => bytes[0; 2]);
         put!(self.commanded_pitch_angle.to_le_bytes() => bytes[2; 2]);
         put!(self.commanded_yaw_angle.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// Commanded Roll Angle in deg: -327.68 to 327.67.
@@ -150,7 +154,7 @@ impl crate::wire::Telecommand for CommandedAttitudeAngles {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

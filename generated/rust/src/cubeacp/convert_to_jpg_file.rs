@@ -10,6 +10,7 @@ use crate::support::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct ConvertToJpgFile {
     /// Source File Counter: bits 0 to 7, raw 0 to 255.
     ///
@@ -58,14 +59,17 @@ impl ConvertToJpgFile {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 3] {
+    pub fn to_bytes(&self) -> Result<[u8; 3], Error> {
         let mut bytes = [0; 3];
         bytes[0] = self.source_file_counter;
         bytes[1] = self.quality_factor;
         bytes[2] = self.white_balance;
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -75,6 +79,6 @@ impl crate::wire::Telecommand for ConvertToJpgFile {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

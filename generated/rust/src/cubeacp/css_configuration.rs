@@ -12,6 +12,7 @@ use crate::support::{Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct CssConfiguration {
     /// CSS1 Configuration: bits 0 to 7.
     pub css1_configuration: Coded<enums::AxisSelect>,
@@ -112,9 +113,12 @@ impl CssConfiguration {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 21] {
+    pub fn to_bytes(&self) -> Result<[u8; 21], Error> {
         let mut bytes = [0; 21];
         bytes[0] = self.css1_configuration.raw();
         bytes[1] = self.css2_configuration.raw();
@@ -137,7 +141,7 @@ impl CssConfiguration {
         bytes[18] = self.css9_relative_scale;
         bytes[19] = self.css10_relative_scale;
         bytes[20] = self.css_threshold;
-        bytes
+        Ok(bytes)
     }
 
     /// CSS1 Relative Scale, as a physical value: 0 to 2.55.
@@ -397,7 +401,7 @@ impl crate::wire::Telecommand for CssConfiguration {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

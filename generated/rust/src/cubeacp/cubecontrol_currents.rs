@@ -10,6 +10,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct CubecontrolCurrents {
     /// CubeControl 3V3 Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.48828125`, 0 to
     /// 31999.51171875 mA.
@@ -55,14 +56,17 @@ impl CubecontrolCurrents {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.cubecontrol_3v3_current.to_le_bytes() => bytes[0; 2]);
         put!(self.cubecontrol_5v_current.to_le_bytes() => bytes[2; 2]);
         put!(self.cubecontrol_vbat_current.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// CubeControl 3V3 Current in mA: 0 to 31999.51171875.

@@ -14,6 +14,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct Cubesense2Currents {
     /// CubeSense2 3V3 Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
     pub cubesense2_3v3_current: u16,
@@ -54,13 +55,16 @@ impl Cubesense2Currents {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 4] {
+    pub fn to_bytes(&self) -> Result<[u8; 4], Error> {
         let mut bytes = [0; 4];
         put!(self.cubesense2_3v3_current.to_le_bytes() => bytes[0; 2]);
         put!(self.cubesense2_cam_sram_current.to_le_bytes() => bytes[2; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// CubeSense2 3V3 Current in mA: 0 to 6553.5.

@@ -11,6 +11,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct CubesenseConfiguration {
     /// Cam1 Sensor Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
@@ -360,9 +361,12 @@ impl CubesenseConfiguration {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 112] {
+    pub fn to_bytes(&self) -> Result<[u8; 112], Error> {
         let mut bytes = [0; 112];
         put!(self.cam1_mounting_alpha.to_le_bytes() => bytes[0; 2]);
         put!(self.cam1_mounting_beta.to_le_bytes() => bytes[2; 2]);
@@ -424,7 +428,7 @@ impl CubesenseConfiguration {
         put!(self.cam_2_maximum_x_of_area_5.to_le_bytes() => bytes[106; 2]);
         put!(self.cam_2_minimum_y_of_area_5.to_le_bytes() => bytes[108; 2]);
         put!(self.cam_2_maximum_y_of_area_5.to_le_bytes() => bytes[110; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// Cam1 Sensor Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
@@ -690,7 +694,7 @@ impl crate::wire::Telecommand for CubesenseConfiguration {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -21,6 +21,7 @@ use crate::support::{flags, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct CurrentAdcsState {
     /// Attitude Estimation Mode: bits 0 to 3.
     pub attitude_estimation_mode: Coded<enums::EstimModeSelect>,
@@ -226,10 +227,15 @@ impl CurrentAdcsState {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
+        ATTITUDE_ESTIMATION_MODE.fit(self.attitude_estimation_mode.raw())?;
+        CONTROL_MODE.fit(self.control_mode.raw())?;
+        ADCS_RUN_MODE.fit(self.adcs_run_mode.raw())?;
+        ASGP4_MODE.fit(self.asgp4_mode.raw())?;
         let mut bytes = [0; 6];
         bytes[0] |= self.attitude_estimation_mode.raw() & 0x0f;
         bytes[0] |= self.control_mode.raw() << 4;
@@ -271,21 +277,7 @@ impl CurrentAdcsState {
         bytes[5] |= u8::from(self.coarse_sun_sensor_error) << 5;
         bytes[5] |= u8::from(self.star_tracker_match_error) << 6;
         bytes[5] |= u8::from(self.star_tracker_overcurrent_detected) << 7;
-        bytes
-    }
-
-    /// Encodes the message if every value fits its field; reserved bits are 0.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
-    #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 6], Error> {
-        ATTITUDE_ESTIMATION_MODE.fit(self.attitude_estimation_mode.raw())?;
-        CONTROL_MODE.fit(self.control_mode.raw())?;
-        ADCS_RUN_MODE.fit(self.adcs_run_mode.raw())?;
-        ASGP4_MODE.fit(self.asgp4_mode.raw())?;
-        Ok(self.to_bytes())
+        Ok(bytes)
     }
 }
 

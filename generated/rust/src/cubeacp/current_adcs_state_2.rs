@@ -19,6 +19,7 @@ use crate::support::{flags, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct CurrentAdcsState2 {
     /// Orbit Parameters are Invalid: bit 0.
     ///
@@ -126,10 +127,12 @@ impl CurrentAdcsState2 {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
+        CURRENT_MAGNETOMETER_SAMPLING_MODE.fit(self.current_magnetometer_sampling_mode.raw())?;
         let mut bytes = [0; 6];
         bytes[0] |= u8::from(self.orbit_parameters_are_invalid);
         bytes[0] |= u8::from(self.configuration_is_invalid) << 1;
@@ -148,18 +151,7 @@ impl CurrentAdcsState2 {
         bytes[1] |= u8::from(self.cubestar_runtime_error) << 7;
         bytes[2] |= u8::from(self.magnetometer_error);
         bytes[2] |= u8::from(self.rate_sensor_failure) << 1;
-        bytes
-    }
-
-    /// Encodes the message if every value fits its field; reserved bits are 0.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
-    #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 6], Error> {
-        CURRENT_MAGNETOMETER_SAMPLING_MODE.fit(self.current_magnetometer_sampling_mode.raw())?;
-        Ok(self.to_bytes())
+        Ok(bytes)
     }
 }
 

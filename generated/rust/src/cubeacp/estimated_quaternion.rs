@@ -12,6 +12,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct EstimatedQuaternion {
     /// Estimated q1: bits 0 to 15, raw -32768 to 32767.
     ///
@@ -60,14 +61,17 @@ impl EstimatedQuaternion {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.estimated_q1.to_le_bytes() => bytes[0; 2]);
         put!(self.estimated_q2.to_le_bytes() => bytes[2; 2]);
         put!(self.estimated_q3.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 

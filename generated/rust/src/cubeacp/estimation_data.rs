@@ -15,6 +15,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct EstimationData {
     /// IGRF Modelled Magnetic Field X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`,
     /// -327.68 to 327.67 uT.
@@ -150,9 +151,12 @@ impl EstimationData {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 42] {
+    pub fn to_bytes(&self) -> Result<[u8; 42], Error> {
         let mut bytes = [0; 42];
         put!(self.igrf_modelled_magnetic_field_x.to_le_bytes() => bytes[0; 2]);
         put!(self.igrf_modelled_magnetic_field_y.to_le_bytes() => bytes[2; 2]);
@@ -175,7 +179,7 @@ impl EstimationData {
         put!(self.x_angular_rate_covariance.to_le_bytes() => bytes[36; 2]);
         put!(self.y_angular_rate_covariance.to_le_bytes() => bytes[38; 2]);
         put!(self.z_angular_rate_covariance.to_le_bytes() => bytes[40; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// IGRF Modelled Magnetic Field X in uT: -327.68 to 327.67.

@@ -16,6 +16,7 @@ use crate::support::{flags, put, take, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct EstimationParameters {
     /// Magnetometer Rate Filter System Noise: bits 0 to 31, 32-bit float.
     ///
@@ -153,10 +154,15 @@ impl EstimationParameters {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 31] {
+    pub fn to_bytes(&self) -> Result<[u8; 31], Error> {
+        MAGNETOMETER_MODE.fit(self.magnetometer_mode.raw())?;
+        RAW_MAGNETOMETER_SELECTION.fit(self.raw_magnetometer_selection.raw())?;
+        CAM1_PERIOD.fit(self.cam1_period)?;
+        CAM2_PERIOD.fit(self.cam2_period)?;
         let mut bytes = [0; 31];
         put!(self.magnetometer_rate_filter_system_noise.to_le_bytes() => bytes[0; 4]);
         put!(self.ekf_system_noise.to_le_bytes() => bytes[4; 4]);
@@ -176,21 +182,7 @@ impl EstimationParameters {
         bytes[29] |= u8::from(self.estimation_transition_on_rate_sensor_error) << 2;
         bytes[30] |= self.cam1_period & 0x0f;
         bytes[30] |= self.cam2_period << 4;
-        bytes
-    }
-
-    /// Encodes the message if every value fits its field; reserved bits are 0.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
-    #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 31], Error> {
-        MAGNETOMETER_MODE.fit(self.magnetometer_mode.raw())?;
-        RAW_MAGNETOMETER_SELECTION.fit(self.raw_magnetometer_selection.raw())?;
-        CAM1_PERIOD.fit(self.cam1_period)?;
-        CAM2_PERIOD.fit(self.cam2_period)?;
-        Ok(self.to_bytes())
+        Ok(bytes)
     }
 }
 
@@ -236,7 +228,7 @@ impl crate::wire::Telecommand for EstimationParameters {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.try_to_bytes()?)
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct FineAngularRates {
     /// Estimated X Angular Rate: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`, -32.768
     /// to 32.767 deg/s.
@@ -69,14 +70,17 @@ impl FineAngularRates {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.estimated_x_angular_rate.to_le_bytes() => bytes[0; 2]);
         put!(self.estimated_y_angular_rate.to_le_bytes() => bytes[2; 2]);
         put!(self.estimated_z_angular_rate.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// Estimated X Angular Rate in deg/s: -32.768 to 32.767.

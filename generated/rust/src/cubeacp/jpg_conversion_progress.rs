@@ -9,6 +9,7 @@ use crate::support::{Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct JpgConversionProgress {
     /// Progress Percentage: bits 0 to 7, raw 0 to 255, in %.
     ///
@@ -53,14 +54,17 @@ impl JpgConversionProgress {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 3] {
+    pub fn to_bytes(&self) -> Result<[u8; 3], Error> {
         let mut bytes = [0; 3];
         bytes[0] = self.progress_percentage;
         bytes[1] = self.conversion_result.raw();
         bytes[2] = self.output_file_counter;
-        bytes
+        Ok(bytes)
     }
 }
 

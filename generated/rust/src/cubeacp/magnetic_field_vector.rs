@@ -14,6 +14,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct MagneticFieldVector {
     /// Magnetic Field X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
     /// uT.
@@ -59,14 +60,17 @@ impl MagneticFieldVector {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.magnetic_field_x.to_le_bytes() => bytes[0; 2]);
         put!(self.magnetic_field_y.to_le_bytes() => bytes[2; 2]);
         put!(self.magnetic_field_z.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// Magnetic Field X in uT: -327.68 to 327.67.

@@ -11,6 +11,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct MagnetometerConfiguration {
     /// Magnetometer Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
@@ -118,9 +119,12 @@ impl MagnetometerConfiguration {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 30] {
+    pub fn to_bytes(&self) -> Result<[u8; 30], Error> {
         let mut bytes = [0; 30];
         put!(self.mounting_alpha.to_le_bytes() => bytes[0; 2]);
         put!(self.mounting_beta.to_le_bytes() => bytes[2; 2]);
@@ -137,7 +141,7 @@ impl MagnetometerConfiguration {
         put!(self.sensitivity_s23.to_le_bytes() => bytes[24; 2]);
         put!(self.sensitivity_s31.to_le_bytes() => bytes[26; 2]);
         put!(self.sensitivity_s32.to_le_bytes() => bytes[28; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
@@ -537,7 +541,7 @@ impl crate::wire::Telecommand for MagnetometerConfiguration {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -10,6 +10,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct MagnetorquerCommand {
     /// X Magnetorquer Command: bits 0 to 15, raw -32768 to 32767, in 10ms units.
     ///
@@ -70,14 +71,17 @@ impl MagnetorquerCommand {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.x_magnetorquer_command.to_le_bytes() => bytes[0; 2]);
         put!(self.y_magnetorquer_command.to_le_bytes() => bytes[2; 2]);
         put!(self.z_magnetorquer_command.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 

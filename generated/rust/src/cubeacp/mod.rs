@@ -513,190 +513,278 @@ impl Telecommand {
     /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
-            crate::common::Reset::ID => Self::Reset(crate::common::Reset::from_bytes(bytes)?),
-            crate::common::ResetLogPointer::ID => {
-                Self::ResetLogPointer(crate::common::ResetLogPointer::from_bytes(bytes)?)
-            }
-            crate::common::AdvanceLogPointer::ID => {
-                Self::AdvanceLogPointer(crate::common::AdvanceLogPointer::from_bytes(bytes)?)
-            }
-            crate::common::ResetBootRegisters::ID => {
-                Self::ResetBootRegisters(crate::common::ResetBootRegisters::from_bytes(bytes)?)
-            }
-            crate::common::FormatSdCard::ID => {
-                Self::FormatSdCard(crate::common::FormatSdCard::from_bytes(bytes)?)
-            }
-            crate::common::EraseFile::ID => {
-                Self::EraseFile(crate::common::EraseFile::from_bytes(bytes)?)
-            }
-            crate::common::LoadFileDownloadBlock::ID => {
-                Self::LoadFileDownloadBlock(crate::common::LoadFileDownloadBlock::from_bytes(bytes)?)
-            }
-            crate::common::AdvanceFileListReadPointer::ID => {
-                Self::AdvanceFileListReadPointer(crate::common::AdvanceFileListReadPointer::from_bytes(bytes)?)
-            }
-            crate::common::InitiateFileUpload::ID => {
-                Self::InitiateFileUpload(crate::common::InitiateFileUpload::from_bytes(bytes)?)
-            }
-            crate::common::FileUploadPacket::ID => {
-                Self::FileUploadPacket(crate::common::FileUploadPacket::from_bytes(bytes)?)
-            }
-            crate::common::FinalizeUploadBlock::ID => {
-                Self::FinalizeUploadBlock(crate::common::FinalizeUploadBlock::from_bytes(bytes)?)
-            }
-            crate::common::ResetUploadBlock::ID => {
-                Self::ResetUploadBlock(crate::common::ResetUploadBlock::from_bytes(bytes)?)
-            }
-            crate::common::ResetFileListReadPointer::ID => {
-                Self::ResetFileListReadPointer(crate::common::ResetFileListReadPointer::from_bytes(bytes)?)
-            }
-            crate::common::InitiateDownloadBurst::ID => {
-                Self::InitiateDownloadBurst(crate::common::InitiateDownloadBurst::from_bytes(bytes)?)
-            }
-            crate::common::CacheEnabledState::SET_ID => {
-                Self::CacheEnabledState(crate::common::CacheEnabledState::from_bytes(bytes)?)
-            }
-            crate::common::SramScrubParameters::SET_ID => {
-                Self::SramScrubParameters(crate::common::SramScrubParameters::from_bytes(bytes)?)
-            }
-            crate::common::CurrentUnixTime::SET_ID => {
-                Self::CurrentUnixTime(crate::common::CurrentUnixTime::from_bytes(bytes)?)
-            }
-            crate::common::UnixTimeSaveToFlash::SET_ID => {
-                Self::UnixTimeSaveToFlash(crate::common::UnixTimeSaveToFlash::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap1::SET_ID => {
-                Self::HoleMap1(crate::common::HoleMap1::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap2::SET_ID => {
-                Self::HoleMap2(crate::common::HoleMap2::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap3::SET_ID => {
-                Self::HoleMap3(crate::common::HoleMap3::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap4::SET_ID => {
-                Self::HoleMap4(crate::common::HoleMap4::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap5::SET_ID => {
-                Self::HoleMap5(crate::common::HoleMap5::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap6::SET_ID => {
-                Self::HoleMap6(crate::common::HoleMap6::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap7::SET_ID => {
-                Self::HoleMap7(crate::common::HoleMap7::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap8::SET_ID => {
-                Self::HoleMap8(crate::common::HoleMap8::from_bytes(bytes)?)
-            }
-            DeployMagnetometerBoom::ID => {
-                Self::DeployMagnetometerBoom(DeployMagnetometerBoom::from_bytes(bytes)?)
-            }
-            SetAdcsRunMode::ID => Self::SetAdcsRunMode(SetAdcsRunMode::from_bytes(bytes)?),
-            ClearErrors::ID => Self::ClearErrors(ClearErrors::from_bytes(bytes)?),
-            SetAttitudeControlMode::ID => {
-                Self::SetAttitudeControlMode(SetAttitudeControlMode::from_bytes(bytes)?)
-            }
-            SetAttitudeEstimationMode::ID => {
-                Self::SetAttitudeEstimationMode(SetAttitudeEstimationMode::from_bytes(bytes)?)
-            }
-            SetMagnetorquerOutput::ID => {
-                Self::SetMagnetorquerOutput(SetMagnetorquerOutput::from_bytes(bytes)?)
-            }
-            SetWheelSpeed::ID => Self::SetWheelSpeed(SetWheelSpeed::from_bytes(bytes)?),
-            TriggerAdcsLoop::ID => Self::TriggerAdcsLoop(TriggerAdcsLoop::from_bytes(bytes)?),
-            TriggerSimulatedLoop::ID => {
-                Self::TriggerSimulatedLoop(TriggerSimulatedLoop::from_bytes(bytes)?)
-            }
-            Asgp4RunMode::ID => Self::Asgp4RunMode(Asgp4RunMode::from_bytes(bytes)?),
-            Asgp4Trigger::ID => Self::Asgp4Trigger(Asgp4Trigger::from_bytes(bytes)?),
-            SetModeOfMagnetometerOperation::ID => {
-                Self::SetModeOfMagnetometerOperation(SetModeOfMagnetometerOperation::from_bytes(bytes)?)
-            }
-            ConvertToJpgFile::ID => Self::ConvertToJpgFile(ConvertToJpgFile::from_bytes(bytes)?),
-            SaveConfiguration::ID => Self::SaveConfiguration(SaveConfiguration::from_bytes(bytes)?),
-            SaveOrbitParameters::ID => {
-                Self::SaveOrbitParameters(SaveOrbitParameters::from_bytes(bytes)?)
-            }
-            SaveImage::ID => Self::SaveImage(SaveImage::from_bytes(bytes)?),
-            SetMagnetorquerConfiguration::SET_ID => {
-                Self::SetMagnetorquerConfiguration(SetMagnetorquerConfiguration::from_bytes(bytes)?)
-            }
-            SetWheelConfiguration::SET_ID => {
-                Self::SetWheelConfiguration(SetWheelConfiguration::from_bytes(bytes)?)
-            }
-            SetRateGyroConfiguration::SET_ID => {
-                Self::SetRateGyroConfiguration(SetRateGyroConfiguration::from_bytes(bytes)?)
-            }
-            CssConfiguration::SET_ID => {
-                Self::CssConfiguration(CssConfiguration::from_bytes(bytes)?)
-            }
-            AdcsPowerControl::SET_ID => {
-                Self::AdcsPowerControl(AdcsPowerControl::from_bytes(bytes)?)
-            }
-            CommandedAttitudeAngles::SET_ID => {
-                Self::CommandedAttitudeAngles(CommandedAttitudeAngles::from_bytes(bytes)?)
-            }
-            TrackingControllerTargetReference::SET_ID => {
-                Self::TrackingControllerTargetReference(TrackingControllerTargetReference::from_bytes(bytes)?)
-            }
-            SetStarTrackerConfiguration::SET_ID => {
-                Self::SetStarTrackerConfiguration(SetStarTrackerConfiguration::from_bytes(bytes)?)
-            }
-            CubesenseConfiguration::SET_ID => {
-                Self::CubesenseConfiguration(CubesenseConfiguration::from_bytes(bytes)?)
-            }
-            MagnetometerConfiguration::SET_ID => {
-                Self::MagnetometerConfiguration(MagnetometerConfiguration::from_bytes(bytes)?)
-            }
-            RedundantMagConfiguration::SET_ID => {
-                Self::RedundantMagConfiguration(RedundantMagConfiguration::from_bytes(bytes)?)
-            }
-            AdcsConfiguration::SET_ID => {
-                Self::AdcsConfiguration(AdcsConfiguration::from_bytes(bytes)?)
-            }
-            Sgp4OrbitParameters::SET_ID => {
-                Self::Sgp4OrbitParameters(Sgp4OrbitParameters::from_bytes(bytes)?)
-            }
-            SetDetumblingControlParameters::SET_ID => {
-                Self::SetDetumblingControlParameters(SetDetumblingControlParameters::from_bytes(bytes)?)
-            }
-            SetYWheelControlParameters::SET_ID => {
-                Self::SetYWheelControlParameters(SetYWheelControlParameters::from_bytes(bytes)?)
-            }
-            SetReactionWheelControlParameters::SET_ID => {
-                Self::SetReactionWheelControlParameters(SetReactionWheelControlParameters::from_bytes(bytes)?)
-            }
-            SetTrackingControllerGainParameters::SET_ID => {
-                Self::SetTrackingControllerGainParameters(SetTrackingControllerGainParameters::from_bytes(bytes)?)
-            }
-            MomentOfInertiaMatrix::SET_ID => {
-                Self::MomentOfInertiaMatrix(MomentOfInertiaMatrix::from_bytes(bytes)?)
-            }
-            EstimationParameters::SET_ID => {
-                Self::EstimationParameters(EstimationParameters::from_bytes(bytes)?)
-            }
-            AdcsSystemConfiguration::SET_ID => {
-                Self::AdcsSystemConfiguration(AdcsSystemConfiguration::from_bytes(bytes)?)
-            }
-            UserCodedControllerAndEstimatorParameters::SET_ID => {
-                Self::UserCodedControllerAndEstimatorParameters(UserCodedControllerAndEstimatorParameters::from_bytes(bytes)?)
-            }
-            AugmentedSgp4Parameters::SET_ID => {
-                Self::AugmentedSgp4Parameters(AugmentedSgp4Parameters::from_bytes(bytes)?)
-            }
-            SdLog1Configuration::SET_ID => {
-                Self::SdLog1Configuration(SdLog1Configuration::from_bytes(bytes)?)
-            }
-            SdLog2Configuration::SET_ID => {
-                Self::SdLog2Configuration(SdLog2Configuration::from_bytes(bytes)?)
-            }
-            UartLogConfiguration::SET_ID => {
-                Self::UartLogConfiguration(UartLogConfiguration::from_bytes(bytes)?)
-            }
-            InertialPointingReferenceVector::SET_ID => {
-                Self::InertialPointingReferenceVector(InertialPointingReferenceVector::from_bytes(bytes)?)
-            }
+            crate::common::Reset::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Reset(crate::common::Reset::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::Reset::LENGTH, bytes.len()),
+            },
+            crate::common::ResetLogPointer::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ResetLogPointer(crate::common::ResetLogPointer::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::ResetLogPointer::LENGTH, bytes.len()),
+            },
+            crate::common::AdvanceLogPointer::ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdvanceLogPointer(crate::common::AdvanceLogPointer::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::AdvanceLogPointer::LENGTH, bytes.len()),
+            },
+            crate::common::ResetBootRegisters::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ResetBootRegisters(crate::common::ResetBootRegisters::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::ResetBootRegisters::LENGTH, bytes.len()),
+            },
+            crate::common::FormatSdCard::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FormatSdCard(crate::common::FormatSdCard::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::FormatSdCard::LENGTH, bytes.len()),
+            },
+            crate::common::EraseFile::ID => match bytes.try_into() {
+                Ok(bytes) => Self::EraseFile(crate::common::EraseFile::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::EraseFile::LENGTH, bytes.len()),
+            },
+            crate::common::LoadFileDownloadBlock::ID => match bytes.try_into() {
+                Ok(bytes) => Self::LoadFileDownloadBlock(crate::common::LoadFileDownloadBlock::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::LoadFileDownloadBlock::LENGTH, bytes.len()),
+            },
+            crate::common::AdvanceFileListReadPointer::ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdvanceFileListReadPointer(crate::common::AdvanceFileListReadPointer::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::AdvanceFileListReadPointer::LENGTH, bytes.len()),
+            },
+            crate::common::InitiateFileUpload::ID => match bytes.try_into() {
+                Ok(bytes) => Self::InitiateFileUpload(crate::common::InitiateFileUpload::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::InitiateFileUpload::LENGTH, bytes.len()),
+            },
+            crate::common::FileUploadPacket::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FileUploadPacket(crate::common::FileUploadPacket::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::FileUploadPacket::LENGTH, bytes.len()),
+            },
+            crate::common::FinalizeUploadBlock::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FinalizeUploadBlock(crate::common::FinalizeUploadBlock::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::FinalizeUploadBlock::LENGTH, bytes.len()),
+            },
+            crate::common::ResetUploadBlock::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ResetUploadBlock(crate::common::ResetUploadBlock::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::ResetUploadBlock::LENGTH, bytes.len()),
+            },
+            crate::common::ResetFileListReadPointer::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ResetFileListReadPointer(crate::common::ResetFileListReadPointer::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::ResetFileListReadPointer::LENGTH, bytes.len()),
+            },
+            crate::common::InitiateDownloadBurst::ID => match bytes.try_into() {
+                Ok(bytes) => Self::InitiateDownloadBurst(crate::common::InitiateDownloadBurst::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::InitiateDownloadBurst::LENGTH, bytes.len()),
+            },
+            crate::common::CacheEnabledState::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CacheEnabledState(crate::common::CacheEnabledState::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::CacheEnabledState::LENGTH, bytes.len()),
+            },
+            crate::common::SramScrubParameters::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SramScrubParameters(crate::common::SramScrubParameters::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::SramScrubParameters::LENGTH, bytes.len()),
+            },
+            crate::common::CurrentUnixTime::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CurrentUnixTime(crate::common::CurrentUnixTime::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::CurrentUnixTime::LENGTH, bytes.len()),
+            },
+            crate::common::UnixTimeSaveToFlash::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::UnixTimeSaveToFlash(crate::common::UnixTimeSaveToFlash::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::UnixTimeSaveToFlash::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap1::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap1(crate::common::HoleMap1::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap1::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap2::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap2(crate::common::HoleMap2::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap2::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap3::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap3(crate::common::HoleMap3::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap3::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap4::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap4(crate::common::HoleMap4::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap4::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap5::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap5(crate::common::HoleMap5::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap5::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap6::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap6(crate::common::HoleMap6::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap6::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap7::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap7(crate::common::HoleMap7::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap7::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap8::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap8(crate::common::HoleMap8::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap8::LENGTH, bytes.len()),
+            },
+            DeployMagnetometerBoom::ID => match bytes.try_into() {
+                Ok(bytes) => Self::DeployMagnetometerBoom(DeployMagnetometerBoom::from_array(bytes)),
+                Err(_) => return Error::length(DeployMagnetometerBoom::LENGTH, bytes.len()),
+            },
+            SetAdcsRunMode::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetAdcsRunMode(SetAdcsRunMode::from_array(bytes)),
+                Err(_) => return Error::length(SetAdcsRunMode::LENGTH, bytes.len()),
+            },
+            ClearErrors::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ClearErrors(ClearErrors::from_array(bytes)),
+                Err(_) => return Error::length(ClearErrors::LENGTH, bytes.len()),
+            },
+            SetAttitudeControlMode::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetAttitudeControlMode(SetAttitudeControlMode::from_array(bytes)),
+                Err(_) => return Error::length(SetAttitudeControlMode::LENGTH, bytes.len()),
+            },
+            SetAttitudeEstimationMode::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetAttitudeEstimationMode(SetAttitudeEstimationMode::from_array(bytes)),
+                Err(_) => return Error::length(SetAttitudeEstimationMode::LENGTH, bytes.len()),
+            },
+            SetMagnetorquerOutput::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetMagnetorquerOutput(SetMagnetorquerOutput::from_array(bytes)),
+                Err(_) => return Error::length(SetMagnetorquerOutput::LENGTH, bytes.len()),
+            },
+            SetWheelSpeed::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetWheelSpeed(SetWheelSpeed::from_array(bytes)),
+                Err(_) => return Error::length(SetWheelSpeed::LENGTH, bytes.len()),
+            },
+            TriggerAdcsLoop::ID => match bytes.try_into() {
+                Ok(bytes) => Self::TriggerAdcsLoop(TriggerAdcsLoop::from_array(bytes)),
+                Err(_) => return Error::length(TriggerAdcsLoop::LENGTH, bytes.len()),
+            },
+            TriggerSimulatedLoop::ID => match bytes.try_into() {
+                Ok(bytes) => Self::TriggerSimulatedLoop(TriggerSimulatedLoop::from_array(bytes)),
+                Err(_) => return Error::length(TriggerSimulatedLoop::LENGTH, bytes.len()),
+            },
+            Asgp4RunMode::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Asgp4RunMode(Asgp4RunMode::from_array(bytes)),
+                Err(_) => return Error::length(Asgp4RunMode::LENGTH, bytes.len()),
+            },
+            Asgp4Trigger::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Asgp4Trigger(Asgp4Trigger::from_array(bytes)),
+                Err(_) => return Error::length(Asgp4Trigger::LENGTH, bytes.len()),
+            },
+            SetModeOfMagnetometerOperation::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetModeOfMagnetometerOperation(SetModeOfMagnetometerOperation::from_array(bytes)),
+                Err(_) => return Error::length(SetModeOfMagnetometerOperation::LENGTH, bytes.len()),
+            },
+            ConvertToJpgFile::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ConvertToJpgFile(ConvertToJpgFile::from_array(bytes)),
+                Err(_) => return Error::length(ConvertToJpgFile::LENGTH, bytes.len()),
+            },
+            SaveConfiguration::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SaveConfiguration(SaveConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(SaveConfiguration::LENGTH, bytes.len()),
+            },
+            SaveOrbitParameters::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SaveOrbitParameters(SaveOrbitParameters::from_array(bytes)),
+                Err(_) => return Error::length(SaveOrbitParameters::LENGTH, bytes.len()),
+            },
+            SaveImage::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SaveImage(SaveImage::from_array(bytes)),
+                Err(_) => return Error::length(SaveImage::LENGTH, bytes.len()),
+            },
+            SetMagnetorquerConfiguration::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetMagnetorquerConfiguration(SetMagnetorquerConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(SetMagnetorquerConfiguration::LENGTH, bytes.len()),
+            },
+            SetWheelConfiguration::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetWheelConfiguration(SetWheelConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(SetWheelConfiguration::LENGTH, bytes.len()),
+            },
+            SetRateGyroConfiguration::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetRateGyroConfiguration(SetRateGyroConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(SetRateGyroConfiguration::LENGTH, bytes.len()),
+            },
+            CssConfiguration::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CssConfiguration(CssConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(CssConfiguration::LENGTH, bytes.len()),
+            },
+            AdcsPowerControl::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdcsPowerControl(AdcsPowerControl::from_array(bytes)),
+                Err(_) => return Error::length(AdcsPowerControl::LENGTH, bytes.len()),
+            },
+            CommandedAttitudeAngles::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CommandedAttitudeAngles(CommandedAttitudeAngles::from_array(bytes)),
+                Err(_) => return Error::length(CommandedAttitudeAngles::LENGTH, bytes.len()),
+            },
+            TrackingControllerTargetReference::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::TrackingControllerTargetReference(TrackingControllerTargetReference::from_array(bytes)),
+                Err(_) => return Error::length(TrackingControllerTargetReference::LENGTH, bytes.len()),
+            },
+            SetStarTrackerConfiguration::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetStarTrackerConfiguration(SetStarTrackerConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(SetStarTrackerConfiguration::LENGTH, bytes.len()),
+            },
+            CubesenseConfiguration::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CubesenseConfiguration(CubesenseConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(CubesenseConfiguration::LENGTH, bytes.len()),
+            },
+            MagnetometerConfiguration::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::MagnetometerConfiguration(MagnetometerConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(MagnetometerConfiguration::LENGTH, bytes.len()),
+            },
+            RedundantMagConfiguration::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::RedundantMagConfiguration(RedundantMagConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(RedundantMagConfiguration::LENGTH, bytes.len()),
+            },
+            AdcsConfiguration::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdcsConfiguration(AdcsConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(AdcsConfiguration::LENGTH, bytes.len()),
+            },
+            Sgp4OrbitParameters::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::Sgp4OrbitParameters(Sgp4OrbitParameters::from_array(bytes)),
+                Err(_) => return Error::length(Sgp4OrbitParameters::LENGTH, bytes.len()),
+            },
+            SetDetumblingControlParameters::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetDetumblingControlParameters(SetDetumblingControlParameters::from_array(bytes)),
+                Err(_) => return Error::length(SetDetumblingControlParameters::LENGTH, bytes.len()),
+            },
+            SetYWheelControlParameters::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetYWheelControlParameters(SetYWheelControlParameters::from_array(bytes)),
+                Err(_) => return Error::length(SetYWheelControlParameters::LENGTH, bytes.len()),
+            },
+            SetReactionWheelControlParameters::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetReactionWheelControlParameters(SetReactionWheelControlParameters::from_array(bytes)),
+                Err(_) => return Error::length(SetReactionWheelControlParameters::LENGTH, bytes.len()),
+            },
+            SetTrackingControllerGainParameters::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetTrackingControllerGainParameters(SetTrackingControllerGainParameters::from_array(bytes)),
+                Err(_) => return Error::length(SetTrackingControllerGainParameters::LENGTH, bytes.len()),
+            },
+            MomentOfInertiaMatrix::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::MomentOfInertiaMatrix(MomentOfInertiaMatrix::from_array(bytes)),
+                Err(_) => return Error::length(MomentOfInertiaMatrix::LENGTH, bytes.len()),
+            },
+            EstimationParameters::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::EstimationParameters(EstimationParameters::from_array(bytes)),
+                Err(_) => return Error::length(EstimationParameters::LENGTH, bytes.len()),
+            },
+            AdcsSystemConfiguration::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdcsSystemConfiguration(AdcsSystemConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(AdcsSystemConfiguration::LENGTH, bytes.len()),
+            },
+            UserCodedControllerAndEstimatorParameters::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::UserCodedControllerAndEstimatorParameters(UserCodedControllerAndEstimatorParameters::from_array(bytes)),
+                Err(_) => return Error::length(UserCodedControllerAndEstimatorParameters::LENGTH, bytes.len()),
+            },
+            AugmentedSgp4Parameters::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::AugmentedSgp4Parameters(AugmentedSgp4Parameters::from_array(bytes)),
+                Err(_) => return Error::length(AugmentedSgp4Parameters::LENGTH, bytes.len()),
+            },
+            SdLog1Configuration::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SdLog1Configuration(SdLog1Configuration::from_array(bytes)),
+                Err(_) => return Error::length(SdLog1Configuration::LENGTH, bytes.len()),
+            },
+            SdLog2Configuration::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SdLog2Configuration(SdLog2Configuration::from_array(bytes)),
+                Err(_) => return Error::length(SdLog2Configuration::LENGTH, bytes.len()),
+            },
+            UartLogConfiguration::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::UartLogConfiguration(UartLogConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(UartLogConfiguration::LENGTH, bytes.len()),
+            },
+            InertialPointingReferenceVector::SET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::InertialPointingReferenceVector(InertialPointingReferenceVector::from_array(bytes)),
+                Err(_) => return Error::length(InertialPointingReferenceVector::LENGTH, bytes.len()),
+            },
             _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
@@ -708,82 +796,84 @@ impl Telecommand {
     /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
-            Self::Reset(message) => write_to(buffer, &message.to_bytes()),
-            Self::ResetLogPointer(message) => write_to(buffer, &message.to_bytes()),
-            Self::AdvanceLogPointer(message) => write_to(buffer, &message.to_bytes()),
-            Self::ResetBootRegisters(message) => write_to(buffer, &message.to_bytes()),
-            Self::FormatSdCard(message) => write_to(buffer, &message.to_bytes()),
-            Self::EraseFile(message) => write_to(buffer, &message.to_bytes()),
-            Self::LoadFileDownloadBlock(message) => write_to(buffer, &message.to_bytes()),
-            Self::AdvanceFileListReadPointer(message) => write_to(buffer, &message.to_bytes()),
-            Self::InitiateFileUpload(message) => write_to(buffer, &message.to_bytes()),
-            Self::FileUploadPacket(message) => write_to(buffer, &message.to_bytes()),
-            Self::FinalizeUploadBlock(message) => write_to(buffer, &message.to_bytes()),
-            Self::ResetUploadBlock(message) => write_to(buffer, &message.to_bytes()),
-            Self::ResetFileListReadPointer(message) => write_to(buffer, &message.to_bytes()),
-            Self::InitiateDownloadBurst(message) => write_to(buffer, &message.to_bytes()),
-            Self::CacheEnabledState(message) => write_to(buffer, &message.to_bytes()),
-            Self::SramScrubParameters(message) => write_to(buffer, &message.to_bytes()),
-            Self::CurrentUnixTime(message) => write_to(buffer, &message.to_bytes()),
-            Self::UnixTimeSaveToFlash(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap1(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap2(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap3(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap4(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap5(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap6(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap7(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap8(message) => write_to(buffer, &message.to_bytes()),
-            Self::DeployMagnetometerBoom(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetAdcsRunMode(message) => write_to(buffer, &message.to_bytes()),
-            Self::ClearErrors(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetAttitudeControlMode(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetAttitudeEstimationMode(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetMagnetorquerOutput(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetWheelSpeed(message) => write_to(buffer, &message.to_bytes()),
-            Self::TriggerAdcsLoop(message) => write_to(buffer, &message.to_bytes()),
-            Self::TriggerSimulatedLoop(message) => write_to(buffer, &message.to_bytes()),
-            Self::Asgp4RunMode(message) => write_to(buffer, &message.to_bytes()),
-            Self::Asgp4Trigger(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetModeOfMagnetometerOperation(message) => write_to(buffer, &message.to_bytes()),
-            Self::ConvertToJpgFile(message) => write_to(buffer, &message.to_bytes()),
-            Self::SaveConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::SaveOrbitParameters(message) => write_to(buffer, &message.to_bytes()),
-            Self::SaveImage(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetMagnetorquerConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetWheelConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetRateGyroConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::CssConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::AdcsPowerControl(message) => write_to(buffer, &message.try_to_bytes()?),
-            Self::CommandedAttitudeAngles(message) => write_to(buffer, &message.to_bytes()),
+            Self::Reset(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ResetLogPointer(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdvanceLogPointer(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ResetBootRegisters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::FormatSdCard(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EraseFile(message) => write_to(buffer, &message.to_bytes()?),
+            Self::LoadFileDownloadBlock(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdvanceFileListReadPointer(message) => write_to(buffer, &message.to_bytes()?),
+            Self::InitiateFileUpload(message) => write_to(buffer, &message.to_bytes()?),
+            Self::FileUploadPacket(message) => write_to(buffer, &message.to_bytes()?),
+            Self::FinalizeUploadBlock(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ResetUploadBlock(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ResetFileListReadPointer(message) => write_to(buffer, &message.to_bytes()?),
+            Self::InitiateDownloadBurst(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CacheEnabledState(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SramScrubParameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CurrentUnixTime(message) => write_to(buffer, &message.to_bytes()?),
+            Self::UnixTimeSaveToFlash(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap1(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap2(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap3(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap4(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap5(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap6(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap7(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap8(message) => write_to(buffer, &message.to_bytes()?),
+            Self::DeployMagnetometerBoom(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetAdcsRunMode(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ClearErrors(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetAttitudeControlMode(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetAttitudeEstimationMode(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetMagnetorquerOutput(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetWheelSpeed(message) => write_to(buffer, &message.to_bytes()?),
+            Self::TriggerAdcsLoop(message) => write_to(buffer, &message.to_bytes()?),
+            Self::TriggerSimulatedLoop(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Asgp4RunMode(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Asgp4Trigger(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetModeOfMagnetometerOperation(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ConvertToJpgFile(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SaveConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SaveOrbitParameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SaveImage(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetMagnetorquerConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetWheelConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetRateGyroConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CssConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdcsPowerControl(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CommandedAttitudeAngles(message) => write_to(buffer, &message.to_bytes()?),
             Self::TrackingControllerTargetReference(message) => {
-                write_to(buffer, &message.to_bytes())
+                write_to(buffer, &message.to_bytes()?)
             }
-            Self::SetStarTrackerConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::CubesenseConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::MagnetometerConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::RedundantMagConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::AdcsConfiguration(message) => write_to(buffer, &message.try_to_bytes()?),
-            Self::Sgp4OrbitParameters(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetDetumblingControlParameters(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetYWheelControlParameters(message) => write_to(buffer, &message.to_bytes()),
+            Self::SetStarTrackerConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CubesenseConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::MagnetometerConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RedundantMagConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdcsConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Sgp4OrbitParameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetDetumblingControlParameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetYWheelControlParameters(message) => write_to(buffer, &message.to_bytes()?),
             Self::SetReactionWheelControlParameters(message) => {
-                write_to(buffer, &message.try_to_bytes()?)
+                write_to(buffer, &message.to_bytes()?)
             }
             Self::SetTrackingControllerGainParameters(message) => {
-                write_to(buffer, &message.to_bytes())
+                write_to(buffer, &message.to_bytes()?)
             }
-            Self::MomentOfInertiaMatrix(message) => write_to(buffer, &message.to_bytes()),
-            Self::EstimationParameters(message) => write_to(buffer, &message.try_to_bytes()?),
-            Self::AdcsSystemConfiguration(message) => write_to(buffer, &message.try_to_bytes()?),
+            Self::MomentOfInertiaMatrix(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EstimationParameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdcsSystemConfiguration(message) => write_to(buffer, &message.to_bytes()?),
             Self::UserCodedControllerAndEstimatorParameters(message) => {
-                write_to(buffer, &message.to_bytes())
+                write_to(buffer, &message.to_bytes()?)
             }
-            Self::AugmentedSgp4Parameters(message) => write_to(buffer, &message.to_bytes()),
-            Self::SdLog1Configuration(message) => write_to(buffer, &message.to_bytes()),
-            Self::SdLog2Configuration(message) => write_to(buffer, &message.to_bytes()),
-            Self::UartLogConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::InertialPointingReferenceVector(message) => write_to(buffer, &message.to_bytes()),
+            Self::AugmentedSgp4Parameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SdLog1Configuration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SdLog2Configuration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::UartLogConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::InertialPointingReferenceVector(message) => {
+                write_to(buffer, &message.to_bytes()?)
+            }
         }
     }
 
@@ -1294,292 +1384,510 @@ impl Telemetry {
     /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
-            crate::common::Identification::ID => {
-                Self::Identification(crate::common::Identification::from_bytes(bytes)?)
-            }
-            crate::common::BootAndRunningProgramStatus::ID => {
-                Self::BootAndRunningProgramStatus(crate::common::BootAndRunningProgramStatus::from_bytes(bytes)?)
-            }
-            crate::common::BootIndexAndStatus::ID => {
-                Self::BootIndexAndStatus(crate::common::BootIndexAndStatus::from_bytes(bytes)?)
-            }
-            crate::common::LastLoggedEvent::ID => {
-                Self::LastLoggedEvent(crate::common::LastLoggedEvent::from_bytes(bytes)?)
-            }
-            crate::common::SramLatchupCounters::ID => {
-                Self::SramLatchupCounters(crate::common::SramLatchupCounters::from_bytes(bytes)?)
-            }
-            crate::common::EdacErrorCounters::ID => {
-                Self::EdacErrorCounters(crate::common::EdacErrorCounters::from_bytes(bytes)?)
-            }
-            crate::common::CommunicationStatus::ID => {
-                Self::CommunicationStatus(crate::common::CommunicationStatus::from_bytes(bytes)?)
-            }
-            crate::common::SdCardFormatEraseProgress::ID => {
-                Self::SdCardFormatEraseProgress(crate::common::SdCardFormatEraseProgress::from_bytes(bytes)?)
-            }
-            crate::common::TelecommandAcknowledge::ID => {
-                Self::TelecommandAcknowledge(crate::common::TelecommandAcknowledge::from_bytes(bytes)?)
-            }
-            crate::common::FileDownloadBufferWithFileContents::ID => {
-                Self::FileDownloadBufferWithFileContents(crate::common::FileDownloadBufferWithFileContents::from_bytes(bytes)?)
-            }
-            crate::common::DownloadBlockReady::ID => {
-                Self::DownloadBlockReady(crate::common::DownloadBlockReady::from_bytes(bytes)?)
-            }
-            crate::common::FileInformation::ID => {
-                Self::FileInformation(crate::common::FileInformation::from_bytes(bytes)?)
-            }
-            crate::common::InitializeUploadComplete::ID => {
-                Self::InitializeUploadComplete(crate::common::InitializeUploadComplete::from_bytes(bytes)?)
-            }
-            crate::common::UploadBlockComplete::ID => {
-                Self::UploadBlockComplete(crate::common::UploadBlockComplete::from_bytes(bytes)?)
-            }
-            crate::common::BlockChecksum::ID => {
-                Self::BlockChecksum(crate::common::BlockChecksum::from_bytes(bytes)?)
-            }
-            crate::common::CacheEnabledState::GET_ID => {
-                Self::CacheEnabledState(crate::common::CacheEnabledState::from_bytes(bytes)?)
-            }
-            crate::common::SramScrubParameters::GET_ID => {
-                Self::SramScrubParameters(crate::common::SramScrubParameters::from_bytes(bytes)?)
-            }
-            crate::common::CurrentUnixTime::GET_ID => {
-                Self::CurrentUnixTime(crate::common::CurrentUnixTime::from_bytes(bytes)?)
-            }
-            crate::common::UnixTimeSaveToFlash::GET_ID => {
-                Self::UnixTimeSaveToFlash(crate::common::UnixTimeSaveToFlash::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap1::GET_ID => {
-                Self::HoleMap1(crate::common::HoleMap1::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap2::GET_ID => {
-                Self::HoleMap2(crate::common::HoleMap2::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap3::GET_ID => {
-                Self::HoleMap3(crate::common::HoleMap3::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap4::GET_ID => {
-                Self::HoleMap4(crate::common::HoleMap4::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap5::GET_ID => {
-                Self::HoleMap5(crate::common::HoleMap5::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap6::GET_ID => {
-                Self::HoleMap6(crate::common::HoleMap6::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap7::GET_ID => {
-                Self::HoleMap7(crate::common::HoleMap7::from_bytes(bytes)?)
-            }
-            crate::common::HoleMap8::GET_ID => {
-                Self::HoleMap8(crate::common::HoleMap8::from_bytes(bytes)?)
-            }
-            CurrentAdcsState::ID => Self::CurrentAdcsState(CurrentAdcsState::from_bytes(bytes)?),
-            JpgConversionProgress::ID => {
-                Self::JpgConversionProgress(JpgConversionProgress::from_bytes(bytes)?)
-            }
-            State::ID => Self::State(State::from_bytes(bytes)?),
-            EstimatedAttitudeAngles::ID => {
-                Self::EstimatedAttitudeAngles(EstimatedAttitudeAngles::from_bytes(bytes)?)
-            }
-            EstimatedAngularRates::ID => {
-                Self::EstimatedAngularRates(EstimatedAngularRates::from_bytes(bytes)?)
-            }
-            SatellitePositionEci::ID => {
-                Self::SatellitePositionEci(SatellitePositionEci::from_bytes(bytes)?)
-            }
-            SatelliteVelocityEci::ID => {
-                Self::SatelliteVelocityEci(SatelliteVelocityEci::from_bytes(bytes)?)
-            }
-            SatellitePositionLlh::ID => {
-                Self::SatellitePositionLlh(SatellitePositionLlh::from_bytes(bytes)?)
-            }
-            MagneticFieldVector::ID => {
-                Self::MagneticFieldVector(MagneticFieldVector::from_bytes(bytes)?)
-            }
-            CoarseSunVector::ID => Self::CoarseSunVector(CoarseSunVector::from_bytes(bytes)?),
-            FineSunVector::ID => Self::FineSunVector(FineSunVector::from_bytes(bytes)?),
-            NadirVector::ID => Self::NadirVector(NadirVector::from_bytes(bytes)?),
-            RateSensorRates::ID => Self::RateSensorRates(RateSensorRates::from_bytes(bytes)?),
-            WheelSpeed::ID => Self::WheelSpeed(WheelSpeed::from_bytes(bytes)?),
-            MagnetorquerCommand::ID => {
-                Self::MagnetorquerCommand(MagnetorquerCommand::from_bytes(bytes)?)
-            }
-            WheelSpeedCommands::ID => {
-                Self::WheelSpeedCommands(WheelSpeedCommands::from_bytes(bytes)?)
-            }
-            IgrfModelledMagneticFieldVector::ID => {
-                Self::IgrfModelledMagneticFieldVector(IgrfModelledMagneticFieldVector::from_bytes(bytes)?)
-            }
-            ModelledSunVector::ID => Self::ModelledSunVector(ModelledSunVector::from_bytes(bytes)?),
-            EstimatedGyroBias::ID => Self::EstimatedGyroBias(EstimatedGyroBias::from_bytes(bytes)?),
-            EstimationInnovationVector::ID => {
-                Self::EstimationInnovationVector(EstimationInnovationVector::from_bytes(bytes)?)
-            }
-            QuaternionErrorVector::ID => {
-                Self::QuaternionErrorVector(QuaternionErrorVector::from_bytes(bytes)?)
-            }
-            QuaternionCovariance::ID => {
-                Self::QuaternionCovariance(QuaternionCovariance::from_bytes(bytes)?)
-            }
-            AngularRateCovariance::ID => {
-                Self::AngularRateCovariance(AngularRateCovariance::from_bytes(bytes)?)
-            }
-            RawCam2Sensor::ID => Self::RawCam2Sensor(RawCam2Sensor::from_bytes(bytes)?),
-            RawCam1Sensor::ID => Self::RawCam1Sensor(RawCam1Sensor::from_bytes(bytes)?),
-            RawCss1To6::ID => Self::RawCss1To6(RawCss1To6::from_bytes(bytes)?),
-            RawCss7To10::ID => Self::RawCss7To10(RawCss7To10::from_bytes(bytes)?),
-            RawMagnetometer::ID => Self::RawMagnetometer(RawMagnetometer::from_bytes(bytes)?),
-            Cubesense1Currents::ID => {
-                Self::Cubesense1Currents(Cubesense1Currents::from_bytes(bytes)?)
-            }
-            CubecontrolCurrents::ID => {
-                Self::CubecontrolCurrents(CubecontrolCurrents::from_bytes(bytes)?)
-            }
-            WheelCurrents::ID => Self::WheelCurrents(WheelCurrents::from_bytes(bytes)?),
-            AdcsTemperatures::ID => Self::AdcsTemperatures(AdcsTemperatures::from_bytes(bytes)?),
-            RateSensorTemperatures::ID => {
-                Self::RateSensorTemperatures(RateSensorTemperatures::from_bytes(bytes)?)
-            }
-            RawGpsStatus::ID => Self::RawGpsStatus(RawGpsStatus::from_bytes(bytes)?),
-            RawGpsTime::ID => Self::RawGpsTime(RawGpsTime::from_bytes(bytes)?),
-            RawGpsX::ID => Self::RawGpsX(RawGpsX::from_bytes(bytes)?),
-            RawGpsY::ID => Self::RawGpsY(RawGpsY::from_bytes(bytes)?),
-            RawGpsZ::ID => Self::RawGpsZ(RawGpsZ::from_bytes(bytes)?),
-            Star1BodyVector::ID => Self::Star1BodyVector(Star1BodyVector::from_bytes(bytes)?),
-            Star2BodyVector::ID => Self::Star2BodyVector(Star2BodyVector::from_bytes(bytes)?),
-            Star3BodyVector::ID => Self::Star3BodyVector(Star3BodyVector::from_bytes(bytes)?),
-            Star1OrbitVector::ID => Self::Star1OrbitVector(Star1OrbitVector::from_bytes(bytes)?),
-            Star2OrbitVector::ID => Self::Star2OrbitVector(Star2OrbitVector::from_bytes(bytes)?),
-            Star3OrbitVector::ID => Self::Star3OrbitVector(Star3OrbitVector::from_bytes(bytes)?),
-            StarMagnitude::ID => Self::StarMagnitude(StarMagnitude::from_bytes(bytes)?),
-            StarPerformance1::ID => Self::StarPerformance1(StarPerformance1::from_bytes(bytes)?),
-            StarTiming::ID => Self::StarTiming(StarTiming::from_bytes(bytes)?),
-            AdcsState::ID => Self::AdcsState(AdcsState::from_bytes(bytes)?),
-            AdcsMeasurements::ID => Self::AdcsMeasurements(AdcsMeasurements::from_bytes(bytes)?),
-            ActuatorCommands::ID => Self::ActuatorCommands(ActuatorCommands::from_bytes(bytes)?),
-            EstimationData::ID => Self::EstimationData(EstimationData::from_bytes(bytes)?),
-            RawSensorMeasurements::ID => {
-                Self::RawSensorMeasurements(RawSensorMeasurements::from_bytes(bytes)?)
-            }
-            PowerAndTemperature::ID => {
-                Self::PowerAndTemperature(PowerAndTemperature::from_bytes(bytes)?)
-            }
-            AdcsExecutionTimes::ID => {
-                Self::AdcsExecutionTimes(AdcsExecutionTimes::from_bytes(bytes)?)
-            }
-            AdcsMiscCurrents::ID => Self::AdcsMiscCurrents(AdcsMiscCurrents::from_bytes(bytes)?),
-            FineAngularRates::ID => Self::FineAngularRates(FineAngularRates::from_bytes(bytes)?),
-            RawGpsMeasurements::ID => {
-                Self::RawGpsMeasurements(RawGpsMeasurements::from_bytes(bytes)?)
-            }
-            RawStarTracker::ID => Self::RawStarTracker(RawStarTracker::from_bytes(bytes)?),
-            Star1RawData::ID => Self::Star1RawData(Star1RawData::from_bytes(bytes)?),
-            Star2RawData::ID => Self::Star2RawData(Star2RawData::from_bytes(bytes)?),
-            Star3RawData::ID => Self::Star3RawData(Star3RawData::from_bytes(bytes)?),
-            SecondaryMagnetometerRawMeasurements::ID => {
-                Self::SecondaryMagnetometerRawMeasurements(SecondaryMagnetometerRawMeasurements::from_bytes(bytes)?)
-            }
-            RawRateSensor::ID => Self::RawRateSensor(RawRateSensor::from_bytes(bytes)?),
-            EstimatedQuaternion::ID => {
-                Self::EstimatedQuaternion(EstimatedQuaternion::from_bytes(bytes)?)
-            }
-            EcefPosition::ID => Self::EcefPosition(EcefPosition::from_bytes(bytes)?),
-            AcpExecutionState::ID => Self::AcpExecutionState(AcpExecutionState::from_bytes(bytes)?),
-            CurrentAdcsState2::ID => Self::CurrentAdcsState2(CurrentAdcsState2::from_bytes(bytes)?),
-            Asgp4Tles::ID => Self::Asgp4Tles(Asgp4Tles::from_bytes(bytes)?),
-            CubestarEstimatedRates::ID => {
-                Self::CubestarEstimatedRates(CubestarEstimatedRates::from_bytes(bytes)?)
-            }
-            CubestarEstimatedQuaternion::ID => {
-                Self::CubestarEstimatedQuaternion(CubestarEstimatedQuaternion::from_bytes(bytes)?)
-            }
-            StarPerformance2::ID => Self::StarPerformance2(StarPerformance2::from_bytes(bytes)?),
-            Cubesense2Currents::ID => {
-                Self::Cubesense2Currents(Cubesense2Currents::from_bytes(bytes)?)
-            }
-            StatusOfImageCaptureAndSaveOperation::ID => {
-                Self::StatusOfImageCaptureAndSaveOperation(StatusOfImageCaptureAndSaveOperation::from_bytes(bytes)?)
-            }
-            SetMagnetorquerConfiguration::GET_ID => {
-                Self::SetMagnetorquerConfiguration(SetMagnetorquerConfiguration::from_bytes(bytes)?)
-            }
-            SetWheelConfiguration::GET_ID => {
-                Self::SetWheelConfiguration(SetWheelConfiguration::from_bytes(bytes)?)
-            }
-            SetRateGyroConfiguration::GET_ID => {
-                Self::SetRateGyroConfiguration(SetRateGyroConfiguration::from_bytes(bytes)?)
-            }
-            CssConfiguration::GET_ID => {
-                Self::CssConfiguration(CssConfiguration::from_bytes(bytes)?)
-            }
-            AdcsPowerControl::GET_ID => {
-                Self::AdcsPowerControl(AdcsPowerControl::from_bytes(bytes)?)
-            }
-            CommandedAttitudeAngles::GET_ID => {
-                Self::CommandedAttitudeAngles(CommandedAttitudeAngles::from_bytes(bytes)?)
-            }
-            TrackingControllerTargetReference::GET_ID => {
-                Self::TrackingControllerTargetReference(TrackingControllerTargetReference::from_bytes(bytes)?)
-            }
-            SetStarTrackerConfiguration::GET_ID => {
-                Self::SetStarTrackerConfiguration(SetStarTrackerConfiguration::from_bytes(bytes)?)
-            }
-            CubesenseConfiguration::GET_ID => {
-                Self::CubesenseConfiguration(CubesenseConfiguration::from_bytes(bytes)?)
-            }
-            MagnetometerConfiguration::GET_ID => {
-                Self::MagnetometerConfiguration(MagnetometerConfiguration::from_bytes(bytes)?)
-            }
-            RedundantMagConfiguration::GET_ID => {
-                Self::RedundantMagConfiguration(RedundantMagConfiguration::from_bytes(bytes)?)
-            }
-            AdcsConfiguration::GET_ID => {
-                Self::AdcsConfiguration(AdcsConfiguration::from_bytes(bytes)?)
-            }
-            Sgp4OrbitParameters::GET_ID => {
-                Self::Sgp4OrbitParameters(Sgp4OrbitParameters::from_bytes(bytes)?)
-            }
-            SetDetumblingControlParameters::GET_ID => {
-                Self::SetDetumblingControlParameters(SetDetumblingControlParameters::from_bytes(bytes)?)
-            }
-            SetYWheelControlParameters::GET_ID => {
-                Self::SetYWheelControlParameters(SetYWheelControlParameters::from_bytes(bytes)?)
-            }
-            SetReactionWheelControlParameters::GET_ID => {
-                Self::SetReactionWheelControlParameters(SetReactionWheelControlParameters::from_bytes(bytes)?)
-            }
-            SetTrackingControllerGainParameters::GET_ID => {
-                Self::SetTrackingControllerGainParameters(SetTrackingControllerGainParameters::from_bytes(bytes)?)
-            }
-            MomentOfInertiaMatrix::GET_ID => {
-                Self::MomentOfInertiaMatrix(MomentOfInertiaMatrix::from_bytes(bytes)?)
-            }
-            EstimationParameters::GET_ID => {
-                Self::EstimationParameters(EstimationParameters::from_bytes(bytes)?)
-            }
-            AdcsSystemConfiguration::GET_ID => {
-                Self::AdcsSystemConfiguration(AdcsSystemConfiguration::from_bytes(bytes)?)
-            }
-            UserCodedControllerAndEstimatorParameters::GET_ID => {
-                Self::UserCodedControllerAndEstimatorParameters(UserCodedControllerAndEstimatorParameters::from_bytes(bytes)?)
-            }
-            AugmentedSgp4Parameters::GET_ID => {
-                Self::AugmentedSgp4Parameters(AugmentedSgp4Parameters::from_bytes(bytes)?)
-            }
-            SdLog1Configuration::GET_ID => {
-                Self::SdLog1Configuration(SdLog1Configuration::from_bytes(bytes)?)
-            }
-            SdLog2Configuration::GET_ID => {
-                Self::SdLog2Configuration(SdLog2Configuration::from_bytes(bytes)?)
-            }
-            UartLogConfiguration::GET_ID => {
-                Self::UartLogConfiguration(UartLogConfiguration::from_bytes(bytes)?)
-            }
-            InertialPointingReferenceVector::GET_ID => {
-                Self::InertialPointingReferenceVector(InertialPointingReferenceVector::from_bytes(bytes)?)
-            }
+            crate::common::Identification::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Identification(crate::common::Identification::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::Identification::LENGTH, bytes.len()),
+            },
+            crate::common::BootAndRunningProgramStatus::ID => match bytes.try_into() {
+                Ok(bytes) => Self::BootAndRunningProgramStatus(crate::common::BootAndRunningProgramStatus::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::BootAndRunningProgramStatus::LENGTH, bytes.len()),
+            },
+            crate::common::BootIndexAndStatus::ID => match bytes.try_into() {
+                Ok(bytes) => Self::BootIndexAndStatus(crate::common::BootIndexAndStatus::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::BootIndexAndStatus::LENGTH, bytes.len()),
+            },
+            crate::common::LastLoggedEvent::ID => match bytes.try_into() {
+                Ok(bytes) => Self::LastLoggedEvent(crate::common::LastLoggedEvent::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::LastLoggedEvent::LENGTH, bytes.len()),
+            },
+            crate::common::SramLatchupCounters::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SramLatchupCounters(crate::common::SramLatchupCounters::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::SramLatchupCounters::LENGTH, bytes.len()),
+            },
+            crate::common::EdacErrorCounters::ID => match bytes.try_into() {
+                Ok(bytes) => Self::EdacErrorCounters(crate::common::EdacErrorCounters::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::EdacErrorCounters::LENGTH, bytes.len()),
+            },
+            crate::common::CommunicationStatus::ID => match bytes.try_into() {
+                Ok(bytes) => Self::CommunicationStatus(crate::common::CommunicationStatus::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::CommunicationStatus::LENGTH, bytes.len()),
+            },
+            crate::common::SdCardFormatEraseProgress::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SdCardFormatEraseProgress(crate::common::SdCardFormatEraseProgress::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::SdCardFormatEraseProgress::LENGTH, bytes.len()),
+            },
+            crate::common::TelecommandAcknowledge::ID => match bytes.try_into() {
+                Ok(bytes) => Self::TelecommandAcknowledge(crate::common::TelecommandAcknowledge::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::TelecommandAcknowledge::LENGTH, bytes.len()),
+            },
+            crate::common::FileDownloadBufferWithFileContents::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FileDownloadBufferWithFileContents(crate::common::FileDownloadBufferWithFileContents::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::FileDownloadBufferWithFileContents::LENGTH, bytes.len()),
+            },
+            crate::common::DownloadBlockReady::ID => match bytes.try_into() {
+                Ok(bytes) => Self::DownloadBlockReady(crate::common::DownloadBlockReady::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::DownloadBlockReady::LENGTH, bytes.len()),
+            },
+            crate::common::FileInformation::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FileInformation(crate::common::FileInformation::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::FileInformation::LENGTH, bytes.len()),
+            },
+            crate::common::InitializeUploadComplete::ID => match bytes.try_into() {
+                Ok(bytes) => Self::InitializeUploadComplete(crate::common::InitializeUploadComplete::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::InitializeUploadComplete::LENGTH, bytes.len()),
+            },
+            crate::common::UploadBlockComplete::ID => match bytes.try_into() {
+                Ok(bytes) => Self::UploadBlockComplete(crate::common::UploadBlockComplete::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::UploadBlockComplete::LENGTH, bytes.len()),
+            },
+            crate::common::BlockChecksum::ID => match bytes.try_into() {
+                Ok(bytes) => Self::BlockChecksum(crate::common::BlockChecksum::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::BlockChecksum::LENGTH, bytes.len()),
+            },
+            crate::common::CacheEnabledState::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CacheEnabledState(crate::common::CacheEnabledState::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::CacheEnabledState::LENGTH, bytes.len()),
+            },
+            crate::common::SramScrubParameters::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SramScrubParameters(crate::common::SramScrubParameters::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::SramScrubParameters::LENGTH, bytes.len()),
+            },
+            crate::common::CurrentUnixTime::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CurrentUnixTime(crate::common::CurrentUnixTime::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::CurrentUnixTime::LENGTH, bytes.len()),
+            },
+            crate::common::UnixTimeSaveToFlash::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::UnixTimeSaveToFlash(crate::common::UnixTimeSaveToFlash::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::UnixTimeSaveToFlash::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap1::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap1(crate::common::HoleMap1::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap1::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap2::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap2(crate::common::HoleMap2::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap2::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap3::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap3(crate::common::HoleMap3::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap3::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap4::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap4(crate::common::HoleMap4::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap4::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap5::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap5(crate::common::HoleMap5::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap5::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap6::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap6(crate::common::HoleMap6::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap6::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap7::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap7(crate::common::HoleMap7::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap7::LENGTH, bytes.len()),
+            },
+            crate::common::HoleMap8::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::HoleMap8(crate::common::HoleMap8::from_array(bytes)),
+                Err(_) => return Error::length(crate::common::HoleMap8::LENGTH, bytes.len()),
+            },
+            CurrentAdcsState::ID => match bytes.try_into() {
+                Ok(bytes) => Self::CurrentAdcsState(CurrentAdcsState::from_array(bytes)),
+                Err(_) => return Error::length(CurrentAdcsState::LENGTH, bytes.len()),
+            },
+            JpgConversionProgress::ID => match bytes.try_into() {
+                Ok(bytes) => Self::JpgConversionProgress(JpgConversionProgress::from_array(bytes)),
+                Err(_) => return Error::length(JpgConversionProgress::LENGTH, bytes.len()),
+            },
+            State::ID => match bytes.try_into() {
+                Ok(bytes) => Self::State(State::from_array(bytes)),
+                Err(_) => return Error::length(State::LENGTH, bytes.len()),
+            },
+            EstimatedAttitudeAngles::ID => match bytes.try_into() {
+                Ok(bytes) => Self::EstimatedAttitudeAngles(EstimatedAttitudeAngles::from_array(bytes)),
+                Err(_) => return Error::length(EstimatedAttitudeAngles::LENGTH, bytes.len()),
+            },
+            EstimatedAngularRates::ID => match bytes.try_into() {
+                Ok(bytes) => Self::EstimatedAngularRates(EstimatedAngularRates::from_array(bytes)),
+                Err(_) => return Error::length(EstimatedAngularRates::LENGTH, bytes.len()),
+            },
+            SatellitePositionEci::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SatellitePositionEci(SatellitePositionEci::from_array(bytes)),
+                Err(_) => return Error::length(SatellitePositionEci::LENGTH, bytes.len()),
+            },
+            SatelliteVelocityEci::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SatelliteVelocityEci(SatelliteVelocityEci::from_array(bytes)),
+                Err(_) => return Error::length(SatelliteVelocityEci::LENGTH, bytes.len()),
+            },
+            SatellitePositionLlh::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SatellitePositionLlh(SatellitePositionLlh::from_array(bytes)),
+                Err(_) => return Error::length(SatellitePositionLlh::LENGTH, bytes.len()),
+            },
+            MagneticFieldVector::ID => match bytes.try_into() {
+                Ok(bytes) => Self::MagneticFieldVector(MagneticFieldVector::from_array(bytes)),
+                Err(_) => return Error::length(MagneticFieldVector::LENGTH, bytes.len()),
+            },
+            CoarseSunVector::ID => match bytes.try_into() {
+                Ok(bytes) => Self::CoarseSunVector(CoarseSunVector::from_array(bytes)),
+                Err(_) => return Error::length(CoarseSunVector::LENGTH, bytes.len()),
+            },
+            FineSunVector::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FineSunVector(FineSunVector::from_array(bytes)),
+                Err(_) => return Error::length(FineSunVector::LENGTH, bytes.len()),
+            },
+            NadirVector::ID => match bytes.try_into() {
+                Ok(bytes) => Self::NadirVector(NadirVector::from_array(bytes)),
+                Err(_) => return Error::length(NadirVector::LENGTH, bytes.len()),
+            },
+            RateSensorRates::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RateSensorRates(RateSensorRates::from_array(bytes)),
+                Err(_) => return Error::length(RateSensorRates::LENGTH, bytes.len()),
+            },
+            WheelSpeed::ID => match bytes.try_into() {
+                Ok(bytes) => Self::WheelSpeed(WheelSpeed::from_array(bytes)),
+                Err(_) => return Error::length(WheelSpeed::LENGTH, bytes.len()),
+            },
+            MagnetorquerCommand::ID => match bytes.try_into() {
+                Ok(bytes) => Self::MagnetorquerCommand(MagnetorquerCommand::from_array(bytes)),
+                Err(_) => return Error::length(MagnetorquerCommand::LENGTH, bytes.len()),
+            },
+            WheelSpeedCommands::ID => match bytes.try_into() {
+                Ok(bytes) => Self::WheelSpeedCommands(WheelSpeedCommands::from_array(bytes)),
+                Err(_) => return Error::length(WheelSpeedCommands::LENGTH, bytes.len()),
+            },
+            IgrfModelledMagneticFieldVector::ID => match bytes.try_into() {
+                Ok(bytes) => Self::IgrfModelledMagneticFieldVector(IgrfModelledMagneticFieldVector::from_array(bytes)),
+                Err(_) => return Error::length(IgrfModelledMagneticFieldVector::LENGTH, bytes.len()),
+            },
+            ModelledSunVector::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ModelledSunVector(ModelledSunVector::from_array(bytes)),
+                Err(_) => return Error::length(ModelledSunVector::LENGTH, bytes.len()),
+            },
+            EstimatedGyroBias::ID => match bytes.try_into() {
+                Ok(bytes) => Self::EstimatedGyroBias(EstimatedGyroBias::from_array(bytes)),
+                Err(_) => return Error::length(EstimatedGyroBias::LENGTH, bytes.len()),
+            },
+            EstimationInnovationVector::ID => match bytes.try_into() {
+                Ok(bytes) => Self::EstimationInnovationVector(EstimationInnovationVector::from_array(bytes)),
+                Err(_) => return Error::length(EstimationInnovationVector::LENGTH, bytes.len()),
+            },
+            QuaternionErrorVector::ID => match bytes.try_into() {
+                Ok(bytes) => Self::QuaternionErrorVector(QuaternionErrorVector::from_array(bytes)),
+                Err(_) => return Error::length(QuaternionErrorVector::LENGTH, bytes.len()),
+            },
+            QuaternionCovariance::ID => match bytes.try_into() {
+                Ok(bytes) => Self::QuaternionCovariance(QuaternionCovariance::from_array(bytes)),
+                Err(_) => return Error::length(QuaternionCovariance::LENGTH, bytes.len()),
+            },
+            AngularRateCovariance::ID => match bytes.try_into() {
+                Ok(bytes) => Self::AngularRateCovariance(AngularRateCovariance::from_array(bytes)),
+                Err(_) => return Error::length(AngularRateCovariance::LENGTH, bytes.len()),
+            },
+            RawCam2Sensor::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RawCam2Sensor(RawCam2Sensor::from_array(bytes)),
+                Err(_) => return Error::length(RawCam2Sensor::LENGTH, bytes.len()),
+            },
+            RawCam1Sensor::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RawCam1Sensor(RawCam1Sensor::from_array(bytes)),
+                Err(_) => return Error::length(RawCam1Sensor::LENGTH, bytes.len()),
+            },
+            RawCss1To6::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RawCss1To6(RawCss1To6::from_array(bytes)),
+                Err(_) => return Error::length(RawCss1To6::LENGTH, bytes.len()),
+            },
+            RawCss7To10::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RawCss7To10(RawCss7To10::from_array(bytes)),
+                Err(_) => return Error::length(RawCss7To10::LENGTH, bytes.len()),
+            },
+            RawMagnetometer::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RawMagnetometer(RawMagnetometer::from_array(bytes)),
+                Err(_) => return Error::length(RawMagnetometer::LENGTH, bytes.len()),
+            },
+            Cubesense1Currents::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Cubesense1Currents(Cubesense1Currents::from_array(bytes)),
+                Err(_) => return Error::length(Cubesense1Currents::LENGTH, bytes.len()),
+            },
+            CubecontrolCurrents::ID => match bytes.try_into() {
+                Ok(bytes) => Self::CubecontrolCurrents(CubecontrolCurrents::from_array(bytes)),
+                Err(_) => return Error::length(CubecontrolCurrents::LENGTH, bytes.len()),
+            },
+            WheelCurrents::ID => match bytes.try_into() {
+                Ok(bytes) => Self::WheelCurrents(WheelCurrents::from_array(bytes)),
+                Err(_) => return Error::length(WheelCurrents::LENGTH, bytes.len()),
+            },
+            AdcsTemperatures::ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdcsTemperatures(AdcsTemperatures::from_array(bytes)),
+                Err(_) => return Error::length(AdcsTemperatures::LENGTH, bytes.len()),
+            },
+            RateSensorTemperatures::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RateSensorTemperatures(RateSensorTemperatures::from_array(bytes)),
+                Err(_) => return Error::length(RateSensorTemperatures::LENGTH, bytes.len()),
+            },
+            RawGpsStatus::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RawGpsStatus(RawGpsStatus::from_array(bytes)),
+                Err(_) => return Error::length(RawGpsStatus::LENGTH, bytes.len()),
+            },
+            RawGpsTime::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RawGpsTime(RawGpsTime::from_array(bytes)),
+                Err(_) => return Error::length(RawGpsTime::LENGTH, bytes.len()),
+            },
+            RawGpsX::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RawGpsX(RawGpsX::from_array(bytes)),
+                Err(_) => return Error::length(RawGpsX::LENGTH, bytes.len()),
+            },
+            RawGpsY::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RawGpsY(RawGpsY::from_array(bytes)),
+                Err(_) => return Error::length(RawGpsY::LENGTH, bytes.len()),
+            },
+            RawGpsZ::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RawGpsZ(RawGpsZ::from_array(bytes)),
+                Err(_) => return Error::length(RawGpsZ::LENGTH, bytes.len()),
+            },
+            Star1BodyVector::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Star1BodyVector(Star1BodyVector::from_array(bytes)),
+                Err(_) => return Error::length(Star1BodyVector::LENGTH, bytes.len()),
+            },
+            Star2BodyVector::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Star2BodyVector(Star2BodyVector::from_array(bytes)),
+                Err(_) => return Error::length(Star2BodyVector::LENGTH, bytes.len()),
+            },
+            Star3BodyVector::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Star3BodyVector(Star3BodyVector::from_array(bytes)),
+                Err(_) => return Error::length(Star3BodyVector::LENGTH, bytes.len()),
+            },
+            Star1OrbitVector::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Star1OrbitVector(Star1OrbitVector::from_array(bytes)),
+                Err(_) => return Error::length(Star1OrbitVector::LENGTH, bytes.len()),
+            },
+            Star2OrbitVector::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Star2OrbitVector(Star2OrbitVector::from_array(bytes)),
+                Err(_) => return Error::length(Star2OrbitVector::LENGTH, bytes.len()),
+            },
+            Star3OrbitVector::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Star3OrbitVector(Star3OrbitVector::from_array(bytes)),
+                Err(_) => return Error::length(Star3OrbitVector::LENGTH, bytes.len()),
+            },
+            StarMagnitude::ID => match bytes.try_into() {
+                Ok(bytes) => Self::StarMagnitude(StarMagnitude::from_array(bytes)),
+                Err(_) => return Error::length(StarMagnitude::LENGTH, bytes.len()),
+            },
+            StarPerformance1::ID => match bytes.try_into() {
+                Ok(bytes) => Self::StarPerformance1(StarPerformance1::from_array(bytes)),
+                Err(_) => return Error::length(StarPerformance1::LENGTH, bytes.len()),
+            },
+            StarTiming::ID => match bytes.try_into() {
+                Ok(bytes) => Self::StarTiming(StarTiming::from_array(bytes)),
+                Err(_) => return Error::length(StarTiming::LENGTH, bytes.len()),
+            },
+            AdcsState::ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdcsState(AdcsState::from_array(bytes)),
+                Err(_) => return Error::length(AdcsState::LENGTH, bytes.len()),
+            },
+            AdcsMeasurements::ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdcsMeasurements(AdcsMeasurements::from_array(bytes)),
+                Err(_) => return Error::length(AdcsMeasurements::LENGTH, bytes.len()),
+            },
+            ActuatorCommands::ID => match bytes.try_into() {
+                Ok(bytes) => Self::ActuatorCommands(ActuatorCommands::from_array(bytes)),
+                Err(_) => return Error::length(ActuatorCommands::LENGTH, bytes.len()),
+            },
+            EstimationData::ID => match bytes.try_into() {
+                Ok(bytes) => Self::EstimationData(EstimationData::from_array(bytes)),
+                Err(_) => return Error::length(EstimationData::LENGTH, bytes.len()),
+            },
+            RawSensorMeasurements::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RawSensorMeasurements(RawSensorMeasurements::from_array(bytes)),
+                Err(_) => return Error::length(RawSensorMeasurements::LENGTH, bytes.len()),
+            },
+            PowerAndTemperature::ID => match bytes.try_into() {
+                Ok(bytes) => Self::PowerAndTemperature(PowerAndTemperature::from_array(bytes)),
+                Err(_) => return Error::length(PowerAndTemperature::LENGTH, bytes.len()),
+            },
+            AdcsExecutionTimes::ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdcsExecutionTimes(AdcsExecutionTimes::from_array(bytes)),
+                Err(_) => return Error::length(AdcsExecutionTimes::LENGTH, bytes.len()),
+            },
+            AdcsMiscCurrents::ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdcsMiscCurrents(AdcsMiscCurrents::from_array(bytes)),
+                Err(_) => return Error::length(AdcsMiscCurrents::LENGTH, bytes.len()),
+            },
+            FineAngularRates::ID => match bytes.try_into() {
+                Ok(bytes) => Self::FineAngularRates(FineAngularRates::from_array(bytes)),
+                Err(_) => return Error::length(FineAngularRates::LENGTH, bytes.len()),
+            },
+            RawGpsMeasurements::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RawGpsMeasurements(RawGpsMeasurements::from_array(bytes)),
+                Err(_) => return Error::length(RawGpsMeasurements::LENGTH, bytes.len()),
+            },
+            RawStarTracker::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RawStarTracker(RawStarTracker::from_array(bytes)),
+                Err(_) => return Error::length(RawStarTracker::LENGTH, bytes.len()),
+            },
+            Star1RawData::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Star1RawData(Star1RawData::from_array(bytes)),
+                Err(_) => return Error::length(Star1RawData::LENGTH, bytes.len()),
+            },
+            Star2RawData::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Star2RawData(Star2RawData::from_array(bytes)),
+                Err(_) => return Error::length(Star2RawData::LENGTH, bytes.len()),
+            },
+            Star3RawData::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Star3RawData(Star3RawData::from_array(bytes)),
+                Err(_) => return Error::length(Star3RawData::LENGTH, bytes.len()),
+            },
+            SecondaryMagnetometerRawMeasurements::ID => match bytes.try_into() {
+                Ok(bytes) => Self::SecondaryMagnetometerRawMeasurements(SecondaryMagnetometerRawMeasurements::from_array(bytes)),
+                Err(_) => return Error::length(SecondaryMagnetometerRawMeasurements::LENGTH, bytes.len()),
+            },
+            RawRateSensor::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RawRateSensor(RawRateSensor::from_array(bytes)),
+                Err(_) => return Error::length(RawRateSensor::LENGTH, bytes.len()),
+            },
+            EstimatedQuaternion::ID => match bytes.try_into() {
+                Ok(bytes) => Self::EstimatedQuaternion(EstimatedQuaternion::from_array(bytes)),
+                Err(_) => return Error::length(EstimatedQuaternion::LENGTH, bytes.len()),
+            },
+            EcefPosition::ID => match bytes.try_into() {
+                Ok(bytes) => Self::EcefPosition(EcefPosition::from_array(bytes)),
+                Err(_) => return Error::length(EcefPosition::LENGTH, bytes.len()),
+            },
+            AcpExecutionState::ID => match bytes.try_into() {
+                Ok(bytes) => Self::AcpExecutionState(AcpExecutionState::from_array(bytes)),
+                Err(_) => return Error::length(AcpExecutionState::LENGTH, bytes.len()),
+            },
+            CurrentAdcsState2::ID => match bytes.try_into() {
+                Ok(bytes) => Self::CurrentAdcsState2(CurrentAdcsState2::from_array(bytes)),
+                Err(_) => return Error::length(CurrentAdcsState2::LENGTH, bytes.len()),
+            },
+            Asgp4Tles::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Asgp4Tles(Asgp4Tles::from_array(bytes)),
+                Err(_) => return Error::length(Asgp4Tles::LENGTH, bytes.len()),
+            },
+            CubestarEstimatedRates::ID => match bytes.try_into() {
+                Ok(bytes) => Self::CubestarEstimatedRates(CubestarEstimatedRates::from_array(bytes)),
+                Err(_) => return Error::length(CubestarEstimatedRates::LENGTH, bytes.len()),
+            },
+            CubestarEstimatedQuaternion::ID => match bytes.try_into() {
+                Ok(bytes) => Self::CubestarEstimatedQuaternion(CubestarEstimatedQuaternion::from_array(bytes)),
+                Err(_) => return Error::length(CubestarEstimatedQuaternion::LENGTH, bytes.len()),
+            },
+            StarPerformance2::ID => match bytes.try_into() {
+                Ok(bytes) => Self::StarPerformance2(StarPerformance2::from_array(bytes)),
+                Err(_) => return Error::length(StarPerformance2::LENGTH, bytes.len()),
+            },
+            Cubesense2Currents::ID => match bytes.try_into() {
+                Ok(bytes) => Self::Cubesense2Currents(Cubesense2Currents::from_array(bytes)),
+                Err(_) => return Error::length(Cubesense2Currents::LENGTH, bytes.len()),
+            },
+            StatusOfImageCaptureAndSaveOperation::ID => match bytes.try_into() {
+                Ok(bytes) => Self::StatusOfImageCaptureAndSaveOperation(StatusOfImageCaptureAndSaveOperation::from_array(bytes)),
+                Err(_) => return Error::length(StatusOfImageCaptureAndSaveOperation::LENGTH, bytes.len()),
+            },
+            SetMagnetorquerConfiguration::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetMagnetorquerConfiguration(SetMagnetorquerConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(SetMagnetorquerConfiguration::LENGTH, bytes.len()),
+            },
+            SetWheelConfiguration::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetWheelConfiguration(SetWheelConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(SetWheelConfiguration::LENGTH, bytes.len()),
+            },
+            SetRateGyroConfiguration::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetRateGyroConfiguration(SetRateGyroConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(SetRateGyroConfiguration::LENGTH, bytes.len()),
+            },
+            CssConfiguration::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CssConfiguration(CssConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(CssConfiguration::LENGTH, bytes.len()),
+            },
+            AdcsPowerControl::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdcsPowerControl(AdcsPowerControl::from_array(bytes)),
+                Err(_) => return Error::length(AdcsPowerControl::LENGTH, bytes.len()),
+            },
+            CommandedAttitudeAngles::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CommandedAttitudeAngles(CommandedAttitudeAngles::from_array(bytes)),
+                Err(_) => return Error::length(CommandedAttitudeAngles::LENGTH, bytes.len()),
+            },
+            TrackingControllerTargetReference::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::TrackingControllerTargetReference(TrackingControllerTargetReference::from_array(bytes)),
+                Err(_) => return Error::length(TrackingControllerTargetReference::LENGTH, bytes.len()),
+            },
+            SetStarTrackerConfiguration::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetStarTrackerConfiguration(SetStarTrackerConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(SetStarTrackerConfiguration::LENGTH, bytes.len()),
+            },
+            CubesenseConfiguration::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::CubesenseConfiguration(CubesenseConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(CubesenseConfiguration::LENGTH, bytes.len()),
+            },
+            MagnetometerConfiguration::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::MagnetometerConfiguration(MagnetometerConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(MagnetometerConfiguration::LENGTH, bytes.len()),
+            },
+            RedundantMagConfiguration::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::RedundantMagConfiguration(RedundantMagConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(RedundantMagConfiguration::LENGTH, bytes.len()),
+            },
+            AdcsConfiguration::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdcsConfiguration(AdcsConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(AdcsConfiguration::LENGTH, bytes.len()),
+            },
+            Sgp4OrbitParameters::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::Sgp4OrbitParameters(Sgp4OrbitParameters::from_array(bytes)),
+                Err(_) => return Error::length(Sgp4OrbitParameters::LENGTH, bytes.len()),
+            },
+            SetDetumblingControlParameters::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetDetumblingControlParameters(SetDetumblingControlParameters::from_array(bytes)),
+                Err(_) => return Error::length(SetDetumblingControlParameters::LENGTH, bytes.len()),
+            },
+            SetYWheelControlParameters::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetYWheelControlParameters(SetYWheelControlParameters::from_array(bytes)),
+                Err(_) => return Error::length(SetYWheelControlParameters::LENGTH, bytes.len()),
+            },
+            SetReactionWheelControlParameters::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetReactionWheelControlParameters(SetReactionWheelControlParameters::from_array(bytes)),
+                Err(_) => return Error::length(SetReactionWheelControlParameters::LENGTH, bytes.len()),
+            },
+            SetTrackingControllerGainParameters::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SetTrackingControllerGainParameters(SetTrackingControllerGainParameters::from_array(bytes)),
+                Err(_) => return Error::length(SetTrackingControllerGainParameters::LENGTH, bytes.len()),
+            },
+            MomentOfInertiaMatrix::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::MomentOfInertiaMatrix(MomentOfInertiaMatrix::from_array(bytes)),
+                Err(_) => return Error::length(MomentOfInertiaMatrix::LENGTH, bytes.len()),
+            },
+            EstimationParameters::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::EstimationParameters(EstimationParameters::from_array(bytes)),
+                Err(_) => return Error::length(EstimationParameters::LENGTH, bytes.len()),
+            },
+            AdcsSystemConfiguration::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::AdcsSystemConfiguration(AdcsSystemConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(AdcsSystemConfiguration::LENGTH, bytes.len()),
+            },
+            UserCodedControllerAndEstimatorParameters::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::UserCodedControllerAndEstimatorParameters(UserCodedControllerAndEstimatorParameters::from_array(bytes)),
+                Err(_) => return Error::length(UserCodedControllerAndEstimatorParameters::LENGTH, bytes.len()),
+            },
+            AugmentedSgp4Parameters::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::AugmentedSgp4Parameters(AugmentedSgp4Parameters::from_array(bytes)),
+                Err(_) => return Error::length(AugmentedSgp4Parameters::LENGTH, bytes.len()),
+            },
+            SdLog1Configuration::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SdLog1Configuration(SdLog1Configuration::from_array(bytes)),
+                Err(_) => return Error::length(SdLog1Configuration::LENGTH, bytes.len()),
+            },
+            SdLog2Configuration::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::SdLog2Configuration(SdLog2Configuration::from_array(bytes)),
+                Err(_) => return Error::length(SdLog2Configuration::LENGTH, bytes.len()),
+            },
+            UartLogConfiguration::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::UartLogConfiguration(UartLogConfiguration::from_array(bytes)),
+                Err(_) => return Error::length(UartLogConfiguration::LENGTH, bytes.len()),
+            },
+            InertialPointingReferenceVector::GET_ID => match bytes.try_into() {
+                Ok(bytes) => Self::InertialPointingReferenceVector(InertialPointingReferenceVector::from_array(bytes)),
+                Err(_) => return Error::length(InertialPointingReferenceVector::LENGTH, bytes.len()),
+            },
             _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
@@ -1591,148 +1899,150 @@ impl Telemetry {
     /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
-            Self::Identification(message) => write_to(buffer, &message.to_bytes()),
-            Self::BootAndRunningProgramStatus(message) => {
-                write_to(buffer, &message.try_to_bytes()?)
-            }
-            Self::BootIndexAndStatus(message) => write_to(buffer, &message.to_bytes()),
-            Self::LastLoggedEvent(message) => write_to(buffer, &message.to_bytes()),
-            Self::SramLatchupCounters(message) => write_to(buffer, &message.to_bytes()),
-            Self::EdacErrorCounters(message) => write_to(buffer, &message.to_bytes()),
-            Self::CommunicationStatus(message) => write_to(buffer, &message.to_bytes()),
-            Self::SdCardFormatEraseProgress(message) => write_to(buffer, &message.to_bytes()),
-            Self::TelecommandAcknowledge(message) => write_to(buffer, &message.to_bytes()),
+            Self::Identification(message) => write_to(buffer, &message.to_bytes()?),
+            Self::BootAndRunningProgramStatus(message) => write_to(buffer, &message.to_bytes()?),
+            Self::BootIndexAndStatus(message) => write_to(buffer, &message.to_bytes()?),
+            Self::LastLoggedEvent(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SramLatchupCounters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EdacErrorCounters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CommunicationStatus(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SdCardFormatEraseProgress(message) => write_to(buffer, &message.to_bytes()?),
+            Self::TelecommandAcknowledge(message) => write_to(buffer, &message.to_bytes()?),
             Self::FileDownloadBufferWithFileContents(message) => {
-                write_to(buffer, &message.to_bytes())
+                write_to(buffer, &message.to_bytes()?)
             }
-            Self::DownloadBlockReady(message) => write_to(buffer, &message.to_bytes()),
-            Self::FileInformation(message) => write_to(buffer, &message.try_to_bytes()?),
-            Self::InitializeUploadComplete(message) => write_to(buffer, &message.to_bytes()),
-            Self::UploadBlockComplete(message) => write_to(buffer, &message.to_bytes()),
-            Self::BlockChecksum(message) => write_to(buffer, &message.to_bytes()),
-            Self::CacheEnabledState(message) => write_to(buffer, &message.to_bytes()),
-            Self::SramScrubParameters(message) => write_to(buffer, &message.to_bytes()),
-            Self::CurrentUnixTime(message) => write_to(buffer, &message.to_bytes()),
-            Self::UnixTimeSaveToFlash(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap1(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap2(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap3(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap4(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap5(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap6(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap7(message) => write_to(buffer, &message.to_bytes()),
-            Self::HoleMap8(message) => write_to(buffer, &message.to_bytes()),
-            Self::CurrentAdcsState(message) => write_to(buffer, &message.try_to_bytes()?),
-            Self::JpgConversionProgress(message) => write_to(buffer, &message.to_bytes()),
-            Self::State(message) => write_to(buffer, &message.to_bytes()),
-            Self::EstimatedAttitudeAngles(message) => write_to(buffer, &message.to_bytes()),
-            Self::EstimatedAngularRates(message) => write_to(buffer, &message.to_bytes()),
-            Self::SatellitePositionEci(message) => write_to(buffer, &message.to_bytes()),
-            Self::SatelliteVelocityEci(message) => write_to(buffer, &message.to_bytes()),
-            Self::SatellitePositionLlh(message) => write_to(buffer, &message.to_bytes()),
-            Self::MagneticFieldVector(message) => write_to(buffer, &message.to_bytes()),
-            Self::CoarseSunVector(message) => write_to(buffer, &message.to_bytes()),
-            Self::FineSunVector(message) => write_to(buffer, &message.to_bytes()),
-            Self::NadirVector(message) => write_to(buffer, &message.to_bytes()),
-            Self::RateSensorRates(message) => write_to(buffer, &message.to_bytes()),
-            Self::WheelSpeed(message) => write_to(buffer, &message.to_bytes()),
-            Self::MagnetorquerCommand(message) => write_to(buffer, &message.to_bytes()),
-            Self::WheelSpeedCommands(message) => write_to(buffer, &message.to_bytes()),
-            Self::IgrfModelledMagneticFieldVector(message) => write_to(buffer, &message.to_bytes()),
-            Self::ModelledSunVector(message) => write_to(buffer, &message.to_bytes()),
-            Self::EstimatedGyroBias(message) => write_to(buffer, &message.to_bytes()),
-            Self::EstimationInnovationVector(message) => write_to(buffer, &message.to_bytes()),
-            Self::QuaternionErrorVector(message) => write_to(buffer, &message.to_bytes()),
-            Self::QuaternionCovariance(message) => write_to(buffer, &message.to_bytes()),
-            Self::AngularRateCovariance(message) => write_to(buffer, &message.to_bytes()),
-            Self::RawCam2Sensor(message) => write_to(buffer, &message.to_bytes()),
-            Self::RawCam1Sensor(message) => write_to(buffer, &message.to_bytes()),
-            Self::RawCss1To6(message) => write_to(buffer, &message.to_bytes()),
-            Self::RawCss7To10(message) => write_to(buffer, &message.to_bytes()),
-            Self::RawMagnetometer(message) => write_to(buffer, &message.to_bytes()),
-            Self::Cubesense1Currents(message) => write_to(buffer, &message.to_bytes()),
-            Self::CubecontrolCurrents(message) => write_to(buffer, &message.to_bytes()),
-            Self::WheelCurrents(message) => write_to(buffer, &message.to_bytes()),
-            Self::AdcsTemperatures(message) => write_to(buffer, &message.to_bytes()),
-            Self::RateSensorTemperatures(message) => write_to(buffer, &message.to_bytes()),
-            Self::RawGpsStatus(message) => write_to(buffer, &message.to_bytes()),
-            Self::RawGpsTime(message) => write_to(buffer, &message.to_bytes()),
-            Self::RawGpsX(message) => write_to(buffer, &message.to_bytes()),
-            Self::RawGpsY(message) => write_to(buffer, &message.to_bytes()),
-            Self::RawGpsZ(message) => write_to(buffer, &message.to_bytes()),
-            Self::Star1BodyVector(message) => write_to(buffer, &message.to_bytes()),
-            Self::Star2BodyVector(message) => write_to(buffer, &message.to_bytes()),
-            Self::Star3BodyVector(message) => write_to(buffer, &message.to_bytes()),
-            Self::Star1OrbitVector(message) => write_to(buffer, &message.to_bytes()),
-            Self::Star2OrbitVector(message) => write_to(buffer, &message.to_bytes()),
-            Self::Star3OrbitVector(message) => write_to(buffer, &message.to_bytes()),
-            Self::StarMagnitude(message) => write_to(buffer, &message.to_bytes()),
-            Self::StarPerformance1(message) => write_to(buffer, &message.to_bytes()),
-            Self::StarTiming(message) => write_to(buffer, &message.to_bytes()),
-            Self::AdcsState(message) => write_to(buffer, &message.try_to_bytes()?),
-            Self::AdcsMeasurements(message) => write_to(buffer, &message.to_bytes()),
-            Self::ActuatorCommands(message) => write_to(buffer, &message.to_bytes()),
-            Self::EstimationData(message) => write_to(buffer, &message.to_bytes()),
-            Self::RawSensorMeasurements(message) => write_to(buffer, &message.to_bytes()),
-            Self::PowerAndTemperature(message) => write_to(buffer, &message.to_bytes()),
-            Self::AdcsExecutionTimes(message) => write_to(buffer, &message.to_bytes()),
-            Self::AdcsMiscCurrents(message) => write_to(buffer, &message.to_bytes()),
-            Self::FineAngularRates(message) => write_to(buffer, &message.to_bytes()),
-            Self::RawGpsMeasurements(message) => write_to(buffer, &message.to_bytes()),
-            Self::RawStarTracker(message) => write_to(buffer, &message.to_bytes()),
-            Self::Star1RawData(message) => write_to(buffer, &message.to_bytes()),
-            Self::Star2RawData(message) => write_to(buffer, &message.to_bytes()),
-            Self::Star3RawData(message) => write_to(buffer, &message.to_bytes()),
+            Self::DownloadBlockReady(message) => write_to(buffer, &message.to_bytes()?),
+            Self::FileInformation(message) => write_to(buffer, &message.to_bytes()?),
+            Self::InitializeUploadComplete(message) => write_to(buffer, &message.to_bytes()?),
+            Self::UploadBlockComplete(message) => write_to(buffer, &message.to_bytes()?),
+            Self::BlockChecksum(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CacheEnabledState(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SramScrubParameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CurrentUnixTime(message) => write_to(buffer, &message.to_bytes()?),
+            Self::UnixTimeSaveToFlash(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap1(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap2(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap3(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap4(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap5(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap6(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap7(message) => write_to(buffer, &message.to_bytes()?),
+            Self::HoleMap8(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CurrentAdcsState(message) => write_to(buffer, &message.to_bytes()?),
+            Self::JpgConversionProgress(message) => write_to(buffer, &message.to_bytes()?),
+            Self::State(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EstimatedAttitudeAngles(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EstimatedAngularRates(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SatellitePositionEci(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SatelliteVelocityEci(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SatellitePositionLlh(message) => write_to(buffer, &message.to_bytes()?),
+            Self::MagneticFieldVector(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CoarseSunVector(message) => write_to(buffer, &message.to_bytes()?),
+            Self::FineSunVector(message) => write_to(buffer, &message.to_bytes()?),
+            Self::NadirVector(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RateSensorRates(message) => write_to(buffer, &message.to_bytes()?),
+            Self::WheelSpeed(message) => write_to(buffer, &message.to_bytes()?),
+            Self::MagnetorquerCommand(message) => write_to(buffer, &message.to_bytes()?),
+            Self::WheelSpeedCommands(message) => write_to(buffer, &message.to_bytes()?),
+            Self::IgrfModelledMagneticFieldVector(message) => {
+                write_to(buffer, &message.to_bytes()?)
+            }
+            Self::ModelledSunVector(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EstimatedGyroBias(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EstimationInnovationVector(message) => write_to(buffer, &message.to_bytes()?),
+            Self::QuaternionErrorVector(message) => write_to(buffer, &message.to_bytes()?),
+            Self::QuaternionCovariance(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AngularRateCovariance(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RawCam2Sensor(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RawCam1Sensor(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RawCss1To6(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RawCss7To10(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RawMagnetometer(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Cubesense1Currents(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CubecontrolCurrents(message) => write_to(buffer, &message.to_bytes()?),
+            Self::WheelCurrents(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdcsTemperatures(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RateSensorTemperatures(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RawGpsStatus(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RawGpsTime(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RawGpsX(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RawGpsY(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RawGpsZ(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Star1BodyVector(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Star2BodyVector(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Star3BodyVector(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Star1OrbitVector(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Star2OrbitVector(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Star3OrbitVector(message) => write_to(buffer, &message.to_bytes()?),
+            Self::StarMagnitude(message) => write_to(buffer, &message.to_bytes()?),
+            Self::StarPerformance1(message) => write_to(buffer, &message.to_bytes()?),
+            Self::StarTiming(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdcsState(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdcsMeasurements(message) => write_to(buffer, &message.to_bytes()?),
+            Self::ActuatorCommands(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EstimationData(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RawSensorMeasurements(message) => write_to(buffer, &message.to_bytes()?),
+            Self::PowerAndTemperature(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdcsExecutionTimes(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdcsMiscCurrents(message) => write_to(buffer, &message.to_bytes()?),
+            Self::FineAngularRates(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RawGpsMeasurements(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RawStarTracker(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Star1RawData(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Star2RawData(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Star3RawData(message) => write_to(buffer, &message.to_bytes()?),
             Self::SecondaryMagnetometerRawMeasurements(message) => {
-                write_to(buffer, &message.to_bytes())
+                write_to(buffer, &message.to_bytes()?)
             }
-            Self::RawRateSensor(message) => write_to(buffer, &message.to_bytes()),
-            Self::EstimatedQuaternion(message) => write_to(buffer, &message.to_bytes()),
-            Self::EcefPosition(message) => write_to(buffer, &message.to_bytes()),
-            Self::AcpExecutionState(message) => write_to(buffer, &message.to_bytes()),
-            Self::CurrentAdcsState2(message) => write_to(buffer, &message.try_to_bytes()?),
-            Self::Asgp4Tles(message) => write_to(buffer, &message.try_to_bytes()?),
-            Self::CubestarEstimatedRates(message) => write_to(buffer, &message.to_bytes()),
-            Self::CubestarEstimatedQuaternion(message) => write_to(buffer, &message.to_bytes()),
-            Self::StarPerformance2(message) => write_to(buffer, &message.to_bytes()),
-            Self::Cubesense2Currents(message) => write_to(buffer, &message.to_bytes()),
+            Self::RawRateSensor(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EstimatedQuaternion(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EcefPosition(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AcpExecutionState(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CurrentAdcsState2(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Asgp4Tles(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CubestarEstimatedRates(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CubestarEstimatedQuaternion(message) => write_to(buffer, &message.to_bytes()?),
+            Self::StarPerformance2(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Cubesense2Currents(message) => write_to(buffer, &message.to_bytes()?),
             Self::StatusOfImageCaptureAndSaveOperation(message) => {
-                write_to(buffer, &message.to_bytes())
+                write_to(buffer, &message.to_bytes()?)
             }
-            Self::SetMagnetorquerConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetWheelConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetRateGyroConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::CssConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::AdcsPowerControl(message) => write_to(buffer, &message.try_to_bytes()?),
-            Self::CommandedAttitudeAngles(message) => write_to(buffer, &message.to_bytes()),
+            Self::SetMagnetorquerConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetWheelConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetRateGyroConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CssConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdcsPowerControl(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CommandedAttitudeAngles(message) => write_to(buffer, &message.to_bytes()?),
             Self::TrackingControllerTargetReference(message) => {
-                write_to(buffer, &message.to_bytes())
+                write_to(buffer, &message.to_bytes()?)
             }
-            Self::SetStarTrackerConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::CubesenseConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::MagnetometerConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::RedundantMagConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::AdcsConfiguration(message) => write_to(buffer, &message.try_to_bytes()?),
-            Self::Sgp4OrbitParameters(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetDetumblingControlParameters(message) => write_to(buffer, &message.to_bytes()),
-            Self::SetYWheelControlParameters(message) => write_to(buffer, &message.to_bytes()),
+            Self::SetStarTrackerConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::CubesenseConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::MagnetometerConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::RedundantMagConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdcsConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::Sgp4OrbitParameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetDetumblingControlParameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SetYWheelControlParameters(message) => write_to(buffer, &message.to_bytes()?),
             Self::SetReactionWheelControlParameters(message) => {
-                write_to(buffer, &message.try_to_bytes()?)
+                write_to(buffer, &message.to_bytes()?)
             }
             Self::SetTrackingControllerGainParameters(message) => {
-                write_to(buffer, &message.to_bytes())
+                write_to(buffer, &message.to_bytes()?)
             }
-            Self::MomentOfInertiaMatrix(message) => write_to(buffer, &message.to_bytes()),
-            Self::EstimationParameters(message) => write_to(buffer, &message.try_to_bytes()?),
-            Self::AdcsSystemConfiguration(message) => write_to(buffer, &message.try_to_bytes()?),
+            Self::MomentOfInertiaMatrix(message) => write_to(buffer, &message.to_bytes()?),
+            Self::EstimationParameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::AdcsSystemConfiguration(message) => write_to(buffer, &message.to_bytes()?),
             Self::UserCodedControllerAndEstimatorParameters(message) => {
-                write_to(buffer, &message.to_bytes())
+                write_to(buffer, &message.to_bytes()?)
             }
-            Self::AugmentedSgp4Parameters(message) => write_to(buffer, &message.to_bytes()),
-            Self::SdLog1Configuration(message) => write_to(buffer, &message.to_bytes()),
-            Self::SdLog2Configuration(message) => write_to(buffer, &message.to_bytes()),
-            Self::UartLogConfiguration(message) => write_to(buffer, &message.to_bytes()),
-            Self::InertialPointingReferenceVector(message) => write_to(buffer, &message.to_bytes()),
+            Self::AugmentedSgp4Parameters(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SdLog1Configuration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::SdLog2Configuration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::UartLogConfiguration(message) => write_to(buffer, &message.to_bytes()?),
+            Self::InertialPointingReferenceVector(message) => {
+                write_to(buffer, &message.to_bytes()?)
+            }
         }
     }
 

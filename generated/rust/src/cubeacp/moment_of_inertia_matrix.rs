@@ -11,6 +11,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct MomentOfInertiaMatrix {
     /// Moment Of Inertia - Ixx: bits 0 to 31, 32-bit float, in kg.m^2.
     pub moment_of_inertia_ixx: f32,
@@ -70,9 +71,12 @@ impl MomentOfInertiaMatrix {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 24] {
+    pub fn to_bytes(&self) -> Result<[u8; 24], Error> {
         let mut bytes = [0; 24];
         put!(self.moment_of_inertia_ixx.to_le_bytes() => bytes[0; 4]);
         put!(self.moment_of_inertia_iyy.to_le_bytes() => bytes[4; 4]);
@@ -80,7 +84,7 @@ impl MomentOfInertiaMatrix {
         put!(self.product_of_inertia_ixy.to_le_bytes() => bytes[12; 4]);
         put!(self.product_of_inertia_ixz.to_le_bytes() => bytes[16; 4]);
         put!(self.product_of_inertia_iyz.to_le_bytes() => bytes[20; 4]);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -90,7 +94,7 @@ impl crate::wire::Telecommand for MomentOfInertiaMatrix {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -13,6 +13,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct PowerAndTemperature {
     /// CubeSense1 3V3 Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.1`, 0 to 6553.5 mA.
     pub cubesense1_3v3_current: u16,
@@ -147,9 +148,12 @@ impl PowerAndTemperature {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 38] {
+    pub fn to_bytes(&self) -> Result<[u8; 38], Error> {
         let mut bytes = [0; 38];
         put!(self.cubesense1_3v3_current.to_le_bytes() => bytes[0; 2]);
         put!(self.cubesense1_cam_sram_current.to_le_bytes() => bytes[2; 2]);
@@ -170,7 +174,7 @@ impl PowerAndTemperature {
         put!(self.x_rate_sensor_temperature.to_le_bytes() => bytes[32; 2]);
         put!(self.y_rate_sensor_temperature.to_le_bytes() => bytes[34; 2]);
         put!(self.z_rate_sensor_temperature.to_le_bytes() => bytes[36; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// CubeSense1 3V3 Current in mA: 0 to 6553.5.

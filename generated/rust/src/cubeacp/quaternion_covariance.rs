@@ -10,6 +10,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct QuaternionCovariance {
     /// Quaternion Covariance - Q1 RMS: bits 0 to 15, raw -32768 to 32767; physical `raw*0.001`,
     /// -32.768 to 32.767.
@@ -61,14 +62,17 @@ impl QuaternionCovariance {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.q1_rms.to_le_bytes() => bytes[0; 2]);
         put!(self.q2_rms.to_le_bytes() => bytes[2; 2]);
         put!(self.q3_rms.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// Quaternion Covariance - Q1 RMS, as a physical value: -32.768 to 32.767.

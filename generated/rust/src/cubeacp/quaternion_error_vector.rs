@@ -12,6 +12,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct QuaternionErrorVector {
     /// Quaternion Error - Q1: bits 0 to 15, raw -32768 to 32767; physical `raw*0.0001`, -3.2768 to
     /// 3.2767.
@@ -57,14 +58,17 @@ impl QuaternionErrorVector {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.quaternion_error_q1.to_le_bytes() => bytes[0; 2]);
         put!(self.quaternion_error_q2.to_le_bytes() => bytes[2; 2]);
         put!(self.quaternion_error_q3.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// Quaternion Error - Q1, as a physical value: -3.2768 to 3.2767.

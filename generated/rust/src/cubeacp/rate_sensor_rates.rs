@@ -14,6 +14,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct RateSensorRates {
     /// X Angular Rate: bits 0 to 15, raw -32768 to 32767; physical `raw*0.01`, -327.68 to 327.67
     /// deg/s.
@@ -59,14 +60,17 @@ impl RateSensorRates {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.x_angular_rate.to_le_bytes() => bytes[0; 2]);
         put!(self.y_angular_rate.to_le_bytes() => bytes[2; 2]);
         put!(self.z_angular_rate.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// X Angular Rate in deg/s: -327.68 to 327.67.

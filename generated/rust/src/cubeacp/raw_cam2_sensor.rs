@@ -15,6 +15,7 @@ use crate::support::{put, take, Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct RawCam2Sensor {
     /// Cam2 centroid X: bits 0 to 15, raw -32768 to 32767.
     ///
@@ -68,15 +69,18 @@ impl RawCam2Sensor {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.cam2_centroid_x.to_le_bytes() => bytes[0; 2]);
         put!(self.cam2_centroid_y.to_le_bytes() => bytes[2; 2]);
         bytes[4] = self.cam2_capture_status.raw();
         bytes[5] = self.cam2_detection_result.raw();
-        bytes
+        Ok(bytes)
     }
 }
 

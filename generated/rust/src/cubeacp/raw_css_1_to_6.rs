@@ -10,6 +10,7 @@ use crate::support::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct RawCss1To6 {
     /// CSS1: bits 0 to 7, raw 0 to 255.
     ///
@@ -85,9 +86,12 @@ impl RawCss1To6 {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         bytes[0] = self.css1;
         bytes[1] = self.css2;
@@ -95,7 +99,7 @@ impl RawCss1To6 {
         bytes[3] = self.css4;
         bytes[4] = self.css5;
         bytes[5] = self.css6;
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::support::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct RawCss7To10 {
     /// CSS7: bits 0 to 7, raw 0 to 255.
     ///
@@ -73,15 +74,18 @@ impl RawCss7To10 {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         bytes[0] = self.css7;
         bytes[1] = self.css8;
         bytes[2] = self.css9;
         bytes[3] = self.css10;
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct RawGpsMeasurements {
     /// Gps Solution Status: bits 0 to 7.
     ///
@@ -133,9 +134,12 @@ impl RawGpsMeasurements {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 36] {
+    pub fn to_bytes(&self) -> Result<[u8; 36], Error> {
         let mut bytes = [0; 36];
         bytes[0] = self.gps_solution_status.raw();
         bytes[1] = self.number_of_tracked_gps_satellites;
@@ -157,7 +161,7 @@ impl RawGpsMeasurements {
         bytes[33] = self.x_vel_standard_deviation;
         bytes[34] = self.y_vel_standard_deviation;
         bytes[35] = self.z_vel_standard_deviation;
-        bytes
+        Ok(bytes)
     }
 
     /// X-pos Standard Deviation in m: 0 to 25.5.

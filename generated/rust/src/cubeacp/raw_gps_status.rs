@@ -11,6 +11,7 @@ use crate::support::{Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct RawGpsStatus {
     /// Gps Solution Status: bits 0 to 7.
     ///
@@ -70,9 +71,12 @@ impl RawGpsStatus {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         bytes[0] = self.gps_solution_status.raw();
         bytes[1] = self.number_of_tracked_gps_satellites;
@@ -80,7 +84,7 @@ impl RawGpsStatus {
         bytes[3] = self.counter_for_xyz_log_from_gps;
         bytes[4] = self.counter_for_range_log_from_gps;
         bytes[5] = self.response_message_for_gps_log_setup;
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -10,6 +10,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct RawGpsTime {
     /// GPS Reference Week: bits 0 to 15, raw 0 to 65535.
     ///
@@ -51,13 +52,16 @@ impl RawGpsTime {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.gps_reference_week.to_le_bytes() => bytes[0; 2]);
         put!(self.gps_time_milliseconds.to_le_bytes() => bytes[2; 4]);
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct RawGpsY {
     /// ECEF Position Y: bits 0 to 31, raw -2147483648 to 2147483647, in m.
     ///
@@ -57,13 +58,16 @@ impl RawGpsY {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.ecef_position_y.to_le_bytes() => bytes[0; 4]);
         put!(self.ecef_velocity_y.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -15,6 +15,7 @@ use crate::support::{put, take, Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct RawSensorMeasurements {
     /// Cam2 centroid X: bits 0 to 15, raw -32768 to 32767.
     ///
@@ -182,9 +183,12 @@ impl RawSensorMeasurements {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 34] {
+    pub fn to_bytes(&self) -> Result<[u8; 34], Error> {
         let mut bytes = [0; 34];
         put!(self.cam2_centroid_x.to_le_bytes() => bytes[0; 2]);
         put!(self.cam2_centroid_y.to_le_bytes() => bytes[2; 2]);
@@ -210,7 +214,7 @@ impl RawSensorMeasurements {
         put!(self.rate_x.to_le_bytes() => bytes[28; 2]);
         put!(self.rate_y.to_le_bytes() => bytes[30; 2]);
         put!(self.rate_z.to_le_bytes() => bytes[32; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 

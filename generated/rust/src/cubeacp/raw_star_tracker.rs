@@ -14,6 +14,7 @@ use crate::support::{flags, put, take, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct RawStarTracker {
     /// Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
     ///
@@ -239,9 +240,12 @@ impl RawStarTracker {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 54] {
+    pub fn to_bytes(&self) -> Result<[u8; 54], Error> {
         let mut bytes = [0; 54];
         bytes[0] = self.number_of_stars_detected;
         bytes[1] = self.star_image_noise;
@@ -282,7 +286,7 @@ impl RawStarTracker {
         put!(self.q0.to_le_bytes() => bytes[48; 2]);
         put!(self.q1.to_le_bytes() => bytes[50; 2]);
         put!(self.q2.to_le_bytes() => bytes[52; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// x-Axis rate, as a physical value: -3.2768 to 3.2767.

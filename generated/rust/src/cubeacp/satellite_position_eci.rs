@@ -10,6 +10,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SatellitePositionEci {
     /// X position: bits 0 to 15, raw -32768 to 32767; physical `raw*0.25`, -8192 to 8191.75 km.
     pub x_position: i16,
@@ -52,14 +53,17 @@ impl SatellitePositionEci {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.x_position.to_le_bytes() => bytes[0; 2]);
         put!(self.y_position.to_le_bytes() => bytes[2; 2]);
         put!(self.z_position.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// X position in km: -8192 to 8191.75.

@@ -43,10 +43,13 @@ impl SaveConfiguration {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 0] {
-        [0; 0]
+    pub fn to_bytes(&self) -> Result<[u8; 0], Error> {
+        Ok([0; 0])
     }
 }
 
@@ -56,6 +59,6 @@ impl crate::wire::Telecommand for SaveConfiguration {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

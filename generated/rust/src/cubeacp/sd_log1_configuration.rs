@@ -16,6 +16,7 @@ use crate::support::{array, put, put_array, take, Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SdLog1Configuration {
     /// Log Selection: bytes 0 to 9.
     ///
@@ -71,14 +72,17 @@ impl SdLog1Configuration {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 13] {
+    pub fn to_bytes(&self) -> Result<[u8; 13], Error> {
         let mut bytes = [0; 13];
         put_array(&mut bytes, 0, &self.log_selection);
         put!(self.log_period.to_le_bytes() => bytes[10; 2]);
         bytes[12] = self.log_destination.raw();
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -88,7 +92,7 @@ impl crate::wire::Telecommand for SdLog1Configuration {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -11,6 +11,7 @@ use crate::support::{Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SetAdcsRunMode {
     /// Enabled: bits 0 to 7.
     ///
@@ -51,12 +52,15 @@ impl SetAdcsRunMode {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 1] {
+    pub fn to_bytes(&self) -> Result<[u8; 1], Error> {
         let mut bytes = [0; 1];
         bytes[0] = self.enabled.raw();
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -66,6 +70,6 @@ impl crate::wire::Telecommand for SetAdcsRunMode {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

@@ -9,6 +9,7 @@ use crate::support::{put, take, Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SetAttitudeControlMode {
     /// Control Mode: bits 0 to 7.
     pub control_mode: Coded<enums::ConModeSelect>,
@@ -58,13 +59,16 @@ impl SetAttitudeControlMode {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 3] {
+    pub fn to_bytes(&self) -> Result<[u8; 3], Error> {
         let mut bytes = [0; 3];
         bytes[0] = self.control_mode.raw();
         put!(self.timeout.to_le_bytes() => bytes[1; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -74,6 +78,6 @@ impl crate::wire::Telecommand for SetAttitudeControlMode {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

@@ -13,6 +13,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SetDetumblingControlParameters {
     /// Detumbling Spin Gain: bits 0 to 31, 32-bit float.
     ///
@@ -81,15 +82,18 @@ impl SetDetumblingControlParameters {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 14] {
+    pub fn to_bytes(&self) -> Result<[u8; 14], Error> {
         let mut bytes = [0; 14];
         put!(self.detumbling_spin_gain.to_le_bytes() => bytes[0; 4]);
         put!(self.detumbling_damping_gain.to_le_bytes() => bytes[4; 4]);
         put!(self.spin_rate.to_le_bytes() => bytes[8; 2]);
         put!(self.fast_bdot_detumbling_gain.to_le_bytes() => bytes[10; 4]);
-        bytes
+        Ok(bytes)
     }
 
     /// Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s.
@@ -124,7 +128,7 @@ impl crate::wire::Telecommand for SetDetumblingControlParameters {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::support::{Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SetMagnetorquerConfiguration {
     /// Magnetorquer 1 Configuration: bits 0 to 7.
     ///
@@ -62,14 +63,17 @@ impl SetMagnetorquerConfiguration {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 3] {
+    pub fn to_bytes(&self) -> Result<[u8; 3], Error> {
         let mut bytes = [0; 3];
         bytes[0] = self.magnetorquer_1_configuration.raw();
         bytes[1] = self.magnetorquer_2_configuration.raw();
         bytes[2] = self.magnetorquer_3_configuration.raw();
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -79,7 +83,7 @@ impl crate::wire::Telecommand for SetMagnetorquerConfiguration {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SetMagnetorquerOutput {
     /// Commanded X Magnetorquer duty cycle: bits 0 to 15, raw -32768 to 32767; physical `raw =
     /// value*1000.0`, -32.768 to 32.767.
@@ -69,14 +70,17 @@ impl SetMagnetorquerOutput {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.x_duty_cycle.to_le_bytes() => bytes[0; 2]);
         put!(self.y_duty_cycle.to_le_bytes() => bytes[2; 2]);
         put!(self.z_duty_cycle.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// Commanded X Magnetorquer duty cycle, as a physical value: -32.768 to 32.767.
@@ -164,6 +168,6 @@ impl crate::wire::Telecommand for SetMagnetorquerOutput {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

@@ -14,6 +14,7 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SetRateGyroConfiguration {
     /// Gyro1 Configuration: bits 0 to 7.
     pub gyro1_configuration: Coded<enums::AxisSelect>,
@@ -83,9 +84,12 @@ impl SetRateGyroConfiguration {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 10] {
+    pub fn to_bytes(&self) -> Result<[u8; 10], Error> {
         let mut bytes = [0; 10];
         bytes[0] = self.gyro1_configuration.raw();
         bytes[1] = self.gyro2_configuration.raw();
@@ -94,7 +98,7 @@ impl SetRateGyroConfiguration {
         put!(self.y_rate_sensor_offset.to_le_bytes() => bytes[5; 2]);
         put!(self.z_rate_sensor_offset.to_le_bytes() => bytes[7; 2]);
         bytes[9] = self.rate_sensor_mult;
-        bytes
+        Ok(bytes)
     }
 
     /// X-Rate Sensor Offset in deg/s: -32.768 to 32.767.
@@ -179,7 +183,7 @@ impl crate::wire::Telecommand for SetRateGyroConfiguration {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -14,6 +14,7 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SetReactionWheelControlParameters {
     /// RWheel Proportional Gain: bits 0 to 31, 32-bit float.
     ///
@@ -85,28 +86,19 @@ impl SetReactionWheelControlParameters {
 
     /// Encodes the message; reserved bits are 0.
     ///
-    /// A value that is too large for its field loses its upper bits; [`Self::try_to_bytes`] refuses it.
+    /// # Errors
+    ///
+    /// [`Error::Range`] if a value does not fit its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 13] {
+    pub fn to_bytes(&self) -> Result<[u8; 13], Error> {
+        SUN_POINTING_FACET.fit(self.sun_pointing_facet.raw())?;
         let mut bytes = [0; 13];
         put!(self.rwheel_proportional_gain.to_le_bytes() => bytes[0; 4]);
         put!(self.rwheel_derivative_gain.to_le_bytes() => bytes[4; 4]);
         put!(self.y_wheel_bias_momentum.to_le_bytes() => bytes[8; 4]);
         bytes[12] |= self.sun_pointing_facet.raw() & 0x7f;
         bytes[12] |= u8::from(self.control_transition_on_wheel_error) << 7;
-        bytes
-    }
-
-    /// Encodes the message if every value fits its field; reserved bits are 0.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Range`] if a value does not fit its field.
-    #[inline]
-    pub fn try_to_bytes(&self) -> Result<[u8; 13], Error> {
-        SUN_POINTING_FACET.fit(self.sun_pointing_facet.raw())?;
-        Ok(self.to_bytes())
+        Ok(bytes)
     }
 }
 
@@ -125,7 +117,7 @@ impl crate::wire::Telecommand for SetReactionWheelControlParameters {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.try_to_bytes()?)
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -15,6 +15,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SetStarTrackerConfiguration {
     /// StarTracker Mounting Transform Alpha Angle: bits 0 to 15, raw -32768 to 32767; physical
     /// `raw*0.01`, -327.68 to 327.67 deg.
@@ -195,9 +196,12 @@ impl SetStarTrackerConfiguration {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 53] {
+    pub fn to_bytes(&self) -> Result<[u8; 53], Error> {
         let mut bytes = [0; 53];
         put!(self.mounting_alpha.to_le_bytes() => bytes[0; 2]);
         put!(self.mounting_beta.to_le_bytes() => bytes[2; 2]);
@@ -225,7 +229,7 @@ impl SetStarTrackerConfiguration {
         bytes[51] |= u8::from(self.star_tracking_module_enable);
         bytes[51] |= u8::from(self.star_tracking_location_prediction_enable) << 1;
         bytes[52] = self.search_width;
-        bytes
+        Ok(bytes)
     }
 
     /// StarTracker Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
@@ -414,7 +418,7 @@ impl crate::wire::Telecommand for SetStarTrackerConfiguration {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -14,6 +14,7 @@ use crate::support::{put, take, Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SetTrackingControllerGainParameters {
     /// Tracking Proportional Gain: bits 0 to 31, 32-bit float.
     ///
@@ -77,15 +78,18 @@ impl SetTrackingControllerGainParameters {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 13] {
+    pub fn to_bytes(&self) -> Result<[u8; 13], Error> {
         let mut bytes = [0; 13];
         put!(self.tracking_proportional_gain.to_le_bytes() => bytes[0; 4]);
         put!(self.tracking_derivative_gain.to_le_bytes() => bytes[4; 4]);
         put!(self.tracking_integral_gain.to_le_bytes() => bytes[8; 4]);
         bytes[12] = self.target_tracking_facet.raw();
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -95,7 +99,7 @@ impl crate::wire::Telecommand for SetTrackingControllerGainParameters {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::support::{Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SetWheelConfiguration {
     /// RW1 Configuration: bits 0 to 7.
     ///
@@ -71,15 +72,18 @@ impl SetWheelConfiguration {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 4] {
+    pub fn to_bytes(&self) -> Result<[u8; 4], Error> {
         let mut bytes = [0; 4];
         bytes[0] = self.rw1_configuration.raw();
         bytes[1] = self.rw2_configuration.raw();
         bytes[2] = self.rw3_configuration.raw();
         bytes[3] = self.rw4_configuration.raw();
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -89,7 +93,7 @@ impl crate::wire::Telecommand for SetWheelConfiguration {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SetWheelSpeed {
     /// Commanded X speed: bits 0 to 15, raw -32768 to 32767, in rpm.
     pub commanded_x_speed: i16,
@@ -54,14 +55,17 @@ impl SetWheelSpeed {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.commanded_x_speed.to_le_bytes() => bytes[0; 2]);
         put!(self.commanded_y_speed.to_le_bytes() => bytes[2; 2]);
         put!(self.commanded_z_speed.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -71,6 +75,6 @@ impl crate::wire::Telecommand for SetWheelSpeed {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

@@ -13,6 +13,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct SetYWheelControlParameters {
     /// Y-Momentum Control Gain: bits 0 to 31, 32-bit float.
     ///
@@ -91,16 +92,19 @@ impl SetYWheelControlParameters {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 20] {
+    pub fn to_bytes(&self) -> Result<[u8; 20], Error> {
         let mut bytes = [0; 20];
         put!(self.y_momentum_control_gain.to_le_bytes() => bytes[0; 4]);
         put!(self.y_momentum_nutation_damping_gain.to_le_bytes() => bytes[4; 4]);
         put!(self.y_momentum_proportional_gain.to_le_bytes() => bytes[8; 4]);
         put!(self.y_momentum_derivative_gain.to_le_bytes() => bytes[12; 4]);
         put!(self.reference_wheel_momentum.to_le_bytes() => bytes[16; 4]);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -110,7 +114,7 @@ impl crate::wire::Telecommand for SetYWheelControlParameters {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -9,6 +9,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct Sgp4OrbitParameters {
     /// Inclination: bits 0 to 63, 64-bit float, in deg.
     pub inclination: f64,
@@ -74,9 +75,12 @@ impl Sgp4OrbitParameters {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 64] {
+    pub fn to_bytes(&self) -> Result<[u8; 64], Error> {
         let mut bytes = [0; 64];
         put!(self.inclination.to_le_bytes() => bytes[0; 8]);
         put!(self.eccentricity.to_le_bytes() => bytes[8; 8]);
@@ -86,7 +90,7 @@ impl Sgp4OrbitParameters {
         put!(self.mean_motion.to_le_bytes() => bytes[40; 8]);
         put!(self.mean_anomaly.to_le_bytes() => bytes[48; 8]);
         put!(self.epoch.to_le_bytes() => bytes[56; 8]);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -96,7 +100,7 @@ impl crate::wire::Telecommand for Sgp4OrbitParameters {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -10,6 +10,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct Star2OrbitVector {
     /// Star2OX: bits 0 to 15, raw -32768 to 32767; physical `raw/10000.0`, -3.2768 to 3.2767.
     ///
@@ -64,14 +65,17 @@ impl Star2OrbitVector {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.star2_orbit_x.to_le_bytes() => bytes[0; 2]);
         put!(self.star2_orbit_y.to_le_bytes() => bytes[2; 2]);
         put!(self.star2_orbit_z.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// Star2OX, as a physical value: -3.2768 to 3.2767.

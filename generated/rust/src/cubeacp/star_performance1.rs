@@ -15,6 +15,7 @@ use crate::support::{Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct StarPerformance1 {
     /// Number of stars detected: bits 0 to 7, raw 0 to 255, in stars.
     ///
@@ -85,9 +86,12 @@ impl StarPerformance1 {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         bytes[0] = self.number_of_stars_detected;
         bytes[1] = self.star_image_noise;
@@ -95,7 +99,7 @@ impl StarPerformance1 {
         bytes[3] = self.number_of_stars_identified;
         bytes[4] = self.identification_mode.raw();
         bytes[5] = self.image_dark_value;
-        bytes
+        Ok(bytes)
     }
 }
 

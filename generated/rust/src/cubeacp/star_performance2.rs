@@ -14,6 +14,7 @@ use crate::support::{flags, put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct StarPerformance2 {
     /// Image Capture Success: bit 0.
     pub image_capture_success: bool,
@@ -94,9 +95,12 @@ impl StarPerformance2 {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         bytes[0] |= u8::from(self.image_capture_success);
         bytes[0] |= u8::from(self.detection_success) << 1;
@@ -110,7 +114,7 @@ impl StarPerformance2 {
         bytes[3] = self.star_1_confidence;
         bytes[4] = self.star_2_confidence;
         bytes[5] = self.star_3_confidence;
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::support::{flags, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct State {
     /// ADCS Config Load Error: bit 0.
     ///
@@ -76,9 +77,12 @@ impl State {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 1] {
+    pub fn to_bytes(&self) -> Result<[u8; 1], Error> {
         let mut bytes = [0; 1];
         bytes[0] |= u8::from(self.adcs_config_load_error);
         bytes[0] |= u8::from(self.orbit_parameter_load_error) << 1;
@@ -86,7 +90,7 @@ impl State {
         bytes[0] |= u8::from(self.sd_card_initialisation_error) << 3;
         bytes[0] |= u8::from(self.sd_card_read_error) << 4;
         bytes[0] |= u8::from(self.sd_card_write_error) << 5;
-        bytes
+        Ok(bytes)
     }
 }
 

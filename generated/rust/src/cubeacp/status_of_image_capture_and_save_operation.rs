@@ -11,6 +11,7 @@ use crate::support::{Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct StatusOfImageCaptureAndSaveOperation {
     /// Percentage Complete: bits 0 to 7, raw 0 to 255, in %.
     pub percentage_complete: u8,
@@ -52,13 +53,16 @@ impl StatusOfImageCaptureAndSaveOperation {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 2] {
+    pub fn to_bytes(&self) -> Result<[u8; 2], Error> {
         let mut bytes = [0; 2];
         bytes[0] = self.percentage_complete;
         bytes[1] = self.status.raw();
-        bytes
+        Ok(bytes)
     }
 }
 

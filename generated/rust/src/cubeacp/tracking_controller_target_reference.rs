@@ -11,6 +11,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct TrackingControllerTargetReference {
     /// Geocentric longitude of target: bits 0 to 31, 32-bit float, in deg.
     ///
@@ -63,14 +64,17 @@ impl TrackingControllerTargetReference {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 12] {
+    pub fn to_bytes(&self) -> Result<[u8; 12], Error> {
         let mut bytes = [0; 12];
         put!(self.geocentric_longitude_of_target.to_le_bytes() => bytes[0; 4]);
         put!(self.geocentric_latitude_of_target.to_le_bytes() => bytes[4; 4]);
         put!(self.geocentric_altitude_of_target.to_le_bytes() => bytes[8; 4]);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -80,7 +84,7 @@ impl crate::wire::Telecommand for TrackingControllerTargetReference {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

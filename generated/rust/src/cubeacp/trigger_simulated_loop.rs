@@ -14,6 +14,7 @@ use crate::support::{put, take, Coded, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct TriggerSimulatedLoop {
     /// Unix Time: bits 0 to 31, raw 0 to 4294967295, in s.
     ///
@@ -409,9 +410,12 @@ impl TriggerSimulatedLoop {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 127] {
+    pub fn to_bytes(&self) -> Result<[u8; 127], Error> {
         let mut bytes = [0; 127];
         put!(self.unix_time.to_le_bytes() => bytes[0; 4]);
         put!(self.css_raw_1.to_le_bytes() => bytes[4; 2]);
@@ -474,7 +478,7 @@ impl TriggerSimulatedLoop {
         bytes[124] = self.x_vel_standard_deviation;
         bytes[125] = self.y_vel_standard_deviation;
         bytes[126] = self.z_vel_standard_deviation;
-        bytes
+        Ok(bytes)
     }
 
     /// X-pos Standard Deviation in m: 0 to 25.5.
@@ -559,6 +563,6 @@ impl crate::wire::Telecommand for TriggerSimulatedLoop {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }

@@ -11,6 +11,7 @@ use crate::support::{array, put, put_array, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct UartLogConfiguration {
     /// Log Selection: bytes 0 to 9.
     ///
@@ -63,13 +64,16 @@ impl UartLogConfiguration {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 12] {
+    pub fn to_bytes(&self) -> Result<[u8; 12], Error> {
         let mut bytes = [0; 12];
         put_array(&mut bytes, 0, &self.log_selection);
         put!(self.log_period.to_le_bytes() => bytes[10; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -79,7 +83,7 @@ impl crate::wire::Telecommand for UartLogConfiguration {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -9,6 +9,7 @@ use crate::support::{array, put_array, Error};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct UserCodedControllerAndEstimatorParameters {
     /// User Coded Controller Settings: bytes 0 to 47.
     ///
@@ -56,13 +57,16 @@ impl UserCodedControllerAndEstimatorParameters {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 96] {
+    pub fn to_bytes(&self) -> Result<[u8; 96], Error> {
         let mut bytes = [0; 96];
         put_array(&mut bytes, 0, &self.user_coded_controller_settings);
         put_array(&mut bytes, 48, &self.user_coded_estimator_settings);
-        bytes
+        Ok(bytes)
     }
 }
 
@@ -81,7 +85,7 @@ impl crate::wire::Telecommand for UserCodedControllerAndEstimatorParameters {
 
     #[inline]
     fn write_frame(&self, buffer: &mut [u8]) -> Result<usize, crate::Error> {
-        crate::support::write_to(buffer, &self.to_bytes())
+        crate::support::write_to(buffer, &self.to_bytes()?)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::support::{put, take, Error, Scale};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct WheelCurrents {
     /// Wheel1Current: bits 0 to 15, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 mA.
     ///
@@ -66,14 +67,17 @@ impl WheelCurrents {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.wheel1_current.to_le_bytes() => bytes[0; 2]);
         put!(self.wheel2_current.to_le_bytes() => bytes[2; 2]);
         put!(self.wheel3_current.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 
     /// Wheel1Current in mA: 0 to 655.35.

@@ -12,6 +12,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct WheelSpeed {
     /// X Wheel Speed: bits 0 to 15, raw -32768 to 32767, in rpm.
     pub x_wheel_speed: i16,
@@ -54,14 +55,17 @@ impl WheelSpeed {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 6] {
+    pub fn to_bytes(&self) -> Result<[u8; 6], Error> {
         let mut bytes = [0; 6];
         put!(self.x_wheel_speed.to_le_bytes() => bytes[0; 2]);
         put!(self.y_wheel_speed.to_le_bytes() => bytes[2; 2]);
         put!(self.z_wheel_speed.to_le_bytes() => bytes[4; 2]);
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -14,6 +14,7 @@ use crate::support::{flags, put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct DeploymentStatus {
     /// Burn Current: bits 0 to 31, raw 0 to 4294967295, in mA.
     ///
@@ -90,9 +91,12 @@ impl DeploymentStatus {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 5] {
+    pub fn to_bytes(&self) -> Result<[u8; 5], Error> {
         let mut bytes = [0; 5];
         put!(self.burn_current.to_le_bytes() => bytes[0; 4]);
         bytes[4] |= u8::from(self.deployment_pin_state);
@@ -100,7 +104,7 @@ impl DeploymentStatus {
         bytes[4] |= u8::from(self.burn_under_current) << 2;
         bytes[4] |= u8::from(self.burn_over_current) << 3;
         bytes[4] |= u8::from(self.deployment_timeout) << 4;
-        bytes
+        Ok(bytes)
     }
 }
 

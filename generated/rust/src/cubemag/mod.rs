@@ -43,14 +43,22 @@ impl Telemetry {
     /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
-            State::ID => Self::State(State::from_bytes(bytes)?),
-            DeploymentStatus::ID => Self::DeploymentStatus(DeploymentStatus::from_bytes(bytes)?),
-            RedundantMagnetometerMeasurement::ID => {
-                Self::RedundantMagnetometerMeasurement(RedundantMagnetometerMeasurement::from_bytes(bytes)?)
-            }
-            PrimaryMagnetometerMeasurement::ID => {
-                Self::PrimaryMagnetometerMeasurement(PrimaryMagnetometerMeasurement::from_bytes(bytes)?)
-            }
+            State::ID => match bytes.try_into() {
+                Ok(bytes) => Self::State(State::from_array(bytes)),
+                Err(_) => return Error::length(State::LENGTH, bytes.len()),
+            },
+            DeploymentStatus::ID => match bytes.try_into() {
+                Ok(bytes) => Self::DeploymentStatus(DeploymentStatus::from_array(bytes)),
+                Err(_) => return Error::length(DeploymentStatus::LENGTH, bytes.len()),
+            },
+            RedundantMagnetometerMeasurement::ID => match bytes.try_into() {
+                Ok(bytes) => Self::RedundantMagnetometerMeasurement(RedundantMagnetometerMeasurement::from_array(bytes)),
+                Err(_) => return Error::length(RedundantMagnetometerMeasurement::LENGTH, bytes.len()),
+            },
+            PrimaryMagnetometerMeasurement::ID => match bytes.try_into() {
+                Ok(bytes) => Self::PrimaryMagnetometerMeasurement(PrimaryMagnetometerMeasurement::from_array(bytes)),
+                Err(_) => return Error::length(PrimaryMagnetometerMeasurement::LENGTH, bytes.len()),
+            },
             _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
@@ -62,12 +70,12 @@ impl Telemetry {
     /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
-            Self::State(message) => write_to(buffer, &message.to_bytes()),
-            Self::DeploymentStatus(message) => write_to(buffer, &message.to_bytes()),
+            Self::State(message) => write_to(buffer, &message.to_bytes()?),
+            Self::DeploymentStatus(message) => write_to(buffer, &message.to_bytes()?),
             Self::RedundantMagnetometerMeasurement(message) => {
-                write_to(buffer, &message.to_bytes())
+                write_to(buffer, &message.to_bytes()?)
             }
-            Self::PrimaryMagnetometerMeasurement(message) => write_to(buffer, &message.to_bytes()),
+            Self::PrimaryMagnetometerMeasurement(message) => write_to(buffer, &message.to_bytes()?),
         }
     }
 

@@ -10,6 +10,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct PrimaryMagnetometerMeasurement {
     /// X_axis: bits 0 to 31, 32-bit float, in nT.
     ///
@@ -73,15 +74,18 @@ impl PrimaryMagnetometerMeasurement {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 13] {
+    pub fn to_bytes(&self) -> Result<[u8; 13], Error> {
         let mut bytes = [0; 13];
         put!(self.x_axis.to_le_bytes() => bytes[0; 4]);
         put!(self.y_axis.to_le_bytes() => bytes[4; 4]);
         put!(self.z_axis.to_le_bytes() => bytes[8; 4]);
         bytes[12] |= u8::from(self.data_valid);
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -13,6 +13,7 @@ use crate::support::{Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct State {
     /// MagSvc State: bits 0 to 7.
     ///
@@ -67,14 +68,17 @@ impl State {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 3] {
+    pub fn to_bytes(&self) -> Result<[u8; 3], Error> {
         let mut bytes = [0; 3];
         bytes[0] = self.mag_svc_state.raw();
         bytes[1] = self.primary_mag_state.raw();
         bytes[2] = self.red_mag_state.raw();
-        bytes
+        Ok(bytes)
     }
 }
 

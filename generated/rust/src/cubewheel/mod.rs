@@ -38,11 +38,18 @@ impl Telemetry {
     /// [`Error::UnknownId`] if there is none, [`Error::Length`] if it has another length.
     pub fn from_bytes(id: u8, bytes: &[u8]) -> Result<Self, Error> {
         Ok(match id {
-            WheelSpeed::ID => Self::WheelSpeed(WheelSpeed::from_bytes(bytes)?),
-            WheelReferenceSpeed::ID => {
-                Self::WheelReferenceSpeed(WheelReferenceSpeed::from_bytes(bytes)?)
-            }
-            MotorPower::ID => Self::MotorPower(MotorPower::from_bytes(bytes)?),
+            WheelSpeed::ID => match bytes.try_into() {
+                Ok(bytes) => Self::WheelSpeed(WheelSpeed::from_array(bytes)),
+                Err(_) => return Error::length(WheelSpeed::LENGTH, bytes.len()),
+            },
+            WheelReferenceSpeed::ID => match bytes.try_into() {
+                Ok(bytes) => Self::WheelReferenceSpeed(WheelReferenceSpeed::from_array(bytes)),
+                Err(_) => return Error::length(WheelReferenceSpeed::LENGTH, bytes.len()),
+            },
+            MotorPower::ID => match bytes.try_into() {
+                Ok(bytes) => Self::MotorPower(MotorPower::from_array(bytes)),
+                Err(_) => return Error::length(MotorPower::LENGTH, bytes.len()),
+            },
             _ => return Err(Error::UnknownId { id: u32::from(id) }),
         })
     }
@@ -54,9 +61,9 @@ impl Telemetry {
     /// [`Error::Length`] if the buffer is too short, [`Error::Range`] if a value does not fit.
     pub fn write_to(&self, buffer: &mut [u8]) -> Result<usize, Error> {
         match self {
-            Self::WheelSpeed(message) => write_to(buffer, &message.to_bytes()),
-            Self::WheelReferenceSpeed(message) => write_to(buffer, &message.to_bytes()),
-            Self::MotorPower(message) => write_to(buffer, &message.to_bytes()),
+            Self::WheelSpeed(message) => write_to(buffer, &message.to_bytes()?),
+            Self::WheelReferenceSpeed(message) => write_to(buffer, &message.to_bytes()?),
+            Self::MotorPower(message) => write_to(buffer, &message.to_bytes()?),
         }
     }
 

@@ -16,6 +16,7 @@ use crate::support::{put, take, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct WheelReferenceSpeed {
     /// Reference Speed: bits 0 to 31, 32-bit float, in rpm.
     ///
@@ -58,12 +59,15 @@ impl WheelReferenceSpeed {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 4] {
+    pub fn to_bytes(&self) -> Result<[u8; 4], Error> {
         let mut bytes = [0; 4];
         put!(self.reference_speed.to_le_bytes() => bytes[0; 4]);
-        bytes
+        Ok(bytes)
     }
 }
 

@@ -11,6 +11,7 @@ use crate::support::{put, take, Coded, Error};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[repr(C)]
 pub struct WheelSpeed {
     /// Wheel Speed: bits 0 to 31, 32-bit float, in rpm.
     ///
@@ -58,13 +59,16 @@ impl WheelSpeed {
     }
 
     /// Encodes the message; reserved bits are 0.
+    ///
+    /// # Errors
+    ///
+    /// None: every value fits its field.
     #[inline]
-    #[must_use]
-    pub fn to_bytes(&self) -> [u8; 5] {
+    pub fn to_bytes(&self) -> Result<[u8; 5], Error> {
         let mut bytes = [0; 5];
         put!(self.wheel_speed.to_le_bytes() => bytes[0; 4]);
         bytes[4] = self.wheel_error_state.raw();
-        bytes
+        Ok(bytes)
     }
 }
 

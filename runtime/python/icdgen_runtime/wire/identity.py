@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from .._base import Buffer
+from .._hints import Buffer
 from .errors import need
 from .link import Link
 
@@ -27,6 +27,4 @@ def identify(link: Link, data: Buffer) -> Identity:
     type = int(getattr(frame, step.fields["node_type"]))
     version = int(getattr(frame, step.fields["interface_version"]))
     is_type = link.node_type in (None, type)
-    return Identity(
-        type, version, is_type and link.interface_version in (None, version)
-    )
+    return Identity(type, version, is_type and link.interface_version in (None, version))

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Literal, NamedTuple, Optional
 
-from .._base import Buffer, Message
+from .._base import Message
 from .._errors import LengthError, RangeError
+from .._hints import Buffer
 from .errors import UnsupportedError, need
 from .link import Link, LogBit, LogMask
 
@@ -158,9 +159,7 @@ def _selected(layout: LogMask, mask: bytes) -> list[LogBit]:
     return layout.selected(mask)
 
 
-def _pieces(
-    slots: Sequence[LogBit], layout: LogMask, start: int
-) -> list[tuple[int, Optional[int], int, int]]:
+def _pieces(slots: Sequence[LogBit], layout: LogMask, start: int) -> list[tuple[int, Optional[int], int, int]]:
     """Bit, id, begin and end of each frame."""
     pieces = []
     for number, slot in enumerate(slots):
@@ -169,15 +168,8 @@ def _pieces(
     return pieces
 
 
-def _frames(
-    pieces: Sequence[tuple[int, Optional[int], int, int]], data: bytes, start: int
-) -> tuple[LogFrame, ...]:
-    return tuple(
-        [
-            LogFrame(bit, id, data[start + begin : start + end])
-            for bit, id, begin, end in pieces
-        ]
-    )
+def _frames(pieces: Sequence[tuple[int, Optional[int], int, int]], data: bytes, start: int) -> tuple[LogFrame, ...]:
+    return tuple([LogFrame(bit, id, data[start + begin : start + end]) for bit, id, begin, end in pieces])
 
 
 def _filled(link: Link, slots: Sequence[LogBit], frames: Iterable[bytes]) -> bytes:

@@ -5,18 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool), (1, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class CopyToInternalFlashProgress(_base.Message):
     """Copy To Internal Flash Progress: telemetry 233, 1 byte. Table 71.
 
@@ -26,11 +17,6 @@ class CopyToInternalFlashProgress(_base.Message):
     Note BOOT-020 (open): Progress frame without progress.
     """
 
-    __slots__ = (
-        "busy",
-        "error",
-    )
-
     NODE = "bootloader"
     NAME = "Copy To Internal Flash Progress"
     KIND = "telemetry"
@@ -38,40 +24,9 @@ class CopyToInternalFlashProgress(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 71
-    FIELDS = (
-        _base.FieldInfo("busy", "Busy", 0, 1, "bool"),
-        _base.FieldInfo("error", "Error", 1, 1, "bool"),
-    )
 
-    busy: bool
+    busy: bool = _base.field("Busy", 0, 1, "bool", default=False)
     """Busy: bit 0."""
-    error: bool
+
+    error: bool = _base.field("Error", 1, 1, "bool", default=False)
     """Error: bit 1."""
-
-    def __init__(
-        self,
-        *,
-        busy: bool = False,
-        error: bool = False,
-    ) -> None:
-        self.busy = busy
-        self.error = error
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> CopyToInternalFlashProgress:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.busy, self.error = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.busy, self.error]
-            return _pack(v0)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

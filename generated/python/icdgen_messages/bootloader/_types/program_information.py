@@ -5,20 +5,10 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
+from ... import _base
 from .programs_list import ProgramsList
 
-_STRUCT = struct.Struct("<2BIH")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 8, ProgramsList))
-_BITS_1 = _codec.bit_table((0, 1, bool))
-_BYTES_1 = _codec.Inverse(_BITS_1)
 
-
-@dataclass(init=False, repr=False, eq=False)
 class ProgramInformation(_base.Message):
     """Program Information: telemetry 232, 8 bytes. Table 70.
 
@@ -28,13 +18,6 @@ class ProgramInformation(_base.Message):
     program.
     """
 
-    __slots__ = (
-        "program_index",
-        "busy",
-        "file_size",
-        "checksum",
-    )
-
     NODE = "bootloader"
     NAME = "Program Information"
     KIND = "telemetry"
@@ -42,75 +25,32 @@ class ProgramInformation(_base.Message):
     IDS = (ID,)
     LENGTH = 8
     TABLE = 70
-    FIELDS = (
-        _base.FieldInfo(
-            "program_index",
-            "Program Index",
-            0,
-            8,
-            "enum",
-            enum=ProgramsList,
-        ),
-        _base.FieldInfo("busy", "Busy", 8, 1, "bool"),
-        _base.FieldInfo("file_size", "File Size", 16, 32, "uint", unit="byte"),
-        _base.FieldInfo("checksum", "Checksum", 48, 16, "uint"),
-    )
 
-    program_index: ProgramsList
+    program_index: ProgramsList = _base.field("Program Index", 0, 8, "enum", default=ProgramsList.BOOTLOADER)
     """Program Index: bits 0 to 7.
 
     Note BOOT-018 (open): Read Program Information: whether the answer belongs to the
     request.
     """
-    busy: bool
+
+    busy: bool = _base.field("Busy", 8, 1, "bool", default=False)
     """Busy: bit 8.
 
     Still reading.
     """
-    file_size: int
+
+    file_size: int = _base.field("File Size", 16, 32, "uint", default=0, unit="byte")
     """File Size: bits 16 to 47, raw 0 to 4294967295, in byte.
 
     Erratum BOOT-021 (certain): Size of a program has its unit in words only.
 
     Note BOOT-019 (open): Program Information: what the checksum covers.
     """
-    checksum: int
+
+    checksum: int = _base.field("Checksum", 48, 16, "uint", default=0)
     """Checksum: bits 48 to 63, raw 0 to 65535.
 
     CRC-16.
 
     Note BOOT-019 (open): Program Information: what the checksum covers.
     """
-
-    def __init__(
-        self,
-        *,
-        program_index: ProgramsList = ProgramsList.BOOTLOADER,
-        busy: bool = False,
-        file_size: int = 0,
-        checksum: int = 0,
-    ) -> None:
-        self.program_index = program_index
-        self.busy = busy
-        self.file_size = file_size
-        self.checksum = checksum
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> ProgramInformation:
-        """The message in a frame of exactly 8 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            v0, v1, self.file_size, self.checksum = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.program_index = _BITS_0[v0]
-        self.busy = _BITS_1[v1]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v1 = _BYTES_1[self.busy]
-            return _pack(self.program_index, v1, self.file_size, self.checksum)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

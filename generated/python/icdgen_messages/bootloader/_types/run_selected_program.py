@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class RunSelectedProgram(_base.Message):
     """Run Selected Program: telecommand 101, 0 bytes. Table 64.
 
@@ -25,8 +18,6 @@ class RunSelectedProgram(_base.Message):
     Note BOOT-008 (open): Run Selected Program does not run what was selected elsewhere.
     """
 
-    __slots__ = ()
-
     NODE = "bootloader"
     NAME = "Run Selected Program"
     KIND = "telecommand"
@@ -35,20 +26,3 @@ class RunSelectedProgram(_base.Message):
     LENGTH = 0
     TABLE = 64
     ACKNOWLEDGED = False
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> RunSelectedProgram:
-        """The message in a frame of exactly 0 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack()
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class AdvanceLogPointer(_base.Message):
     """Advance Log Pointer: telecommand 5, 0 bytes. Table 12.
 
@@ -26,8 +19,6 @@ class AdvanceLogPointer(_base.Message):
     Note COM-031 (open): Log pointer: where it starts and which way it advances.
     """
 
-    __slots__ = ()
-
     NODE = "common"
     NAME = "Advance Log Pointer"
     KIND = "telecommand"
@@ -35,20 +26,3 @@ class AdvanceLogPointer(_base.Message):
     IDS = (ID,)
     LENGTH = 0
     TABLE = 12
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> AdvanceLogPointer:
-        """The message in a frame of exactly 0 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack()
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<H")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class BlockChecksum(_base.Message):
     """Block Checksum: telemetry 246, 2 bytes. Table 46.
 
@@ -24,10 +17,6 @@ class BlockChecksum(_base.Message):
     bootloader only.
     """
 
-    __slots__ = (
-        "checksum",
-    )
-
     NODE = "common"
     NAME = "Block Checksum"
     KIND = "telemetry"
@@ -35,37 +24,10 @@ class BlockChecksum(_base.Message):
     IDS = (ID,)
     LENGTH = 2
     TABLE = 46
-    FIELDS = (
-        _base.FieldInfo("checksum", "Checksum", 0, 16, "uint"),
-    )
 
-    checksum: int
+    checksum: int = _base.field("Checksum", 0, 16, "uint", default=0)
     """Checksum: bits 0 to 15, raw 0 to 65535.
 
     Note COM-106 (open): Checksum of an uploaded block is asked for before its length is
     known.
     """
-
-    def __init__(
-        self,
-        *,
-        checksum: int = 0,
-    ) -> None:
-        self.checksum = checksum
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> BlockChecksum:
-        """The message in a frame of exactly 2 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (self.checksum,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack(self.checksum)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

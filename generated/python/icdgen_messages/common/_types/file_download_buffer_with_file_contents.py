@@ -5,17 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<H20s")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_DEFAULT_0 = bytes(20)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class FileDownloadBufferWithFileContents(_base.Message):
     """File Download Buffer with File Contents: telemetry 241, 22 bytes. Table 41.
 
@@ -27,11 +19,6 @@ class FileDownloadBufferWithFileContents(_base.Message):
     Note COM-052 (open): Download packets: id of the telecommand or of the frame.
     """
 
-    __slots__ = (
-        "packet_counter",
-        "file_bytes",
-    )
-
     NODE = "common"
     NAME = "File Download Buffer with File Contents"
     KIND = "telemetry"
@@ -39,49 +26,19 @@ class FileDownloadBufferWithFileContents(_base.Message):
     IDS = (ID,)
     LENGTH = 22
     TABLE = 41
-    FIELDS = (
-        _base.FieldInfo("packet_counter", "Packet counter", 0, 16, "uint"),
-        _base.FieldInfo("file_bytes", "File bytes", 16, 160, "bytes"),
-    )
 
-    packet_counter: int
+    packet_counter: int = _base.field("Packet counter", 0, 16, "uint", default=0)
     """Packet counter: bits 0 to 15, raw 0 to 65535.
 
     Position of the packet in the burst.
 
     Note COM-047 (likely): Packet numbers: from 0 or from 1.
     """
-    file_bytes: bytes
+
+    file_bytes: bytes = _base.field("File bytes", 16, 160, "bytes", default=bytes(20))
     """File bytes: bytes 2 to 21.
 
     Note COM-029 (certain): One field, several spellings.
 
     Note COM-048 (open): Last packet of a block: fill is not defined.
     """
-
-    def __init__(
-        self,
-        *,
-        packet_counter: int = 0,
-        file_bytes: bytes = _DEFAULT_0,
-    ) -> None:
-        self.packet_counter = packet_counter
-        self.file_bytes = file_bytes
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> FileDownloadBufferWithFileContents:
-        """The message in a frame of exactly 22 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            self.packet_counter, self.file_bytes = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v2 = _codec.sized(self.file_bytes, 20)
-            return _pack(self.packet_counter, v2)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

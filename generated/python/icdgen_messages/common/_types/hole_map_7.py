@@ -5,17 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<16s")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_DEFAULT_0 = bytes(16)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class HoleMap7(_base.Message):
     """Hole Map 7: configuration, set by telecommand 126, got by telemetry 253, 16
     bytes. Table 58.
@@ -33,10 +25,6 @@ class HoleMap7(_base.Message):
     referred to.
     """
 
-    __slots__ = (
-        "hole_map",
-    )
-
     NODE = "common"
     NAME = "Hole Map 7"
     KIND = "configuration"
@@ -45,37 +33,9 @@ class HoleMap7(_base.Message):
     IDS = (SET_ID, GET_ID)
     LENGTH = 16
     TABLE = 58
-    FIELDS = (
-        _base.FieldInfo("hole_map", "Hole Map", 0, 128, "bytes"),
-    )
 
-    hole_map: bytes
+    hole_map: bytes = _base.field("Hole Map", 0, 128, "bytes", default=bytes(16))
     """Hole Map: bytes 0 to 15.
 
     One bit a packet, least significant bit of byte 0 first. 1: received.
     """
-
-    def __init__(
-        self,
-        *,
-        hole_map: bytes = _DEFAULT_0,
-    ) -> None:
-        self.hole_map = hole_map
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> HoleMap7:
-        """The message in a frame of exactly 16 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (self.hole_map,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _codec.sized(self.hole_map, 16)
-            return _pack(v0)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,18 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class InitializeUploadComplete(_base.Message):
     """Initialize Upload Complete: telemetry 244, 1 byte. Table 44.
 
@@ -31,10 +22,6 @@ class InitializeUploadComplete(_base.Message):
     Note COM-105 (open): Initialisation of an upload can fail silently.
     """
 
-    __slots__ = (
-        "busy",
-    )
-
     NODE = "common"
     NAME = "Initialize Upload Complete"
     KIND = "telemetry"
@@ -42,40 +29,11 @@ class InitializeUploadComplete(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 44
-    FIELDS = (
-        _base.FieldInfo("busy", "Busy", 0, 1, "bool"),
-    )
 
-    busy: bool
+    busy: bool = _base.field("Busy", 0, 1, "bool", default=False)
     """Busy: bit 0.
 
     Still preparing, for instance erasing flash.
 
     Note COM-103 (certain): Frames named complete report busy.
     """
-
-    def __init__(
-        self,
-        *,
-        busy: bool = False,
-    ) -> None:
-        self.busy = busy
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> InitializeUploadComplete:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.busy = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.busy]
-            return _pack(v0)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class ResetUploadBlock(_base.Message):
     """Reset Upload Block: telecommand 117, 0 bytes. Table 23.
 
@@ -27,8 +20,6 @@ class ResetUploadBlock(_base.Message):
     say which.
     """
 
-    __slots__ = ()
-
     NODE = "common"
     NAME = "Reset Upload Block"
     KIND = "telecommand"
@@ -36,20 +27,3 @@ class ResetUploadBlock(_base.Message):
     IDS = (ID,)
     LENGTH = 0
     TABLE = 23
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> ResetUploadBlock:
-        """The message in a frame of exactly 0 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            return _pack()
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

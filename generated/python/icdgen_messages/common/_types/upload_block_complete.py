@@ -5,18 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec
-
-_STRUCT = struct.Struct("<B")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
-_BITS_0 = _codec.bit_table((0, 1, bool), (1, 1, bool))
-_BYTES_0 = _codec.Inverse(_BITS_0)
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class UploadBlockComplete(_base.Message):
     """Upload Block Complete: telemetry 245, 1 byte. Table 45.
 
@@ -33,11 +24,6 @@ class UploadBlockComplete(_base.Message):
     changing names.
     """
 
-    __slots__ = (
-        "busy",
-        "error",
-    )
-
     NODE = "common"
     NAME = "Upload Block Complete"
     KIND = "telemetry"
@@ -45,48 +31,17 @@ class UploadBlockComplete(_base.Message):
     IDS = (ID,)
     LENGTH = 1
     TABLE = 45
-    FIELDS = (
-        _base.FieldInfo("busy", "Busy", 0, 1, "bool"),
-        _base.FieldInfo("error", "Error", 1, 1, "bool"),
-    )
 
-    busy: bool
+    busy: bool = _base.field("Busy", 0, 1, "bool", default=False)
     """Busy: bit 0.
 
     Still finalizing the block.
 
     Note COM-103 (certain): Frames named complete report busy.
     """
-    error: bool
+
+    error: bool = _base.field("Error", 1, 1, "bool", default=False)
     """Error: bit 1.
 
     Finalizing the block failed.
     """
-
-    def __init__(
-        self,
-        *,
-        busy: bool = False,
-        error: bool = False,
-    ) -> None:
-        self.busy = busy
-        self.error = error
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> UploadBlockComplete:
-        """The message in a frame of exactly 1 byte. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (v0,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        self.busy, self.error = _BITS_0[v0]
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            v0 = _BYTES_0[self.busy, self.error]
-            return _pack(v0)
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

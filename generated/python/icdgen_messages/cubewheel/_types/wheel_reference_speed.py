@@ -5,16 +5,9 @@
 
 from __future__ import annotations
 
-import struct
-from dataclasses import dataclass
-
-from ... import _base, _codec, _floats
-
-_STRUCT = struct.Struct("<f")
-_pack, _unpack, _new = _STRUCT.pack, _STRUCT.unpack, _codec.new
+from ... import _base
 
 
-@dataclass(init=False, repr=False, eq=False)
 class WheelReferenceSpeed(_base.Message):
     """Wheel Reference Speed: telemetry 196, 4 bytes. Table 56.
 
@@ -28,10 +21,6 @@ class WheelReferenceSpeed(_base.Message):
     Note WHL-013 (open): Momentum wheel in one place, wheel in the others.
     """
 
-    __slots__ = (
-        "reference_speed",
-    )
-
     NODE = "cubewheel"
     NAME = "Wheel Reference Speed"
     KIND = "telemetry"
@@ -39,18 +28,8 @@ class WheelReferenceSpeed(_base.Message):
     IDS = (ID,)
     LENGTH = 4
     TABLE = 56
-    FIELDS = (
-        _base.FieldInfo(
-            "reference_speed",
-            "Reference Speed",
-            0,
-            32,
-            "float",
-            unit="rpm",
-        ),
-    )
 
-    reference_speed: float
+    reference_speed: float = _base.field("Reference Speed", 0, 32, "float", default=0.0, unit="rpm")
     """Reference Speed: bits 0 to 31, 32-bit float, in rpm.
 
     Erratum WHL-007 (certain): RPM is rpm.
@@ -59,32 +38,3 @@ class WheelReferenceSpeed(_base.Message):
 
     Note WHL-014 (open): Reference speed and reference torque: which one is in force.
     """
-
-    def __init__(
-        self,
-        *,
-        reference_speed: float = 0.0,
-    ) -> None:
-        self.reference_speed = reference_speed
-
-    @classmethod
-    def from_bytes(cls, data: _base.Buffer) -> WheelReferenceSpeed:
-        """The message in a frame of exactly 4 bytes. Raises `LengthError`."""
-        self = _new(cls)
-        try:
-            (self.reference_speed,) = _unpack(data)
-        except struct.error:
-            raise _codec.length_error(cls, data) from None
-        total = self.reference_speed
-        if _floats.isnan(total):
-            _floats.keep_nans(self, data)
-        return self
-
-    def to_bytes(self) -> bytes:
-        """The frame, reserved bits 0. Raises `RangeError` if a value does not fit."""
-        try:
-            frame = _pack(self.reference_speed)
-            total = self.reference_speed
-            return _floats.with_nans(self, frame) if _floats.isnan(total) else frame
-        except _codec.REFUSED:
-            raise _codec.range_error(self) from None

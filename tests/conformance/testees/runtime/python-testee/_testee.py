@@ -11,7 +11,7 @@ import sys
 from importlib import import_module
 from typing import Any, Optional
 
-from . import _codec, _floats
+from . import _floats
 from ._base import FieldInfo, Message
 from ._errors import LengthError, RangeError, UnknownIdError
 from ._testee_order import ORDER
@@ -202,7 +202,7 @@ def _sweep(node: Any, words: Words) -> str:
     message = _message(node, words)()
     one = _elements(message)[int(next(words))]
     info = one.info
-    low, high = _codec.raw_range(info)
+    low, high = info.raw_range
     said = []
     for raw in map(int, words):
         if not low <= raw <= high:

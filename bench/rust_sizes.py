@@ -1,0 +1,99 @@
+"""Bytes of code of generated Rust on a Cortex-M4: the dispatcher of all telemetry, and a client that requests one frame.
+
+    rustup target add thumbv7em-none-eabihf
+    python bench/rust_sizes.py [--opt s]
+
+Each is a static library of its own, optimised as a whole; the compiler's own functions (memcpy, division) do not count, nor do they
+where C is measured (``c_units.py``).
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import tempfile
+from pathlib import Path
+
+from icdgen.backends.rust import RustBackend
+from icdgen.loading import load
+from icdgen.render import Renderer
+
+BENCH = Path(__file__).parent
+TARGET = "thumbv7em-none-eabihf"
+HEAD = """\
+#![no_std]
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    loop {}
+}
+"""
+DISPATCHER = """\
+#[no_mangle]
+pub fn dispatch(id: u8, bytes: &[u8]) -> Result<icd::cubeacp::Telemetry, icd::Error> {
+    icd::cubeacp::Telemetry::from_bytes(id, bytes)
+}
+"""
+CLIENT = """\
+use icd::cubeacp::{EstimatedAttitudeAngles, LINK, LONGEST};
+use icd::wire::{Client, Error};
+
+#[no_mangle]
+pub fn unit_begin(client: &mut Option<Client<LONGEST>>, now: u32) -> Result<(), Error> {
+    client.insert(Client::uart(&LINK)?).request::<EstimatedAttitudeAngles>(now)
+}
+
+#[no_mangle]
+pub fn unit_send(client: &mut Client<LONGEST>) -> Option<&[u8]> {
+    client.output()
+}
+
+#[no_mangle]
+pub fn unit_receive(client: &mut Client<LONGEST>, now: u32, bytes: &[u8], roll: &mut i16) {
+    client.received(now, bytes, |event| {
+        if let Some(angles) = event.message::<EstimatedAttitudeAngles>() {
+            *roll = angles.estimated_roll_angle;
+        }
+    });
+}
+"""
+PROGRAMS = {"dispatcher": DISPATCHER, "client": CLIENT}
+
+
+def compiled(folder: Path, opt: str, name: str, *more: str) -> None:
+    """Compiles ``name.rs`` of the folder, or the file among the options."""
+    command = ["rustc", "--edition", "2021", "--target", TARGET, "-C", "panic=abort", "-C", f"opt-level={opt}"]
+    subprocess.run([*command, "--crate-name", name, "--out-dir", str(folder), *more], check=True)
+
+
+def text_bytes(folder: Path, name: str) -> int:
+    """Bytes of code and constants that are the program's own."""
+    archive = folder / f"lib{name}.a"
+    names = subprocess.run(
+        ["arm-none-eabi-ar", "t", archive], check=True, capture_output=True, text=True
+    ).stdout.split()
+    own = next(one for one in names if one.removeprefix("lib").startswith(f"{name}."))
+    subprocess.run(["arm-none-eabi-ar", "x", archive, own], cwd=folder, check=True)
+    size = subprocess.run(["arm-none-eabi-size", folder / own], check=True, capture_output=True, text=True).stdout
+    return int(size.splitlines()[1].split()[0])
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--opt", default="s")
+    opt = parser.parse_args().opt
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for path, text in RustBackend().files(load([BENCH.parent / "icd"], check=False).icd, Renderer("rust")):
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            (folder / path).write_text(text, encoding="utf-8")
+        compiled(folder, opt, "icd", "--crate-type", "lib", str(folder / "src" / "lib.rs"))
+        for program, source in PROGRAMS.items():
+            file = folder / f"{program}.rs"
+            file.write_text(HEAD + source, encoding="utf-8")
+            whole = ("--crate-type", "staticlib", "-C", "lto=fat", "-C", "codegen-units=1")
+            compiled(folder, opt, program, *whole, "--extern", f"icd={folder / 'libicd.rlib'}", str(file))
+            print(f"{program}: {text_bytes(folder, program)} bytes")
+
+
+if __name__ == "__main__":
+    main()
