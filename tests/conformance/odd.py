@@ -177,7 +177,7 @@ messages:
     length: 45
     reserved: 2
     fields:
-      - {at: 0, bits: 8, name: Str, type: text}
+      - {at: 0, bits: 8, name: Str, identifier: string, type: text}
       - {at: 8, bits: 320, name: 'Odd "name" \\ */', identifier: odd name, type: text}
       - {at: 328, bits: 16, name: Text, type: text}
   - {name: Lowest byte of it, id: 0x78, kind: telemetry, length: 0}

@@ -88,9 +88,11 @@ def _set_elements(message: Message, info: FieldInfo, words: Words) -> None:
     raw: list[Any] = []
     for index, word in zip(range(info.elements), words):
         if word[0] == "p":
-            given = [0.0] * info.elements
-            given[index] = _floats.float64(int(word[1:]))
-            setattr(message, info.physical, tuple(given))
+            given = (_floats.float64(int(word[1:])),) * info.elements
+            try:
+                setattr(message, info.physical, given)
+            except RangeError:
+                raise Refusal(f"range field={_hex(f'{info.name}[{index}]')}") from None
             raw.append(getattr(message, info.attribute)[index])
         else:
             raw.append(_raw(info, word[1:]))
