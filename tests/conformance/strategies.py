@@ -187,8 +187,28 @@ def _fields(draw, enums: list[dict], orders: dict) -> tuple[list[dict], int]:
             fields[-1]["bitfields"] = draw(_division(names, fields[-1]["bits"]))
         end = max(end, at + _width(fields[-1]))
         at = draw(st.sampled_from((end, end, end // 8 * 8)))
+    fields += draw(_views(fields, used, names, enums, orders))
     order = draw(st.permutations(fields)) if draw(st.booleans()) else fields
     return order, (end + 7) // 8
+
+
+@st.composite
+def _views(draw, fields: list[dict], used: int, names: Names, enums: list[dict], orders: dict) -> list[dict]:
+    """Views of bits that fields have, where a place that was drawn has no others."""
+    found = []
+    for _ in range(draw(st.sampled_from((0, 0, 1, 3))) if fields else 0):
+        place = draw(st.sampled_from(fields))
+        at = place["at"] + draw(st.integers(0, place["bits"] - 1) | st.just(0))
+        field = {**draw(_field(enums)), **draw(_own_orders())}
+        if field["type"] in ("bytes", "text"):
+            continue
+        if field["type"] in ("uint", "int") and draw(st.booleans()):
+            field["bits"] = min(field["bits"], place["bits"])
+        for key in ("const", *(("byte_order", "bit_order") if field["type"] == "bool" else ())):
+            field.pop(key, None)
+        if not _bits_of({"at": at, **field}, {**orders, **field}) & ~used:
+            found.append({"at": at, "bits": field.pop("bits"), **names.one("view"), **field, "view": True})
+    return found
 
 
 @st.composite

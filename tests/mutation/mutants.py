@@ -141,7 +141,11 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
         yield _number("width", field, "bits", step)
     for step in (-1, 1) if "count" in field else ():
         yield _number("count", field, "count", step)
+    if field.get("view"):
+        yield "view", "no view", lambda f: f.pop("view")
     for other in OTHER_TYPES[field["type"]]:
+        if other == "bytes" and field.get("view"):
+            continue
         yield "type", f"{field['type']} -> {other}", lambda f, o=other: _retype(f, o)
     for key, values in (("byte_order", ("little", "big")), ("bit_order", ("lsb0", "msb0"))):
         if key in field:

@@ -85,7 +85,7 @@ def member_comment(member: Member) -> Comment:
 
 def field_comment(field: Field) -> Comment:
     """Name, place, range and unit; summary; the values that are allowed or mean something."""
-    facts = []
+    facts = ["A view: it reads bits of other fields, and is not set."] if field.view else []
     if field.const is not None:
         facts.append(f"Always {value_text(field.const)}.")
     if field.limits is not None:

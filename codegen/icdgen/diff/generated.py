@@ -305,7 +305,8 @@ class _Cut:
         message, field = self.messages[id(pair.owner)], self.fields[id(pair)]
         if field.type == "enum" and field.enum is None:
             return f"u{field.bits}" if language == "rust" else "int"
-        one = next(one for one in describe(self.icd).message(message).members if one.model.source is field.source)
+        members = describe(self.icd).message(message).all_members
+        one = next(one for one in members if one.model.source is field.source)
         if language == "rust":
             return rust.raw_type(one)
         if language == "c":

@@ -176,6 +176,7 @@ class Builder:
             summary=get("summary", ""),
             byte_order=byte_order,
             bit_order=bit_order,
+            view=get("view", False),
             errata=self.applied.about(item),
             source=item,
         )

@@ -136,6 +136,7 @@ class Field:
     summary: str = ""
     byte_order: str = ""  # its own or its message's; empty: the node's
     bit_order: str = ""  # likewise; `at` is counted by it
+    view: bool = False  # it reads bits that other fields have, and has none: see `Message.owners`
     element: Element | None = None
     count: int = 0  # of an array that stands as one: its elements, of which this is the first but for its name
     errata: tuple[Erratum, ...] = ()
@@ -229,6 +230,18 @@ class Message:
     source: Map = field(default_factory=unread, compare=False, repr=False)
 
     @property
+    def owners(self) -> tuple[Field, ...]:
+        """The fields that have bits of their own: what a message is made of. The others are views of these."""
+        if not any(field.view for field in self.fields):
+            return self.fields
+        return tuple(field for field in self.fields if not field.view)
+
+    @property
+    def views(self) -> tuple[Field, ...]:
+        """The fields that read bits of others."""
+        return tuple(field for field in self.fields if field.view)
+
+    @property
     def members(self) -> tuple[Field, ...]:
         """The fields as the ICD declares them: an array stands as one."""
         if all(field.element is None for field in self.fields):
@@ -237,8 +250,8 @@ class Message:
 
     @property
     def fresh(self) -> dict[str, int | bytes]:
-        """The raw values of a new message by the names of its fields."""
-        return {field.name: field.fresh for field in self.fields}
+        """The raw values of a new message by the names of its fields, but for views."""
+        return {field.name: field.fresh for field in self.owners}
 
     @property
     def telecommand_id(self) -> int | None:

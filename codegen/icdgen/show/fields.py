@@ -43,7 +43,9 @@ def _row(field: Field) -> tuple[str, ...]:
 
 
 def remarks(field: Field, number: Callable[[Fraction], str] = exact_text) -> Iterator[str]:
-    """What is constant, exclusive limits, and what special values mean; ``number`` writes numbers."""
+    """What is constant, exclusive limits, and what special values mean, that it is a view; ``number`` writes numbers."""
+    if field.view:
+        yield "a view of bits that other fields have"
     if told := orders_text(field):
         yield told
     if field.const is not None:

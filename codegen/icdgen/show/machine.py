@@ -90,6 +90,7 @@ def _field(field: Field) -> _Object:
         formula=field.formula if scale else None,
         special=[_attributes(one) for one in field.special],
         limits=_limits(field.limits),
+        view=True if field.view else None,
         **_ids(field.errata),
     )
 

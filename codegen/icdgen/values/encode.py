@@ -38,7 +38,7 @@ def encode(
                 given[field.name] = text
     misnamed = bool(wrong.messages)
     values, notes = _values(message, given, raw, wrong)
-    missing = [f.name for f in message.fields if f.name not in given and f.const is None]
+    missing = [f.name for f in message.owners if f.name not in given and f.const is None]
     if missing and not misnamed:
         with wrong.collect():
             raise BadValue(

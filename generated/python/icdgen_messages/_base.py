@@ -14,6 +14,7 @@ __all__ = [
     "field",
     "scaled",
     "text",
+    "view",
     "whole",
 ]
 
@@ -33,9 +34,7 @@ else:
         return lambda cls: cls
 
 
-@dataclass_transform(
-    kw_only_default=True, field_specifiers=(field, scaled, whole, text)
-)
+@dataclass_transform(kw_only_default=True, field_specifiers=(field, scaled, whole, text))
 class MessageType(type):
     """Makes the class of a message: a dataclass with slots, of fields that `field` declares.
 
@@ -43,9 +42,7 @@ class MessageType(type):
     first used, and what `dataclasses` wants is made when it is asked for.
     """
 
-    def __new__(
-        mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _lazy.Any]
-    ) -> _lazy.Any:
+    def __new__(mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _lazy.Any]) -> _lazy.Any:
         """The class. Values of fields stand in slots, so their declarations go."""
         if "LENGTH" in namespace:
             infos: list[FieldInfo] = []
@@ -115,10 +112,12 @@ class Message(metaclass=MessageType):
         """Whether the node acknowledges it, where it is a telecommand."""
         FIELDS: ClassVar[tuple[FieldInfo, ...]]
         """The fields in the order of the manual."""
+        VIEWS: ClassVar[tuple[FieldInfo, ...]]
+        """What reads bits of the fields in another way, and is not set."""
         BYTE_ORDER: ClassVar[Literal["little", "big"]]
         BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
     else:
-        IDS = FIELDS = ()
+        IDS = FIELDS = VIEWS = ()
         TABLE = None
         ACKNOWLEDGED = True
         BYTE_ORDER, BIT_ORDER = "little", "lsb0"
@@ -153,9 +152,7 @@ class Message(metaclass=MessageType):
             """
             for info in cls.FIELDS:
                 if info.physical and info.attribute in values:
-                    raise TypeError(
-                        f"from_physical takes {info.physical}, not {info.attribute}"
-                    )
+                    raise TypeError(f"from_physical takes {info.physical}, not {info.attribute}")
             return cls(**values)
 
     @classmethod
@@ -174,12 +171,17 @@ class Message(metaclass=MessageType):
         return frame
 
     def as_dict(self, physical: bool = False) -> dict[str, _lazy.Any]:
-        """All values by attribute: raw, or physical where a field has such a value."""
+        """All values by attribute: raw, or physical where there is such a value; then those of views."""
+        infos = (*self.FIELDS, *self.VIEWS)
         if physical:
-            names = [info.physical or info.attribute for info in self.FIELDS]
+            names = [info.physical or info.attribute for info in infos]
         else:
-            names = [info.attribute for info in self.FIELDS]
+            names = [info.attribute for info in infos]
         return {name: getattr(self, name) for name in names}
+
+    def _own(self) -> dict[str, _lazy.Any]:
+        """What it is made of: views follow from that."""
+        return {info.attribute: getattr(self, info.attribute) for info in self.FIELDS}
 
     @classmethod
     def from_dict(cls: type[_lazy.M], values: _lazy.Mapping[str, _lazy.Any]) -> _lazy.M:
@@ -206,9 +208,7 @@ class Message(metaclass=MessageType):
         return from_json(cls, data)
 
     @classmethod
-    def decode_many(
-        cls, frames: _lazy.Buffer, physical: bool = False
-    ) -> dict[str, _lazy.Any]:
+    def decode_many(cls, frames: _lazy.Buffer, physical: bool = False) -> dict[str, _lazy.Any]:
         """Frames that follow each other, as one numpy array a field.
 
         The names are those of `as_dict`. What stands on whole bytes is a view of the
@@ -232,13 +232,21 @@ class Message(metaclass=MessageType):
         return _columns.decode_table(cls, frames, physical)
 
     def __replace__(self: _lazy.M, **changes: _lazy.Any) -> _lazy.M:
-        return type(self)(**{**self.as_dict(), **changes})
+        return type(self)(**{**self._own(), **changes})
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        return self.as_dict() == other.as_dict()
+        return self._own() == other._own()
 
     def __repr__(self) -> str:
-        values = (f"{name}={value!r}" for name, value in self.as_dict().items())
+        values = (f"{name}={value!r}" for name, value in self._own().items())
         return f"{type(self).__name__}({', '.join(values)})"
+
+
+def view(message: Message, attribute: str, kind: type[_lazy.T]) -> _lazy.T:
+    """The value of a view, of the frame that the message makes. Raises `RangeError`."""
+    from ._codec import seen
+
+    value: _lazy.T = seen(message, attribute, kind)
+    return value

@@ -104,15 +104,8 @@ def text(value: _lazy.Buffer) -> str:
 
 def text_bytes(value: str, field: str, size: int) -> bytes:
     """The bytes of a text, filled with NUL. Raises `RangeError`."""
-    if (
-        not isinstance(value, str)
-        or not value.isascii()
-        or "\0" in value
-        or len(value) > size
-    ):
-        raise RangeError(
-            field, f"up to {size} ASCII characters, none of them NUL", value
-        )
+    if not isinstance(value, str) or not value.isascii() or "\0" in value or len(value) > size:
+        raise RangeError(field, f"up to {size} ASCII characters, none of them NUL", value)
     return value.encode("ascii").ljust(size, b"\0")
 
 
@@ -129,6 +122,21 @@ def range_error(message: _lazy.Message) -> RangeError:
         if not fits:
             return RangeError(info.attribute, allowed, value)
     return RangeError("a field", "a value of its type", None)
+
+
+def seen(message: _lazy.Message, attribute: str, kind: _lazy.Any) -> _lazy.Any:
+    """The value of a view as ``kind`` has it. Raises `RangeError`."""
+    from ._floats import float32, float64
+    from ._layout import pieces
+
+    frame = message.to_bytes()
+    info = next(one for one in message.VIEWS if one.attribute == attribute)
+    value = 0
+    for piece in pieces(info, type(message)):
+        value |= (frame[piece.byte] >> piece.shift & (1 << piece.bits) - 1) << piece.at
+    if kind is float:
+        return float32(value) if info.bits == 32 else float64(value)
+    return kind(signed(value, info.bits) if info.signed else value)
 
 
 def _fits_integer(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:

@@ -18,14 +18,12 @@ from ._layout import Piece, byte_order, pieces
 _EXACT = 1 << 53  # integers below this are exact as 64-bit floats
 
 
-def decode_many(
-    message: type[Message], frames: Buffer, physical: bool
-) -> dict[str, Any]:
+def decode_many(message: type[Message], frames: Buffer, physical: bool) -> dict[str, Any]:
     """See `Message.decode_many`."""
     numpy: Any = import_module("numpy")
     decoder = _Decoder(numpy, message, frames)
     columns = {}
-    for info in message.FIELDS:
+    for info in (*message.FIELDS, *message.VIEWS):
         column = decoder.column(info)
         if physical and info.type == "text":
             texts = [text(row) for row in column]
@@ -43,7 +41,7 @@ def decode_table(message: type[Message], frames: Buffer, physical: bool) -> Any:
     pyarrow: Any = import_module("pyarrow")
     columns = decode_many(message, frames, physical)
     fields, arrays = [], []
-    for info, (name, column) in zip(message.FIELDS, columns.items()):
+    for info, (name, column) in zip((*message.FIELDS, *message.VIEWS), columns.items()):
         column = numpy.ascontiguousarray(column)
         if info.type in OCTETS and column.ndim == 2:
             kind = pyarrow.binary(info.bits // 8)
@@ -177,9 +175,7 @@ class _Decoder:
         """What stands at a byte of every frame, as a view."""
         if not self.count:
             return self.numpy.empty(0, kind)
-        return self.numpy.ndarray(
-            self.count, kind, self.rows, start, (self.message.LENGTH,)
-        )
+        return self.numpy.ndarray(self.count, kind, self.rows, start, (self.message.LENGTH,))
 
     def _byte(self, byte: int) -> Any:
         return self.bytes[byte][: self.count]
@@ -205,9 +201,7 @@ class _Decoder:
         if not info.signed:
             return total.astype(f"u{size // 8}")
         spare = numpy.uint64(64 - info.bits)
-        return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(
-            f"i{size // 8}"
-        )
+        return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(f"i{size // 8}")
 
 
 class _Plan(NamedTuple):
@@ -228,7 +222,7 @@ def _plan(message: type[Message]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in message.FIELDS:
+    for info in (*message.FIELDS, *message.VIEWS):
         if _is_whole(info):
             continue
         for piece in pieces(info, message):

@@ -22,6 +22,7 @@ __all__ = [
     "Messages",
     "OpenEnum",
     "Optional",
+    "T",
     "attribute",
 ]
 
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from ._base import Message
     from ._enumeration import OpenEnum
     from ._fields import FieldInfo
-    from ._hints import Buffer, M
+    from ._hints import Buffer, M, T
 else:
     _NAMED = {
         "Any": "typing",
@@ -47,6 +48,7 @@ else:
         "Message": "._base",
         "OpenEnum": "._enumeration",
         "Optional": "typing",
+        "T": "._hints",
     }
 
     def __getattr__(name):
@@ -55,9 +57,7 @@ else:
         return getattr(import_module(_NAMED[name], __package__), name)
 
 
-def attribute(
-    module: dict[str, _lazy.Any], homes: dict[str, str], name: str
-) -> _lazy.Any:
+def attribute(module: dict[str, _lazy.Any], homes: dict[str, str], name: str) -> _lazy.Any:
     """The class ``name`` of the node ``module``, from the file that ``homes`` gives; ``__all__``: the names of all."""
     if name == "__all__":  # `from node import *` asks for it
         public = {one for one in module if not one.startswith("_")}
@@ -72,9 +72,7 @@ def attribute(
 class Messages:
     """The messages of a node by id: ``TELEMETRY[146]`` is a class."""
 
-    def __init__(
-        self, module: dict[str, _lazy.Any], node: str, kind: str, names: dict[int, str]
-    ) -> None:
+    def __init__(self, module: dict[str, _lazy.Any], node: str, kind: str, names: dict[int, str]) -> None:
         self._module, self._node, self._kind, self._names = module, node, kind, names
         self._loaded: dict[int, type[Message]] = {}
 

@@ -136,6 +136,21 @@ def _has_elements(info: _lazy.FieldInfo, value: _lazy.Any) -> bool:
     return hasattr(value, "__getitem__") and len(value) == info.elements
 
 
+def seen(message: _lazy.Message, attribute: str, kind: _lazy.Any) -> _lazy.Any:
+    """The value of a view as ``kind`` has it. Raises `RangeError`."""
+    from ._floats import float32, float64
+    from ._layout import pieces
+
+    frame = message.to_bytes()
+    info = next(one for one in message.VIEWS if one.attribute == attribute)
+    value = 0
+    for piece in pieces(info, type(message)):
+        value |= (frame[piece.byte] >> piece.shift & (1 << piece.bits) - 1) << piece.at
+    if kind is float:
+        return float32(value) if info.bits == 32 else float64(value)
+    return kind(signed(value, info.bits) if info.signed else value)
+
+
 def _fits_integer(info: _lazy.FieldInfo, value: _lazy.Any) -> tuple[str, bool]:
     low, high = info.raw_range
     return f"integers from {low} to {high}", _is_within(value, low, high)

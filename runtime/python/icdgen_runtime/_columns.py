@@ -22,7 +22,7 @@ def decode_many(message: type[Message], frames: Buffer, physical: bool) -> dict[
     numpy: Any = import_module("numpy")
     decoder = _Decoder(numpy, message, frames)
     columns = {}
-    for info in message.FIELDS:
+    for info in (*message.FIELDS, *message.VIEWS):
         if info.elements:
             found = [decoder.column(one) for one in info.parts]
             column = numpy.stack(found, axis=1)
@@ -45,7 +45,7 @@ def decode_table(message: type[Message], frames: Buffer, physical: bool) -> Any:
     pyarrow: Any = import_module("pyarrow")
     columns = decode_many(message, frames, physical)
     fields, arrays = [], []
-    for info, (name, column) in zip(message.FIELDS, columns.items()):
+    for info, (name, column) in zip((*message.FIELDS, *message.VIEWS), columns.items()):
         column = numpy.ascontiguousarray(column)
         if info.type in OCTETS and column.ndim == 2:
             kind = pyarrow.binary(info.bits // 8)
@@ -229,7 +229,7 @@ def _plan(message: type[Message]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in (one for field in message.FIELDS for one in field.parts):
+    for info in (one for field in (*message.FIELDS, *message.VIEWS) for one in field.parts):
         if _is_whole(info):
             continue
         for piece in pieces(info, message):

@@ -73,7 +73,7 @@ class CBackend:
 
 
 def _message(message: MessageDescription) -> dict[str, object]:
-    folders = sorted({field.enum.node.name for field in message.fields if field.enum is not None})
+    folders = sorted({field.enum.node.name for field in message.all_fields if field.enum is not None})
     enums = ("enums.h" if folder == message.node.name else f"../{folder}/enums.h" for folder in folders)
     about = message.comment
     return {
@@ -87,6 +87,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "excess": bits.excess,
         "excess_type": bits.excess_type(message),
         "encode": encoding.statements(message),
+        "views": [accessors.view(field) for field in message.views],
         "whole_accessors": accessors.whole_accessors(message),
         "accessors": accessors.accessors(message),
     }

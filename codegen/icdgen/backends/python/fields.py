@@ -39,10 +39,9 @@ def _default(field: FieldDescription) -> str:
     return f"{name}.{member.name.upper()}" if member else f"{name}({value})"
 
 
-def declaration(field: FieldDescription) -> str:
-    """``control_mode: ConModeSelect = _base.field(...)``: its place, its first value, and what is told of it."""
-    one = field.model
-    items = [literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', f"default={default(field)}"]
+def _told(field: FieldDescription) -> list[str]:
+    """What is told of a field by keywords."""
+    one, items = field.model, []
     if field.count:
         items.append(f"elements={field.count}")
     if one.unit:
@@ -54,7 +53,32 @@ def declaration(field: FieldDescription) -> str:
         items.append(exploded("special=(", pairs, ")", " " * 8))
     items += (f'{key}="{value}"' for key in ("byte_order", "bit_order") if (value := getattr(one, key)))
     items += (f"{_KEYWORDS.get(bound.key, bound.key)}={_number(bound.value)}" for bound in field.bounds)
+    return items
+
+
+def declaration(field: FieldDescription) -> str:
+    """``control_mode: ConModeSelect = _base.field(...)``: its place, its first value, and what is told of it."""
+    one = field.model
+    items = [literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', f"default={default(field)}", *_told(field)]
     return _statement(field.name, annotation(field), "field", items)
+
+
+def view_info(field: FieldDescription) -> str:
+    """``_base.FieldInfo(...)`` of a view."""
+    one = field.model
+    items = [f'"{field.name}"', literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', *_told(field)]
+    if field.steps is not None:
+        items += [f'physical="{field.physical_name}"', f"scale={field.steps.terms}"]
+    if field.enum is not None:
+        items.append(f"enum={class_name(field.enum)}")
+    return f"_base.FieldInfo({', '.join(items)})"
+
+
+def physical(field: FieldDescription) -> str:
+    """The physical value of a view."""
+    assert field.steps is not None
+    p, c, q = field.steps.terms
+    return f"(self.{field.name} * {p} {'-' if c < 0 else '+'} {abs(c)}) / {q}"
 
 
 def scaled(field: FieldDescription) -> str:

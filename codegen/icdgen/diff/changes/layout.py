@@ -148,14 +148,14 @@ def id_width_changed(pair: NodePair, ctx: Context) -> Iterator[Found]:
 
 @rule("DIF113", "field", when="gone")
 def field_removed(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    if not ctx.is_said_of_the_message(pair):
+    if not pair.old.view and not ctx.is_said_of_the_message(pair):
         text = f"{quote(pair.old.name)} is gone: {span(pair.old)} no longer carry it"
         yield Found(text, ("at",), f"{span(pair.old)}, {type_of(pair.old)}", "")
 
 
 @rule("DIF114", "field", when="come", severity="note", addition=True)
 def field_added(pair: FieldPair, ctx: Context) -> Iterator[Found]:
-    if not ctx.is_said_of_the_message(pair):
+    if not pair.new.view and not ctx.is_said_of_the_message(pair):
         where = "bits that were reserved" if free_before(pair) else "bits that carried something else"
         text = f"{quote(pair.new.name)} is new, in {where}: {span(pair.new)}"
         yield Found(text, ("at",), "", f"{span(pair.new)}, {type_of(pair.new)}")

@@ -153,3 +153,11 @@ def names_come(pair: Pair, ctx: Context) -> Iterator[Found]:
     come: Renamed = [(None, name) for name in names]
     text = f"{_WHAT[type(pair)]} {quote(pair.new.name)} has generated names now"
     yield Found(text, ("name", "identifier"), "", pair.new.name, lines(come))
+
+
+@rule("DIF312", "field")
+def became_a_view(pair: FieldPair, ctx: Context) -> Iterator[Found]:
+    was, now = ("a view" if one.view else "a field with bits of its own" for one in (pair.old, pair.new))
+    if was != now:
+        details = ("What is encoded follows from the fields that have the bits.",) if pair.new.view else ()
+        yield Found(f"{quote(pair.new.name)} is {now}, was {was}", ("view", "at"), was, now, details)

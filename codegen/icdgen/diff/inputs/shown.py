@@ -179,6 +179,7 @@ class _Reader:
             scale=_scale(item),
             special=tuple(model.Special(**_as_it_is(model.Special, one)) for one in item.get("special", ())),
             limits=model.Limits(**limits) if "limits" in item else None,
+            view=item.get("view", False),
         )
 
 

@@ -123,7 +123,7 @@ class Element:
 def _elements(message: Message) -> list[Element]:
     return [
         Element(info, index)
-        for info in message.FIELDS
+        for info in (*message.FIELDS, *message.VIEWS)
         for index in range(info.elements or 1)
     ]
 
