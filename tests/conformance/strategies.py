@@ -198,13 +198,13 @@ def _views(draw, fields: list[dict], used: int, names: Names, enums: list[dict],
     found = []
     for _ in range(draw(st.sampled_from((0, 0, 1, 3))) if fields else 0):
         place = draw(st.sampled_from(fields))
-        at = place["at"] + draw(st.integers(0, place["bits"] - 1) | st.just(0))
+        at = place["at"] + draw(st.integers(0, _width(place) - 1) | st.just(0))
         field = {**draw(_field(enums)), **draw(_own_orders())}
         if field["type"] in ("bytes", "text"):
             continue
         if field["type"] in ("uint", "int") and draw(st.booleans()):
             field["bits"] = min(field["bits"], place["bits"])
-        for key in ("const", *(("byte_order", "bit_order") if field["type"] == "bool" else ())):
+        for key in ("const", "count", *(("byte_order", "bit_order") if field["type"] == "bool" else ())):
             field.pop(key, None)
         if not _bits_of({"at": at, **field}, {**orders, **field}) & ~used:
             found.append({"at": at, "bits": field.pop("bits"), **names.one("view"), **field, "view": True})
