@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import importlib.resources
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from tests.devices.definition import Definition, Definitions, formula, node, unit
+from tests.devices.definition import Definition, Definitions, Values, formula, node, unit
 
 
 def databases() -> Iterator[Definitions]:
@@ -51,10 +51,24 @@ def _definition(message: Any) -> Definition:
     if message.is_multiplexed():
         cause = "fields that are there under a condition"
     fields = sorted(_with_views(fields), key=lambda one: int(one["at"]))
+    read = _reader(message, any("view" in one for one in fields))
     return Definition(
         message.name, message.frame_id, "telemetry", message.length, fields, enums,
-        cause, lambda data: message.decode(data, False, False), lambda data: message.decode(data, False),
+        cause, lambda data: read(data, False), lambda data: read(data, True),
     )  # fmt: skip
+
+
+def _reader(message: Any, is_overlapping: bool) -> Callable[[bytes, bool], Values]:
+    """The library's reading, raw or scaled; signals that overlap it reads only one by one."""
+    from cantools.database import Message
+
+    parts = [message]
+    if is_overlapping:
+        head = message.frame_id, message.name, message.length
+        parts = [Message(*head, [signal], is_extended_frame=True, strict=False) for signal in message.signals]
+    return lambda data, scaled: {
+        name: value for part in parts for name, value in part.decode(data, False, scaled).items()
+    }
 
 
 def _with_views(fields: list[dict]) -> list[dict]:

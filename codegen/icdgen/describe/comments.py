@@ -105,7 +105,7 @@ def _place(field: Field) -> str:
     if field.is_bytes:
         where = byte_range(field.at // 8, field.bits // 8)
         return f"{where}, text filled with NUL" if field.type == "text" else where
-    where = bit_range(field.at, field.bits * (field.count or 1))
+    where = bit_range(field.at, field.width)
     elements = array_text(field.count, field.bits) if field.count else ""
     return ", ".join(filter(None, (where, elements, orders_text(field))))
 

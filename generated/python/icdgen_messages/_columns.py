@@ -18,18 +18,25 @@ from ._layout import Piece, byte_order, pieces
 _EXACT = 1 << 53  # integers below this are exact as 64-bit floats
 
 
-def decode_many(message: type[Message], frames: Buffer, physical: bool) -> dict[str, Any]:
+def decode_many(
+    message: type[Message], frames: Buffer, physical: bool
+) -> dict[str, Any]:
     """See `Message.decode_many`."""
     numpy: Any = import_module("numpy")
     decoder = _Decoder(numpy, message, frames)
     columns = {}
     for info in (*message.FIELDS, *message.VIEWS):
-        column = decoder.column(info)
+        if info.elements:
+            found = [decoder.column(one) for one in info.parts]
+            column = numpy.stack(found, axis=1)
+        else:
+            column = decoder.column(info)
         if physical and info.type == "text":
             texts = [text(row) for row in column]
             columns[info.physical] = numpy.array(texts, dtype=str)
         elif physical and info.physical:
-            columns[info.physical] = _physical(numpy, info, column)
+            values = _physical(numpy, info, column.ravel())
+            columns[info.physical] = values.reshape(column.shape)
         else:
             columns[info.attribute] = column
     return columns
@@ -47,6 +54,9 @@ def decode_table(message: type[Message], frames: Buffer, physical: bool) -> Any:
             kind = pyarrow.binary(info.bits // 8)
             buffers = [None, pyarrow.py_buffer(column)]
             array = pyarrow.Array.from_buffers(kind, len(column), buffers)
+        elif info.elements:
+            values = pyarrow.array(column.ravel())
+            array = pyarrow.FixedSizeListArray.from_arrays(values, info.elements)
         else:
             array = pyarrow.array(column)
         fields.append(pyarrow.field(name, array.type, metadata=_metadata(info)))
@@ -175,7 +185,9 @@ class _Decoder:
         """What stands at a byte of every frame, as a view."""
         if not self.count:
             return self.numpy.empty(0, kind)
-        return self.numpy.ndarray(self.count, kind, self.rows, start, (self.message.LENGTH,))
+        return self.numpy.ndarray(
+            self.count, kind, self.rows, start, (self.message.LENGTH,)
+        )
 
     def _byte(self, byte: int) -> Any:
         return self.bytes[byte][: self.count]
@@ -201,7 +213,9 @@ class _Decoder:
         if not info.signed:
             return total.astype(f"u{size // 8}")
         spare = numpy.uint64(64 - info.bits)
-        return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(f"i{size // 8}")
+        return ((total << spare).view(numpy.int64) >> spare.view(numpy.int64)).astype(
+            f"i{size // 8}"
+        )
 
 
 class _Plan(NamedTuple):
@@ -222,7 +236,9 @@ def _plan(message: type[Message]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in (*message.FIELDS, *message.VIEWS):
+    for info in (
+        one for field in (*message.FIELDS, *message.VIEWS) for one in field.parts
+    ):
         if _is_whole(info):
             continue
         for piece in pieces(info, message):

@@ -33,7 +33,9 @@ else:
         return lambda cls: cls
 
 
-@dataclass_transform(kw_only_default=True, field_specifiers=(field, scaled, whole, text))
+@dataclass_transform(
+    kw_only_default=True, field_specifiers=(field, scaled, whole, text)
+)
 class MessageType(type):
     """Makes the class of a message: a dataclass with slots, of fields that `field` declares.
 
@@ -41,7 +43,9 @@ class MessageType(type):
     first used, and what `dataclasses` wants is made when it is asked for.
     """
 
-    def __new__(mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _lazy.Any]) -> _lazy.Any:
+    def __new__(
+        mcls, name: str, bases: tuple[type, ...], namespace: dict[str, _lazy.Any]
+    ) -> _lazy.Any:
         """The class. Values of fields stand in slots, so their declarations go."""
         if "LENGTH" in namespace:
             infos: list[FieldInfo] = []
@@ -151,7 +155,9 @@ class Message(metaclass=MessageType):
             """
             for info in cls.FIELDS:
                 if info.physical and info.attribute in values:
-                    raise TypeError(f"from_physical takes {info.physical}, not {info.attribute}")
+                    raise TypeError(
+                        f"from_physical takes {info.physical}, not {info.attribute}"
+                    )
             return cls(**values)
 
     @classmethod
@@ -207,7 +213,9 @@ class Message(metaclass=MessageType):
         return from_json(cls, data)
 
     @classmethod
-    def decode_many(cls, frames: _lazy.Buffer, physical: bool = False) -> dict[str, _lazy.Any]:
+    def decode_many(
+        cls, frames: _lazy.Buffer, physical: bool = False
+    ) -> dict[str, _lazy.Any]:
         """Frames that follow each other, as one numpy array a field.
 
         The names are those of `as_dict`. What stands on whole bytes is a view of the

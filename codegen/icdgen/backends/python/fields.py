@@ -15,6 +15,10 @@ _KEYWORDS = {"min": "minimum", "max": "maximum"}
 
 def annotation(field: FieldDescription) -> str:
     """The type of the attribute."""
+    return f"tuple[{_annotation(field)}, ...]" if field.count else _annotation(field)
+
+
+def _annotation(field: FieldDescription) -> str:
     if field.is_text:
         return "bytes"
     return class_name(field.enum) if field.enum else "int" if field.model.type == "uint" else field.model.type
@@ -22,6 +26,10 @@ def annotation(field: FieldDescription) -> str:
 
 def default(field: FieldDescription) -> str:
     """The raw value in a new message."""
+    return f"({_default(field)},) * {field.count}" if field.count else _default(field)
+
+
+def _default(field: FieldDescription) -> str:
     kind, value = field.model.type, field.fresh
     if field.model.is_bytes:
         return f"bytes({field.model.bits // 8})"
@@ -34,6 +42,8 @@ def default(field: FieldDescription) -> str:
 def _told(field: FieldDescription) -> list[str]:
     """What is told of a field by keywords."""
     one, items = field.model, []
+    if field.count:
+        items.append(f"elements={field.count}")
     if one.unit:
         items.append(f"unit={literal(one.unit.symbol)}")
     if one.const is not None:
@@ -74,8 +84,10 @@ def physical(field: FieldDescription) -> str:
 def scaled(field: FieldDescription) -> str:
     """``estimated_roll_angle_deg: float = _base.scaled(...)``: the steps of the physical value, and the first one."""
     assert field.steps is not None
-    items = [*map(str, field.steps.terms), f"default={field.steps.double(field.fresh)!r}"]
-    return _statement(field.physical_name, "float", "scaled", items)
+    first = repr(field.steps.double(field.fresh))
+    first, note = (f"({first},) * {field.count}", "tuple[float, ...]") if field.count else (first, "float")
+    items = [*map(str, field.steps.terms), f"default={first}"]
+    return _statement(field.physical_name, note, "scaled", items)
 
 
 def _statement(name: str, note: str, call: str, items: list[str]) -> str:

@@ -64,7 +64,9 @@ class BusSession:
         finally:
             self.client.cancel()  # else a port that fails leaves it busy
 
-    def _driven(self, procedure: P, progress: Optional[Callable[[int, Optional[int]], object]]) -> P:
+    def _driven(
+        self, procedure: P, progress: Optional[Callable[[int, Optional[int]], object]]
+    ) -> P:
         events: list[Event] = []
         shown: Optional[tuple[int, Optional[int]]] = None
         asked: Optional[Request] = None
