@@ -233,6 +233,15 @@ def test_a_text_is_typed_as_it_is(icd):
     assert bare.data == b"\xff" * 10 + b"1\0"
 
 
+def test_a_view_says_what_the_fields_make_of_its_bits_and_is_not_set(icd):
+    sent = encode(icd, "top", "Seen Twice", ["low=0x5A", "high=0x81"], kind="telemetry")
+    assert sent.data == b"\x5a\x81"
+    assert [(row.field.name, row.text) for row in sent.rows] == [("Low", "90"), ("High", "129"), ("Most", "-1013.5")]
+    for raw in (True, False):
+        refused = refusal(encode, icd, "top", "Seen Twice", ["low=1", "high=2", "most=3"], raw=raw, kind="telemetry")
+        assert str(refused) == "Most: a view has no bits of its own"
+
+
 @pytest.mark.parametrize("text", ["12345678901", "\u00b5-blox"])
 def test_a_text_that_does_not_fit_is_refused(icd, text):
     refused = refusal(encode, icd, "top", "Version", [f"software={text}", "hardware=1"], kind="telemetry")

@@ -14,6 +14,7 @@ __all__ = [
     "field",
     "scaled",
     "text",
+    "view",
     "whole",
 ]
 
@@ -115,10 +116,12 @@ class Message(metaclass=MessageType):
         """Whether the node acknowledges it, where it is a telecommand."""
         FIELDS: ClassVar[tuple[FieldInfo, ...]]
         """The fields in the order of the manual."""
+        VIEWS: ClassVar[tuple[FieldInfo, ...]]
+        """What reads bits of the fields in another way, and is not set."""
         BYTE_ORDER: ClassVar[Literal["little", "big"]]
         BIT_ORDER: ClassVar[Literal["lsb0", "msb0"]]
     else:
-        IDS = FIELDS = ()
+        IDS = FIELDS = VIEWS = ()
         TABLE = None
         ACKNOWLEDGED = True
         BYTE_ORDER, BIT_ORDER = "little", "lsb0"
@@ -174,12 +177,17 @@ class Message(metaclass=MessageType):
         return frame
 
     def as_dict(self, physical: bool = False) -> dict[str, _lazy.Any]:
-        """All values by attribute: raw, or physical where a field has such a value."""
+        """All values by attribute: raw, or physical where there is such a value; then those of views."""
+        infos = (*self.FIELDS, *self.VIEWS)
         if physical:
-            names = [info.physical or info.attribute for info in self.FIELDS]
+            names = [info.physical or info.attribute for info in infos]
         else:
-            names = [info.attribute for info in self.FIELDS]
+            names = [info.attribute for info in infos]
         return {name: getattr(self, name) for name in names}
+
+    def _own(self) -> dict[str, _lazy.Any]:
+        """What it is made of: views follow from that."""
+        return {info.attribute: getattr(self, info.attribute) for info in self.FIELDS}
 
     @classmethod
     def from_dict(cls: type[_lazy.M], values: _lazy.Mapping[str, _lazy.Any]) -> _lazy.M:
@@ -232,13 +240,21 @@ class Message(metaclass=MessageType):
         return _columns.decode_table(cls, frames, physical)
 
     def __replace__(self: _lazy.M, **changes: _lazy.Any) -> _lazy.M:
-        return type(self)(**{**self.as_dict(), **changes})
+        return type(self)(**{**self._own(), **changes})
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        return self.as_dict() == other.as_dict()
+        return self._own() == other._own()
 
     def __repr__(self) -> str:
-        values = (f"{name}={value!r}" for name, value in self.as_dict().items())
+        values = (f"{name}={value!r}" for name, value in self._own().items())
         return f"{type(self).__name__}({', '.join(values)})"
+
+
+def view(message: Message, attribute: str, kind: type[_lazy.T]) -> _lazy.T:
+    """The value of a view, of the frame that the message makes. Raises `RangeError`."""
+    from ._codec import seen
+
+    value: _lazy.T = seen(message, attribute, kind)
+    return value

@@ -12,3 +12,4 @@ Buffer = Union[bytes, bytearray, memoryview]
 """What a frame may be given as."""
 
 M = TypeVar("M", bound="Message")
+T = TypeVar("T")

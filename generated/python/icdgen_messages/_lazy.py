@@ -22,6 +22,7 @@ __all__ = [
     "Messages",
     "OpenEnum",
     "Optional",
+    "T",
     "attribute",
 ]
 
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from ._base import Message
     from ._enumeration import OpenEnum
     from ._fields import FieldInfo
-    from ._hints import Buffer, M
+    from ._hints import Buffer, M, T
 else:
     _NAMED = {
         "Any": "typing",
@@ -47,6 +48,7 @@ else:
         "Message": "._base",
         "OpenEnum": "._enumeration",
         "Optional": "typing",
+        "T": "._hints",
     }
 
     def __getattr__(name):

@@ -22,6 +22,9 @@ def from_dict(message: type[M], values: Mapping[str, Any]) -> M:
             setattr(made, info.attribute, _raw(info, left.pop(info.attribute)))
         if info.physical in left:
             setattr(made, info.physical, left.pop(info.physical))
+    for info in message.VIEWS:  # they follow from the fields
+        left.pop(info.attribute, None)
+        left.pop(info.physical, None)
     for name in left:
         raise IcdError(f"{message.NAME} has no field {name!r}")
     return message.from_bytes(made.to_bytes())

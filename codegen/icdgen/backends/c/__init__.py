@@ -11,7 +11,7 @@ from icdgen.backends.c import accessors, bits, constants, decoding, encoding, na
 from icdgen.backends.c.declared_names import declared_names
 from icdgen.backends.c.reserved_words import RESERVED
 from icdgen.backends.c.runtime import whole
-from icdgen.backends.c.statement import call, define, head
+from icdgen.backends.c.statement import call, head
 from icdgen.backends.c.text import comment, described, literal, noted, prose
 from icdgen.backends.origin import origin
 from icdgen.describe import Description, MessageDescription, NodeDescription, describe
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from icdgen.render import Renderer
 
 _SPELLING = (
-    byte_count, call, comment, define, described, head, literal, prose, names.constant, names.enumerator, names.stem,
+    byte_count, call, comment, described, head, literal, prose, names.constant, names.enumerator, names.stem,
     sentence, text_comment, words,
 )  # fmt: skip
 _FUNCTIONS = {function.__name__: function for function in _SPELLING}
@@ -73,7 +73,7 @@ class CBackend:
 
 
 def _message(message: MessageDescription) -> dict[str, object]:
-    folders = sorted({field.enum.node.name for field in message.fields if field.enum is not None})
+    folders = sorted({field.enum.node.name for field in message.all_fields if field.enum is not None})
     enums = ("enums.h" if folder == message.node.name else f"../{folder}/enums.h" for folder in folders)
     about = message.comment
     return {
@@ -87,6 +87,7 @@ def _message(message: MessageDescription) -> dict[str, object]:
         "excess": bits.excess,
         "excess_type": bits.excess_type(message),
         "encode": encoding.statements(message),
+        "views": [accessors.view(field) for field in message.views],
         "whole_accessors": accessors.whole_accessors(message),
         "accessors": accessors.accessors(message),
     }

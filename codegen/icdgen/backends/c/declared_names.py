@@ -76,13 +76,15 @@ def _message(message: MessageDescription) -> Iterator[Identifier]:
     for end in ("t", "init", "decode", "encode", *(("misfit",) if message.is_narrow else ())):
         yield message.identifier(FILE, f"{stem}_{end}")
     members = f"members of {stem}_t"
-    for field in message.members:
-        yield field.identifier(members, field.name)
+    for field in message.all_members:
+        is_view = field.model.view
+        yield field.identifier(FILE, f"{stem}_{field.name}") if is_view else field.identifier(members, field.name)
         for one in field.constants:
             yield field.identifier(FILE, names.constant(message, one.name))
         for end in _physical_names(field) if field.has_physical else ():
             yield field.identifier(FILE, f"{stem}_{end}")
-            yield field.identifier(FILE, f"{stem}_set_{end}")
+            if not is_view:
+                yield field.identifier(FILE, f"{stem}_set_{end}")
 
 
 def _physical_names(field: FieldDescription) -> tuple[str, ...]:

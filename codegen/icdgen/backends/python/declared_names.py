@@ -33,7 +33,7 @@ def declared_names(description: Description, package: str) -> Iterator[Identifie
 
 
 def _message(message: MessageDescription, scope: str) -> Iterator[Identifier]:
-    for field in message.fields:
+    for field in message.all_members:
         for name in (field.name, field.physical_name) if field.has_physical else (field.name,):
             yield field.identifier(scope, name)
             if name in names.IN_MESSAGE:

@@ -15,6 +15,10 @@ _KEYWORDS = {"min": "minimum", "max": "maximum"}
 
 def annotation(field: FieldDescription) -> str:
     """The type of the attribute."""
+    return f"tuple[{_annotation(field)}, ...]" if field.count else _annotation(field)
+
+
+def _annotation(field: FieldDescription) -> str:
     if field.is_text:
         return "bytes"
     return class_name(field.enum) if field.enum else "int" if field.model.type == "uint" else field.model.type
@@ -22,6 +26,10 @@ def annotation(field: FieldDescription) -> str:
 
 def default(field: FieldDescription) -> str:
     """The raw value in a new message."""
+    return f"({_default(field)},) * {field.count}" if field.count else _default(field)
+
+
+def _default(field: FieldDescription) -> str:
     kind, value = field.model.type, field.fresh
     if field.model.is_bytes:
         return f"bytes({field.model.bits // 8})"
@@ -31,10 +39,11 @@ def default(field: FieldDescription) -> str:
     return f"{name}.{member.name.upper()}" if member else f"{name}({value})"
 
 
-def declaration(field: FieldDescription) -> str:
-    """``control_mode: ConModeSelect = _base.field(...)``: its place, its first value, and what is told of it."""
-    one = field.model
-    items = [literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', f"default={default(field)}"]
+def _told(field: FieldDescription) -> list[str]:
+    """What is told of a field by keywords."""
+    one, items = field.model, []
+    if field.count:
+        items.append(f"elements={field.count}")
     if one.unit:
         items.append(f"unit={literal(one.unit.symbol)}")
     if one.const is not None:
@@ -44,14 +53,41 @@ def declaration(field: FieldDescription) -> str:
         items.append(exploded("special=(", pairs, ")", " " * 8))
     items += (f'{key}="{value}"' for key in ("byte_order", "bit_order") if (value := getattr(one, key)))
     items += (f"{_KEYWORDS.get(bound.key, bound.key)}={_number(bound.value)}" for bound in field.bounds)
+    return items
+
+
+def declaration(field: FieldDescription) -> str:
+    """``control_mode: ConModeSelect = _base.field(...)``: its place, its first value, and what is told of it."""
+    one = field.model
+    items = [literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', f"default={default(field)}", *_told(field)]
     return _statement(field.name, annotation(field), "field", items)
+
+
+def view_info(field: FieldDescription) -> str:
+    """``_base.FieldInfo(...)`` of a view."""
+    one = field.model
+    items = [f'"{field.name}"', literal(one.name), str(one.at), str(one.bits), f'"{one.type}"', *_told(field)]
+    if field.steps is not None:
+        items += [f'physical="{field.physical_name}"', f"scale={field.steps.terms}"]
+    if field.enum is not None:
+        items.append(f"enum={class_name(field.enum)}")
+    return f"_base.FieldInfo({', '.join(items)})"
+
+
+def physical(field: FieldDescription) -> str:
+    """The physical value of a view."""
+    assert field.steps is not None
+    p, c, q = field.steps.terms
+    return f"(self.{field.name} * {p} {'-' if c < 0 else '+'} {abs(c)}) / {q}"
 
 
 def scaled(field: FieldDescription) -> str:
     """``estimated_roll_angle_deg: float = _base.scaled(...)``: the steps of the physical value, and the first one."""
     assert field.steps is not None
-    items = [*map(str, field.steps.terms), f"default={field.steps.double(field.fresh)!r}"]
-    return _statement(field.physical_name, "float", "scaled", items)
+    first = repr(field.steps.double(field.fresh))
+    first, note = (f"({first},) * {field.count}", "tuple[float, ...]") if field.count else (first, "float")
+    items = [*map(str, field.steps.terms), f"default={first}"]
+    return _statement(field.physical_name, note, "scaled", items)
 
 
 def _statement(name: str, note: str, call: str, items: list[str]) -> str:

@@ -8,7 +8,7 @@ from icdgen.describe import EnumDescription, MessageDescription
 
 def values(message: MessageDescription) -> dict[str, object]:
     """What is imported for it: its enumerations."""
-    enums = {field.enum for field in message.fields if field.enum is not None}
+    enums = {field.enum for field in message.all_fields if field.enum is not None}
     return {"imports": sorted(_import(enum, message) for enum in enums)}
 
 

@@ -29,9 +29,13 @@ class AdcsConfiguration(_base.Message):
     Repeats Augmented-SGP4 Parameters from byte 378. Repeats User-coded Controller and
     Estimator Parameters from byte 408.
 
-    Note ACP-020 (open): Reserved bits.
+    Note ACP-020 (open): Reserved bits. Gaps and trailing bits are neither marked nor
+    explained. They are written 0 and ignored.
 
-    Note ACP-159 (open): The current configuration is not all of it.
+    Note ACP-159 (open): The current configuration is not all of it. The message is
+    described as the current configuration. It joins 16 of the 25 others; orbit, target,
+    attitude command, power, logs, inertial vector and system configuration are not in
+    it. Save Configuration uses the same words.
     """
 
     NODE = "cubeacp"
@@ -108,7 +112,8 @@ class AdcsConfiguration(_base.Message):
 
     Factor on the rate sensor measurements.
 
-    Note ACP-130 (open): RateSensorMult has no scale and no blanks.
+    Note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8
+    bits; whether it is a whole factor, and of which quantity, is not said.
     """
 
     css1_configuration: AxisSelect = _base.field("CSS1 Configuration", 136, 8, "enum", default=AxisSelect.POSITIVE_X)
@@ -214,7 +219,9 @@ class AdcsConfiguration(_base.Message):
     css_threshold: int = _base.field("CSS Threshold", 296, 8, "uint", default=0)
     """CSS Threshold: bits 296 to 303, raw 0 to 255.
 
-    Note ACP-133 (open): CSS threshold has no description.
+    Note ACP-133 (open): CSS threshold has no description. The name is repeated; neither
+    unit nor what lies below it is said. The message is described as directions and
+    scale factors.
     """
 
     cam1_mounting_alpha: int = _base.field(
@@ -338,7 +345,9 @@ class AdcsConfiguration(_base.Message):
 
     Largest deviation of an edge, of the measured angular radius.
 
-    Erratum ACP-151 (certain): Deviation percentage has its unit in words only.
+    Erratum ACP-151 (certain): Deviation percentage has its unit in words only. A
+    percentage of the measured angular radius by name and description, without the unit
+    of measure.
     """
 
     nadir_max_bad_edges: int = _base.field("Nadir Max Bad Edges", 536, 8, "uint", default=0)
@@ -350,13 +359,14 @@ class AdcsConfiguration(_base.Message):
     nadir_max_radius: int = _base.field("Nadir Max Radius", 544, 8, "uint", default=0, unit="deg")
     """Nadir Max Radius: bits 544 to 551, raw 0 to 255, in deg.
 
-    Erratum ACP-148 (certain): Degree sign is deg.
+    Erratum ACP-148 (certain): Degree sign is deg. Two fields have the sign, all other
+    angles deg.
     """
 
     nadir_min_radius: int = _base.field("Nadir Min Radius", 552, 8, "uint", default=0, unit="deg")
     """Nadir Min Radius: bits 552 to 559, raw 0 to 255, in deg.
 
-    Erratum ACP-148 (certain): Degree sign is deg.
+    Erratum ACP-148 (certain): see Nadir Max Radius.
     """
 
     cam_1_minimum_x_of_area_1: int = _base.field("Cam 1 Minimum X of area 1", 560, 16, "uint", default=0)
@@ -781,7 +791,8 @@ class AdcsConfiguration(_base.Message):
 
     Register value.
 
-    Note ACP-145 (open): Exposure and gain are register values.
+    Note ACP-145 (open): Exposure and gain are register values. Neither the register nor
+    its scale is given, so times and gains cannot be told from them.
     """
 
     star_tracker_analog_gain: int = _base.field("StarTracker analog gain", 1744, 16, "uint", default=0)
@@ -789,19 +800,20 @@ class AdcsConfiguration(_base.Message):
 
     Register value.
 
-    Note ACP-145 (open): Exposure and gain are register values.
+    Note ACP-145 (open): see StarTracker exposure time.
     """
 
     star_tracker_detection_threshold: int = _base.field("StarTracker detection threshold", 1760, 8, "uint", default=0)
     """StarTracker detection threshold: bits 1760 to 1767, raw 0 to 255.
 
     Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Names are repeated or a noun is missing, as in maximum of stars.
     """
 
     star_tracker_star_threshold: int = _base.field("StarTracker star threshold", 1768, 8, "uint", default=0)
     """StarTracker star threshold: bits 1768 to 1775, raw 0 to 255.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
     """
 
     maximum_star_matched: int = _base.field("Maximum Star Matched", 1776, 8, "uint", default=0)
@@ -809,13 +821,14 @@ class AdcsConfiguration(_base.Message):
 
     Most stars that are matched.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
     """
 
     detection_timeout_duration: int = _base.field("Detection Timeout duration", 1784, 16, "uint", default=0)
     """Detection Timeout duration: bits 1784 to 1799, raw 0 to 65535.
 
-    Note ACP-141 (open): Detection timeout has no unit.
+    Note ACP-141 (open): Detection timeout has no unit. The delay time next to it is in
+    milliseconds; registers and pixels stand in between.
     """
 
     maximum_star_pixel: int = _base.field("Maximum Star Pixel", 1800, 8, "uint", default=0)
@@ -836,7 +849,9 @@ class AdcsConfiguration(_base.Message):
 
     Of the star identification.
 
-    Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most.
+    Note ACP-142 (open): Error margin: hundredths of a percent, 2.55 % at most. The unit
+    % and a factor of 0.01 give steps of 0.01 % in 8 bits. If the factor already makes a
+    fraction, as in the margins that follow without a unit, the range is 255 %.
     """
     star_tracker_error_margin_percent: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Tracker Error Margin in %: 0 to 2.55."""
@@ -844,7 +859,7 @@ class AdcsConfiguration(_base.Message):
     star_tracker_delay_time: int = _base.field("Star Tracker Delay Time", 1824, 16, "uint", default=0, unit="ms")
     """Star Tracker Delay Time: bits 1824 to 1839, raw 0 to 65535, in ms.
 
-    Erratum ACP-140 (certain): milliseconds is ms.
+    Erratum ACP-140 (certain): milliseconds is ms. The unit is spelt out in one field.
     """
 
     star_tracker_centroid_x: float = _base.field(
@@ -853,7 +868,8 @@ class AdcsConfiguration(_base.Message):
     """Star Tracker Centroid X: bits 1840 to 1871, 32-bit float, in pixels.
 
     Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words
-    only.
+    only. The fields are described as pixel centroids, without the unit of measure that
+    the boresights of the cameras have.
     """
 
     star_tracker_centroid_y: float = _base.field(
@@ -861,8 +877,7 @@ class AdcsConfiguration(_base.Message):
     )
     """Star Tracker Centroid Y: bits 1872 to 1903, 32-bit float, in pixels.
 
-    Erratum ACP-202 (likely): Image centre of the star tracker has its unit in words
-    only.
+    Erratum ACP-202 (likely): see Star Tracker Centroid X.
     """
 
     star_tracker_focal_length: float = _base.field(
@@ -875,7 +890,9 @@ class AdcsConfiguration(_base.Message):
     )
     """K1 radial distortion coefficient: bits 1936 to 1967, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): gain is no unit. Distortion coefficients have the unit gain.
+    It is kept as a plain factor; which lens model and which normalisation they belong
+    to is not said.
     """
 
     k2_radial_distortion_coefficient: float = _base.field(
@@ -883,7 +900,7 @@ class AdcsConfiguration(_base.Message):
     )
     """K2 radial distortion coefficient: bits 1968 to 1999, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
 
     p1_tangential_distortion_coefficient: float = _base.field(
@@ -891,7 +908,7 @@ class AdcsConfiguration(_base.Message):
     )
     """P1 tangential distortion coefficient: bits 2000 to 2031, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
 
     p2_tangential_distortion_coefficient: float = _base.field(
@@ -899,20 +916,21 @@ class AdcsConfiguration(_base.Message):
     )
     """P2 tangential distortion coefficient: bits 2032 to 2063, 32-bit float, in gain.
 
-    Note ACP-144 (certain): gain is no unit.
+    Note ACP-144 (certain): see K1 radial distortion coefficient.
     """
 
     star_tracking_window_width: int = _base.field("Star tracking window width", 2064, 8, "uint", default=0)
     """Star tracking window width: bits 2064 to 2071, raw 0 to 255.
 
-    Note ACP-146 (open): Thresholds and counts of the star tracker have no description.
+    Note ACP-146 (open): see StarTracker detection threshold.
     """
 
     star_tracking_margin: int = _base.field("Star Tracking Margin", 2072, 8, "uint", default=0)
     """Star Tracking Margin: bits 2072 to 2079, raw 0 to 255; physical `raw/100.0`, 0 to
     2.55.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): Margins and search width have no unit. Factors are given, units
+    are not; pixels, fractions and degrees are all possible.
     """
     star_tracking_margin_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Tracking Margin, as a physical value: 0 to 2.55."""
@@ -921,7 +939,7 @@ class AdcsConfiguration(_base.Message):
     """Star Validation Margin: bits 2080 to 2087, raw 0 to 255; physical `raw/100.0`, 0
     to 2.55.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): see Star Tracking Margin.
     """
     star_validation_margin_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Star Validation Margin, as a physical value: 0 to 2.55."""
@@ -938,7 +956,7 @@ class AdcsConfiguration(_base.Message):
     """Star Tracking Search Width: bits 2096 to 2103, raw 0 to 255; physical `raw/5.0`,
     0 to 51.
 
-    Note ACP-143 (open): Margins and search width have no unit.
+    Note ACP-143 (open): see Star Tracking Margin.
     """
     star_tracking_search_width_physical: float = _base.scaled(1, 0, 5, default=0.0)
     """Star Tracking Search Width, as a physical value: 0 to 51."""
@@ -963,7 +981,9 @@ class AdcsConfiguration(_base.Message):
 
     Must be below 0 deg/s.
 
-    Note ACP-162 (certain): Limits of a sign in words only.
+    Note ACP-162 (certain): Limits of a sign in words only. Two references must always
+    be smaller than 0; the types allow the opposite, and what the program does with it
+    is not said.
     """
     reference_spin_rate_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Reference spin rate in deg/s: -32.768 to 32.767. Must be below 0 deg/s."""
@@ -1009,7 +1029,7 @@ class AdcsConfiguration(_base.Message):
 
     Must be below 0 Nms.
 
-    Note ACP-162 (certain): Limits of a sign in words only.
+    Note ACP-162 (certain): see Reference spin rate.
     """
 
     rwheel_proportional_gain: float = _base.field("RWheel Proportional Gain", 2376, 32, "float", default=0.0)
@@ -1073,19 +1093,20 @@ class AdcsConfiguration(_base.Message):
     moment_of_inertia_ixx: float = _base.field("Moment Of Inertia - Ixx", 2584, 32, "float", default=0.0, unit="kg.m^2")
     """Moment Of Inertia - Ixx: bits 2584 to 2615, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2. The same fields
+    have the unit in two spellings. Held as kg.m^2.
     """
 
     moment_of_inertia_iyy: float = _base.field("Moment Of Inertia - Iyy", 2616, 32, "float", default=0.0, unit="kg.m^2")
     """Moment Of Inertia - Iyy: bits 2616 to 2647, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
     """
 
     moment_of_inertia_izz: float = _base.field("Moment Of Inertia - Izz", 2648, 32, "float", default=0.0, unit="kg.m^2")
     """Moment Of Inertia - Izz: bits 2648 to 2679, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
     """
 
     product_of_inertia_ixy: float = _base.field(
@@ -1093,9 +1114,11 @@ class AdcsConfiguration(_base.Message):
     )
     """Product Of Inertia - Ixy: bits 2680 to 2711, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): Products of inertia: the sign is not given. The products are
+    elements of a matrix by the message and products of inertia by their names, which
+    differ in sign by the usual definitions. Neither is defined.
     """
 
     product_of_inertia_ixz: float = _base.field(
@@ -1103,9 +1126,9 @@ class AdcsConfiguration(_base.Message):
     )
     """Product Of Inertia - Ixz: bits 2712 to 2743, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): see Product Of Inertia - Ixy.
     """
 
     product_of_inertia_iyz: float = _base.field(
@@ -1113,9 +1136,9 @@ class AdcsConfiguration(_base.Message):
     )
     """Product Of Inertia - Iyz: bits 2744 to 2775, 32-bit float, in kg.m^2.
 
-    Erratum ACP-006 (certain): Moments of inertia: kg.m² and kg.m^2.
+    Erratum ACP-006 (certain): see Moment Of Inertia - Ixx.
 
-    Note ACP-201 (open): Products of inertia: the sign is not given.
+    Note ACP-201 (open): see Product Of Inertia - Ixy.
     """
 
     magnetometer_rate_filter_system_noise: float = _base.field(
@@ -1192,7 +1215,9 @@ class AdcsConfiguration(_base.Message):
 
     The magnetometer that estimation and control use.
 
-    Note ACP-049 (open): Magnetometer mode can be set in two places.
+    Note ACP-049 (open): Magnetometer mode can be set in two places. A telecommand and a
+    configuration message set the same mode. Which wins after a restart, and whether the
+    telecommand changes what the configuration returns, is not said.
     """
 
     raw_magnetometer_selection: MagModeVal = _base.field(
@@ -1217,7 +1242,9 @@ class AdcsConfiguration(_base.Message):
     Bits 0 to 3 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
     that camera.
 
-    Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    Erratum ACP-169 (certain): Two sampling periods in one field with a unit. Two
+    periods of four bits share a byte that has the unit s. The value of the byte is no
+    time; each half is, up to 15 s, and is held as a field of its own.
     """
 
     cam2_period: int = _base.field("Cam2 period", 3020, 4, "uint", default=0, unit="s")
@@ -1226,7 +1253,7 @@ class AdcsConfiguration(_base.Message):
     Bits 4 to 7 of Cam1 and Cam2 Sampling Period. A period of 0 stops the sampling of
     that camera.
 
-    Erratum ACP-169 (certain): Two sampling periods in one field with a unit.
+    Erratum ACP-169 (certain): see Cam1 period.
     """
 
     incl_coefficient: int = _base.field("Incl. coefficient", 3024, 16, "uint", default=0)
@@ -1365,7 +1392,8 @@ class AdcsConfiguration(_base.Message):
     )
     """User Coded Controller Settings: bytes 408 to 455.
 
-    Note ACP-178 (open): User coded settings: content of the arrays.
+    Note ACP-178 (open): User coded settings: content of the arrays. Twice 48 bytes
+    without types; what they hold depends on code that the user supplies.
     """
 
     user_coded_estimator_settings: bytes = _base.field(
@@ -1373,5 +1401,5 @@ class AdcsConfiguration(_base.Message):
     )
     """User Coded Estimator Settings: bytes 456 to 503.
 
-    Note ACP-178 (open): User coded settings: content of the arrays.
+    Note ACP-178 (open): see User Coded Controller Settings.
     """

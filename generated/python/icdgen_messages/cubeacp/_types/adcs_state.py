@@ -24,9 +24,13 @@ class AdcsState(_base.Message):
     (ECI) from byte 30. Repeats Satellite Velocity (ECI) from byte 36. Repeats Satellite
     Position (LLH) from byte 42. Repeats ECEF Position from byte 48.
 
-    Note ACP-059 (certain): Current ADCS State and ADCS State.
+    Note ACP-059 (certain): Current ADCS State and ADCS State. Frame 132 is called
+    Current ADCS State, and frame 190, which holds it and much more, ADCS State with the
+    description current ADCS state.
 
-    Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles.
+    Note ACP-101 (likely): ADCS State: 30 bits between the flags and the angles. Bits 66
+    to 95 are not described. They are the unused end of frame 224, which the frame
+    repeats.
     """
 
     NODE = "cubeacp"
@@ -51,7 +55,8 @@ class AdcsState(_base.Message):
     asgp4_mode: Asgp4ModeSelect = _base.field("ASGP4 Mode", 10, 2, "enum", default=Asgp4ModeSelect.OFF)
     """ASGP4 Mode: bits 10 to 11.
 
-    Note ACP-047 (certain): ASGP4 Mode is called an enabled state.
+    Note ACP-047 (certain): ASGP4 Mode is called an enabled state. Field and frames hold
+    a mode with four values; the description has an enabled state.
     """
 
     cubecontrol_signal_enabled: bool = _base.field("CubeControl Signal Enabled", 12, 1, "bool", default=False)
@@ -129,7 +134,9 @@ class AdcsState(_base.Message):
 
     About a measured field of 65 uT. Whether above or below is not printed.
 
-    Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison.
+    Note ACP-060 (likely): Magnetometer range: 65 uT without a comparison. The error is
+    set when the field has a size 65 uT. Above is likely, since the field of the earth
+    hardly reaches it.
     """
 
     cam1_sram_overcurrent_detected: bool = _base.field("Cam1 SRAM Overcurrent Detected", 33, 1, "bool", default=False)
@@ -155,7 +162,9 @@ class AdcsState(_base.Message):
 
     A detected sun angle was beyond +/-90 deg.
 
-    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera. One flag
+    each is for the sun and the nadir sensor; the cameras are numbered, and which of
+    them is which is a setting. With two sun sensors one flag serves both.
     """
 
     cam2_sram_overcurrent_detected: bool = _base.field("Cam2 SRAM Overcurrent Detected", 38, 1, "bool", default=False)
@@ -181,7 +190,7 @@ class AdcsState(_base.Message):
 
     A detected nadir angle was beyond +/-60 deg.
 
-    Note ACP-061 (open): Sun and nadir sensor errors do not say which camera.
+    Note ACP-061 (open): see Sun Sensor Range Error.
     """
 
     rate_sensor_range_error: bool = _base.field("Rate Sensor Range Error", 43, 1, "bool", default=False)
@@ -218,7 +227,8 @@ class AdcsState(_base.Message):
 
     A parameter is out of bounds, or the SGP4 propagator could not start from them.
 
-    Note ACP-104 (open): Orbit parameter flag has two reasons.
+    Note ACP-104 (open): Orbit parameter flag has two reasons. Parameters out of bounds,
+    or a propagator that failed to start, are told as two sentences for one bit.
     """
 
     configuration_is_invalid: bool = _base.field("Configuration is Invalid", 49, 1, "bool", default=False)
@@ -227,9 +237,13 @@ class AdcsState(_base.Message):
     Of magnetorquers or CSS. Each principal axis needs a torquer (1, 2 or 3) and at
     least one CSS.
 
-    Note ACP-102 (certain): Configuration flag: is invalid, in invalid.
+    Note ACP-102 (certain): Configuration flag: is invalid, in invalid. The two frames
+    differ by a letter in the description, and principle stands for principal twice in
+    each.
 
-    Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output.
+    Note ACP-103 (open): Configuration flag: outputs per axis, or axes per output. Each
+    axis is said to need a torquer output 1, 2 or 3. The configuration works the other
+    way round and gives an axis to each torquer, or Not Used.
     """
 
     control_mode_change_is_not_allowed: bool = _base.field(
@@ -325,19 +339,21 @@ class AdcsState(_base.Message):
     estimated_q1: int = _base.field("Estimated q1", 144, 16, "int", default=0)
     """Estimated q1: bits 144 to 159, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): Estimated quaternion has no formula. Components of a unit
+    quaternion in 16 bits need a factor; all other quaternions have one of 1/10000. It
+    is likely here too, but not printed, so the raw value is all that is offered.
     """
 
     estimated_q2: int = _base.field("Estimated q2", 160, 16, "int", default=0)
     """Estimated q2: bits 160 to 175, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): see Estimated q1.
     """
 
     estimated_q3: int = _base.field("Estimated q3", 176, 16, "int", default=0)
     """Estimated q3: bits 176 to 191, raw -32768 to 32767.
 
-    Note ACP-100 (open): Estimated quaternion has no formula.
+    Note ACP-100 (open): see Estimated q1.
     """
 
     estimated_x_angular_rate: int = _base.field("Estimated X Angular Rate", 192, 16, "int", default=0, unit="deg/s")
@@ -414,7 +430,9 @@ class AdcsState(_base.Message):
     """Longitude: bits 352 to 367, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
     327.67 deg.
 
-    Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not.
+    Note ACP-068 (certain): Latitude and altitude are of WGS-84, longitude is not. The
+    datum is missing in one of three rows; the frame is called LLH by name and WGS-84
+    frame by description.
     """
     longitude_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Longitude in deg: -327.68 to 327.67."""
@@ -422,7 +440,9 @@ class AdcsState(_base.Message):
     altitude: int = _base.field("Altitude", 368, 16, "uint", default=0, unit="km")
     """Altitude: bits 368 to 383, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35 km.
 
-    Note ACP-067 (open): Position and altitude do not reach equally far.
+    Note ACP-067 (open): Position and altitude do not reach equally far. The inertial
+    position fits orbits up to 1800 km, the altitude of 16 bits ends at 655.35 km. Above
+    that it wraps or sticks; which is not said.
     """
     altitude_km: float = _base.scaled(1, 0, 100, default=0.0)
     """Altitude in km: 0 to 655.35."""
@@ -430,23 +450,28 @@ class AdcsState(_base.Message):
     ecef_position_x: int = _base.field("ECEF Position X", 384, 16, "int", default=0)
     """ECEF Position X: bits 384 to 399, raw -32768 to 32767.
 
-    Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    Erratum ACP-098 (likely): ECEF position: 16 bits in metres. In metres the field
+    reaches 32.767 km, a position some 7000 km. A factor is missing; 0.25 km as in the
+    inertial position is one possibility, km another. No unit is held, so nothing is
+    converted.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): ECEF position: one name, two widths. Position X, Y and Z
+    have 16 bits in the state frames and 32 bits in the GPS frames and the simulated
+    data, with the same name, description and unit.
     """
 
     ecef_position_y: int = _base.field("ECEF Position Y", 400, 16, "int", default=0)
     """ECEF Position Y: bits 400 to 415, raw -32768 to 32767.
 
-    Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    Erratum ACP-098 (likely): see ECEF Position X.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """
 
     ecef_position_z: int = _base.field("ECEF Position Z", 416, 16, "int", default=0)
     """ECEF Position Z: bits 416 to 431, raw -32768 to 32767.
 
-    Erratum ACP-098 (likely): ECEF position: 16 bits in metres.
+    Erratum ACP-098 (likely): see ECEF Position X.
 
-    Note ACP-099 (certain): ECEF position: one name, two widths.
+    Note ACP-099 (certain): see ECEF Position X.
     """

@@ -26,7 +26,8 @@ class AngularRateCovariance(_base.Message):
     """X Angular Rate Covariance: bits 0 to 15, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): Angular rate covariance: unit and sign. No unit is given for
+    the square of a rate, and the type is signed.
     """
     x_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """X Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
@@ -35,7 +36,7 @@ class AngularRateCovariance(_base.Message):
     """Y Angular Rate Covariance: bits 16 to 31, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): see X Angular Rate Covariance.
     """
     y_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Y Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
@@ -44,7 +45,7 @@ class AngularRateCovariance(_base.Message):
     """Z Angular Rate Covariance: bits 32 to 47, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): see X Angular Rate Covariance.
     """
     z_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Z Angular Rate Covariance, as a physical value: -32.768 to 32.767."""

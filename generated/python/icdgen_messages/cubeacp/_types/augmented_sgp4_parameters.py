@@ -31,9 +31,11 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the filter of the inclination.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): Augmented SGP4: names are cut short. Incl., Ecc, Aop, Pos,
+    sd, Min. and Max. stand in names that are written out in the descriptions.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients. Factors
+    without range; whether coefficients are weights from 0 to 1 is not said.
     """
     incl_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Incl. coefficient, as a physical value: 0 to 65.535."""
@@ -44,7 +46,7 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the filter of the RAAN.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
     raan_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Raan coefficient, as a physical value: 0 to 65.535."""
@@ -55,9 +57,9 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the filter of the eccentricity.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
     ecc_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Ecc coefficient, as a physical value: 0 to 65.535."""
@@ -68,9 +70,9 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the filter of the argument of perigee.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
     aop_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Aop coefficient, as a physical value: 0 to 65.535."""
@@ -81,7 +83,7 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the filter of the time.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
     time_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Time coefficient, as a physical value: 0 to 65.535."""
@@ -92,9 +94,9 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the filter of the position.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
     pos_coefficient_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Pos coefficient, as a physical value: 0 to 65.535."""
@@ -105,7 +107,9 @@ class AugmentedSgp4Parameters(_base.Message):
 
     ASGP4 stops working beyond it.
 
-    Note ACP-179 (open): Augmented SGP4: limits have no units.
+    Note ACP-179 (open): Augmented SGP4: limits have no units. Position, velocity and
+    time limits have factors and no units. Maximum position error with 0.1 reaches 25.5
+    of something; km and m are both possible.
     """
     maximum_position_error_physical: float = _base.scaled(1, 0, 10, default=0.0)
     """Maximum position error, as a physical value: 0 to 25.5."""
@@ -119,7 +123,9 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Polar coefficient.
 
-    Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit.
+    Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit. Polar motion
+    is published in seconds of arc, the factor is 0.0000001. Radians fit the range as
+    well.
     """
     xp_coefficient_physical: float = _base.scaled(1, 0, 10000000, default=0.0)
     """xp coefficient, as a physical value: -214.7483648 to 214.7483647."""
@@ -130,7 +136,7 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Polar coefficient.
 
-    Note ACP-180 (open): Augmented SGP4: polar coefficients have no unit.
+    Note ACP-180 (open): see xp coefficient.
     """
     yp_coefficient_physical: float = _base.scaled(1, 0, 10000000, default=0.0)
     """yp coefficient, as a physical value: -214.7483648 to 214.7483647."""
@@ -143,9 +149,9 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Largest standard deviation with which ASGP4 works.
 
-    Note ACP-179 (open): Augmented SGP4: limits have no units.
+    Note ACP-179 (open): see Maximum position error.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
     """
     position_sd_physical: float = _base.scaled(1, 0, 10, default=0.0)
     """Position sd, as a physical value: 0 to 25.5."""
@@ -155,7 +161,7 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Largest standard deviation with which ASGP4 works.
 
-    Note ACP-179 (open): Augmented SGP4: limits have no units.
+    Note ACP-179 (open): see Maximum position error.
     """
     velocity_sd_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Velocity sd, as a physical value: 0 to 2.55."""
@@ -165,7 +171,7 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Fewest satellites with which ASGP4 works.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
     """
 
     time_gain: int = _base.field("Time gain", 208, 8, "uint", default=0)
@@ -173,7 +179,7 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Of the compensation of the time offset.
 
-    Note ACP-182 (open): Augmented SGP4: time gain and filter coefficients.
+    Note ACP-182 (open): see Incl. coefficient.
     """
     time_gain_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Time gain, as a physical value: 0 to 2.55."""
@@ -183,9 +189,9 @@ class AugmentedSgp4Parameters(_base.Message):
 
     Largest lag of the time stamps that are still used.
 
-    Note ACP-179 (open): Augmented SGP4: limits have no units.
+    Note ACP-179 (open): see Maximum position error.
 
-    Note ACP-181 (certain): Augmented SGP4: names are cut short.
+    Note ACP-181 (certain): see Incl. coefficient.
     """
     max_lag_physical: float = _base.scaled(1, 0, 100, default=0.0)
     """Max. lag, as a physical value: 0 to 2.55."""

@@ -126,5 +126,7 @@ class CssConfiguration(_base.Message):
     css_threshold: int = _base.field("CSS Threshold", 160, 8, "uint", default=0)
     """CSS Threshold: bits 160 to 167, raw 0 to 255.
 
-    Note ACP-133 (open): CSS threshold has no description.
+    Note ACP-133 (open): CSS threshold has no description. The name is repeated; neither
+    unit nor what lies below it is said. The message is described as directions and
+    scale factors.
     """

@@ -13,7 +13,9 @@ class CubestarEstimatedQuaternion(_base.Message):
 
     Bit 63 of the log mask.
 
-    Note ACP-075 (open): Quaternions: the fourth component.
+    Note ACP-075 (open): Quaternions: the fourth component. Three of four components are
+    sent. The fourth follows up to its sign only, and which component is the scalar is
+    not said.
     """
 
     NODE = "cubeacp"
@@ -29,7 +31,9 @@ class CubestarEstimatedQuaternion(_base.Message):
 
     Of the attitude estimated by CubeStar, described as Q1.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3. Names
+    and descriptions count differently. Q1 to Q3 agree with the other quaternions; if Q0
+    were the scalar, the third vector component would be missing.
     """
     q0_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q0, as a physical value: -3.2768 to 3.2767."""
@@ -40,7 +44,7 @@ class CubestarEstimatedQuaternion(_base.Message):
 
     Of the attitude estimated by CubeStar, described as Q2.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): see Q0.
     """
     q1_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q1, as a physical value: -3.2768 to 3.2767."""
@@ -51,7 +55,7 @@ class CubestarEstimatedQuaternion(_base.Message):
 
     Of the attitude estimated by CubeStar, described as Q3.
 
-    Note ACP-112 (open): CubeStar quaternion: Q0 to Q2 are described as Q1 to Q3.
+    Note ACP-112 (open): see Q0.
     """
     q2_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Q2, as a physical value: -3.2768 to 3.2767."""

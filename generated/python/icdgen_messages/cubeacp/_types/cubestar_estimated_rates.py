@@ -28,7 +28,8 @@ class CubestarEstimatedRates(_base.Message):
 
     Estimated by CubeStar, about its own X axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): CubeStar rates have no unit. A factor of 1/10000 is given
+    without a unit. The other rates are in deg/s; rad/s would fit the range as well.
     """
     x_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """x-Axis rate, as a physical value: -3.2768 to 3.2767."""
@@ -39,7 +40,7 @@ class CubestarEstimatedRates(_base.Message):
 
     Estimated by CubeStar, about its own Y axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): see x-Axis rate.
     """
     y_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """y-Axis rate, as a physical value: -3.2768 to 3.2767."""
@@ -50,7 +51,7 @@ class CubestarEstimatedRates(_base.Message):
 
     Estimated by CubeStar, about its own Z axis.
 
-    Note ACP-111 (open): CubeStar rates have no unit.
+    Note ACP-111 (open): see x-Axis rate.
     """
     z_axis_rate_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """z-Axis rate, as a physical value: -3.2768 to 3.2767."""

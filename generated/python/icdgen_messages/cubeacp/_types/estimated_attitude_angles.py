@@ -13,7 +13,9 @@ class EstimatedAttitudeAngles(_base.Message):
 
     Bit 28 of the log mask.
 
-    Note ACP-066 (open): Attitude angles: order of rotation and frame.
+    Note ACP-066 (open): Attitude angles: order of rotation and frame. Roll, pitch and
+    yaw need a sequence and a reference. Neither is given, for estimated or for
+    commanded angles.
     """
 
     NODE = "cubeacp"

@@ -100,7 +100,8 @@ class EstimationData(_base.Message):
     """Innovation Vector X: bits 144 to 159, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): Innovation has no unit. What the innovation vector is a
+    difference of, and hence its unit, is not said.
     """
     innovation_vector_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Innovation Vector X, as a physical value: -3.2768 to 3.2767."""
@@ -109,7 +110,7 @@ class EstimationData(_base.Message):
     """Innovation Vector Y: bits 160 to 175, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): see Innovation Vector X.
     """
     innovation_vector_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Innovation Vector Y, as a physical value: -3.2768 to 3.2767."""
@@ -118,7 +119,7 @@ class EstimationData(_base.Message):
     """Innovation Vector Z: bits 176 to 191, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): see Innovation Vector X.
     """
     innovation_vector_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Innovation Vector Z, as a physical value: -3.2768 to 3.2767."""
@@ -148,7 +149,9 @@ class EstimationData(_base.Message):
     """Quaternion Covariance - Q1 RMS: bits 240 to 255, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): Quaternion covariance: an RMS with a sign. The field is a
+    covariance by its frame, an RMS by its name and signed by its type. Neither
+    quantity, on the diagonal, is negative.
     """
     quaternion_covariance_q1_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Quaternion Covariance - Q1 RMS, as a physical value: -32.768 to 32.767."""
@@ -157,7 +160,7 @@ class EstimationData(_base.Message):
     """Quaternion Covariance - Q2 RMS: bits 256 to 271, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
     """
     quaternion_covariance_q2_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Quaternion Covariance - Q2 RMS, as a physical value: -32.768 to 32.767."""
@@ -166,7 +169,7 @@ class EstimationData(_base.Message):
     """Quaternion Covariance - Q3 RMS: bits 272 to 287, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-076 (open): Quaternion covariance: an RMS with a sign.
+    Note ACP-076 (open): see Quaternion Covariance - Q1 RMS.
     """
     quaternion_covariance_q3_rms_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Quaternion Covariance - Q3 RMS, as a physical value: -32.768 to 32.767."""
@@ -175,7 +178,8 @@ class EstimationData(_base.Message):
     """X Angular Rate Covariance: bits 288 to 303, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): Angular rate covariance: unit and sign. No unit is given for
+    the square of a rate, and the type is signed.
     """
     x_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """X Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
@@ -184,7 +188,7 @@ class EstimationData(_base.Message):
     """Y Angular Rate Covariance: bits 304 to 319, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): see X Angular Rate Covariance.
     """
     y_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Y Angular Rate Covariance, as a physical value: -32.768 to 32.767."""
@@ -193,7 +197,7 @@ class EstimationData(_base.Message):
     """Z Angular Rate Covariance: bits 320 to 335, raw -32768 to 32767; physical
     `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-077 (open): Angular rate covariance: unit and sign.
+    Note ACP-077 (open): see X Angular Rate Covariance.
     """
     z_angular_rate_covariance_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Z Angular Rate Covariance, as a physical value: -32.768 to 32.767."""

@@ -26,7 +26,8 @@ class EstimationInnovationVector(_base.Message):
     """Innovation Vector X: bits 0 to 15, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): Innovation has no unit. What the innovation vector is a
+    difference of, and hence its unit, is not said.
     """
     innovation_vector_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Innovation Vector X, as a physical value: -3.2768 to 3.2767."""
@@ -35,7 +36,7 @@ class EstimationInnovationVector(_base.Message):
     """Innovation Vector Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): see Innovation Vector X.
     """
     innovation_vector_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Innovation Vector Y, as a physical value: -3.2768 to 3.2767."""
@@ -44,7 +45,7 @@ class EstimationInnovationVector(_base.Message):
     """Innovation Vector Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.0001`,
     -3.2768 to 3.2767.
 
-    Note ACP-074 (open): Innovation has no unit.
+    Note ACP-074 (open): see Innovation Vector X.
     """
     innovation_vector_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Innovation Vector Z, as a physical value: -3.2768 to 3.2767."""

@@ -15,7 +15,10 @@ class NadirVector(_base.Message):
 
     Bit 12 of the log mask.
 
-    Note ACP-069 (open): Reference frames of measured vectors are not named.
+    Note ACP-069 (open): Reference frames of measured vectors are not named. Modelled
+    vectors are in the orbit frame, estimated rates relative to it. Of the measured
+    field, sun, nadir and rate vectors nothing is said; SBC for the body frame is in the
+    list of acronyms and used nowhere.
     """
 
     NODE = "cubeacp"

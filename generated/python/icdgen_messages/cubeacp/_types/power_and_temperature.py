@@ -79,9 +79,13 @@ class PowerAndTemperature(_base.Message):
     """Wheel1Current: bits 112 to 127, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): Wheel currents: by number, described by axis. The frame is
+    described as XYZ wheel currents, its fields are numbered, and names run together
+    although their descriptions do not.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA. With a step of
+    0.01 mA sixteen bits reach 655.35 mA, which a wheel motor may well exceed. All other
+    currents have steps of 0.1 mA and more. The factor is held as printed.
     """
     wheel1_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel1Current in mA: 0 to 655.35."""
@@ -90,9 +94,9 @@ class PowerAndTemperature(_base.Message):
     """Wheel2Current: bits 128 to 143, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): see Wheel1Current.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): see Wheel1Current.
     """
     wheel2_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel2Current in mA: 0 to 655.35."""
@@ -101,9 +105,9 @@ class PowerAndTemperature(_base.Message):
     """Wheel3Current: bits 144 to 159, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
     mA.
 
-    Note ACP-083 (open): Wheel currents: by number, described by axis.
+    Note ACP-083 (open): see Wheel1Current.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): see Wheel1Current.
     """
     wheel3_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel3Current in mA: 0 to 655.35."""
@@ -112,7 +116,7 @@ class PowerAndTemperature(_base.Message):
     """CubeStarCurrent: bits 160 to 175, raw 0 to 65535; physical `raw*0.01`, 0 to
     655.35 mA.
 
-    Note ACP-084 (open): Wheel and star tracker currents end at 655 mA.
+    Note ACP-084 (open): see Wheel1Current.
     """
     cubestar_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """CubeStarCurrent in mA: 0 to 655.35."""
@@ -128,7 +132,8 @@ class PowerAndTemperature(_base.Message):
     """CubeStar MCU temperature: bits 192 to 207, raw -32768 to 32767; physical
     `raw/100.0`, -327.68 to 327.67 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): Symbol C is the coulomb. Temperatures are in C, without a
+    degree sign. Degrees Celsius are meant.
     """
     cubestar_mcu_temperature_c: float = _base.scaled(1, 0, 100, default=0.0)
     """CubeStar MCU temperature in C: -327.68 to 327.67."""
@@ -136,16 +141,18 @@ class PowerAndTemperature(_base.Message):
     mcu_temperature: int = _base.field("MCU Temperature", 208, 16, "int", default=0, unit="C")
     """MCU Temperature: bits 208 to 223, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): Temperatures have three scales. Whole degrees, tenths and
+    hundredths stand side by side, in one frame even. That the controllers and rate
+    sensors report whole degrees in 16 bits may be a lost factor.
     """
 
     magnetometer_temperature: int = _base.field("Magnetometer Temperature", 224, 16, "int", default=0, unit="C")
     """Magnetometer Temperature: bits 224 to 239, raw -32768 to 32767; physical
     `raw/10.0`, -3276.8 to 3276.7 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
     """
     magnetometer_temperature_c: float = _base.scaled(1, 0, 10, default=0.0)
     """Magnetometer Temperature in C: -3276.8 to 3276.7."""
@@ -156,7 +163,7 @@ class PowerAndTemperature(_base.Message):
     """Redundant Magnetometer Temperature: bits 240 to 255, raw -32768 to 32767;
     physical `raw/10.0`, -3276.8 to 3276.7 C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
     """
     redundant_mag_temperature_c: float = _base.scaled(1, 0, 10, default=0.0)
     """Redundant Magnetometer Temperature in C: -3276.8 to 3276.7."""
@@ -164,23 +171,23 @@ class PowerAndTemperature(_base.Message):
     x_rate_sensor_temperature: int = _base.field("X-Rate Sensor Temperature", 256, 16, "int", default=0, unit="C")
     """X-Rate Sensor Temperature: bits 256 to 271, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): see MCU Temperature.
     """
 
     y_rate_sensor_temperature: int = _base.field("Y-Rate Sensor Temperature", 272, 16, "int", default=0, unit="C")
     """Y-Rate Sensor Temperature: bits 272 to 287, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): see MCU Temperature.
     """
 
     z_rate_sensor_temperature: int = _base.field("Z-Rate Sensor Temperature", 288, 16, "int", default=0, unit="C")
     """Z-Rate Sensor Temperature: bits 288 to 303, raw -32768 to 32767, in C.
 
-    Note ACP-005 (likely): Symbol C is the coulomb.
+    Note ACP-005 (likely): see CubeStar MCU temperature.
 
-    Note ACP-085 (open): Temperatures have three scales.
+    Note ACP-085 (open): see MCU Temperature.
     """

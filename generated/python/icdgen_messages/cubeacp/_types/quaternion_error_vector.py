@@ -13,7 +13,9 @@ class QuaternionErrorVector(_base.Message):
 
     Bit 39 of the log mask.
 
-    Note ACP-075 (open): Quaternions: the fourth component.
+    Note ACP-075 (open): Quaternions: the fourth component. Three of four components are
+    sent. The fourth follows up to its sign only, and which component is the scalar is
+    not said.
     """
 
     NODE = "cubeacp"

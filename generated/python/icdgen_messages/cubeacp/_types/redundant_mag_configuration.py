@@ -12,7 +12,8 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Configuration: configuration, set by telecommand 36, got
     by telemetry 205, 30 bytes. Table 191.
 
-    Note ACP-051 (certain): Magnetometers have four names for two.
+    Note ACP-051 (certain): Magnetometers have four names for two. Main, primary and
+    none stand for one; redundant, secondary and 2nd for the other.
     """
 
     NODE = "cubeacp"
@@ -30,7 +31,8 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Mounting Transform Alpha Angle: bits 0 to 15, raw -32768
     to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): Mounting angles: order of rotation. Alpha, beta and gamma need
+    a sequence of axes and a direction. None is given.
     """
     mounting_alpha_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Alpha Angle in deg: -327.68 to 327.67.
@@ -42,7 +44,7 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Mounting Transform Beta Angle: bits 16 to 31, raw -32768
     to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Redundant Magnetometer Mounting Transform Alpha Angle.
     """
     mounting_beta_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Beta Angle in deg: -327.68 to 327.67.
@@ -54,7 +56,7 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Mounting Transform Gamma Angle: bits 32 to 47, raw -32768
     to 32767; physical `raw*0.01`, -327.68 to 327.67 deg.
 
-    Note ACP-157 (open): Mounting angles: order of rotation.
+    Note ACP-157 (open): see Redundant Magnetometer Mounting Transform Alpha Angle.
     """
     mounting_gamma_deg: float = _base.scaled(1, 0, 100, default=0.0)
     """Redundant Magnetometer Mounting Transform Gamma Angle in deg: -327.68 to 327.67.
@@ -64,7 +66,9 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Channel 1 Offset: bits 48 to 63, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-155 (open): Magnetometer offsets have no unit.
+    Note ACP-155 (open): Magnetometer offsets have no unit. Channel offsets have a
+    factor and no unit. The field itself is in uT; the sensitivity that would convert
+    has no unit either.
     """
     channel_1_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 1 Offset, as a physical value: -32.768 to 32.767.
@@ -74,7 +78,7 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Channel 2 Offset: bits 64 to 79, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-155 (open): Magnetometer offsets have no unit.
+    Note ACP-155 (open): see Redundant Magnetometer Channel 1 Offset.
     """
     channel_2_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 2 Offset, as a physical value: -32.768 to 32.767.
@@ -84,7 +88,7 @@ class RedundantMagConfiguration(_base.Message):
     """Redundant Magnetometer Channel 3 Offset: bits 80 to 95, raw -32768 to 32767;
     physical `raw*0.001`, -32.768 to 32.767.
 
-    Note ACP-155 (open): Magnetometer offsets have no unit.
+    Note ACP-155 (open): see Redundant Magnetometer Channel 1 Offset.
     """
     channel_3_offset_physical: float = _base.scaled(1, 0, 1000, default=0.0)
     """Redundant Magnetometer Channel 3 Offset, as a physical value: -32.768 to 32.767.

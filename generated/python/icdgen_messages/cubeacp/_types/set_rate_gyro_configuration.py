@@ -13,9 +13,12 @@ class SetRateGyroConfiguration(_base.Message):
     """Set Rate Gyro Configuration: configuration, set by telecommand 23, got by
     telemetry 138, 10 bytes. Table 182.
 
-    Note ACP-125 (certain): Eight messages are named Set and can be read.
+    Note ACP-125 (certain): Eight messages are named Set and can be read. Messages with
+    a set and a get id have neutral names, but for eight. Names and identifiers are held
+    as printed.
 
-    Note ACP-131 (certain): Gyro, rate sensor and MEMS.
+    Note ACP-131 (certain): Gyro, rate sensor and MEMS. One sensor has three names, two
+    of them in one message.
     """
 
     NODE = "cubeacp"
@@ -40,7 +43,9 @@ class SetRateGyroConfiguration(_base.Message):
     """X-Rate Sensor Offset: bits 24 to 39, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
 
-    Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    Note ACP-132 (open): Rate sensor offset and estimated gyro bias. Whether the offset
+    is added or subtracted, and hence whether the estimated bias can be copied into it,
+    is not said. Both have the same factor.
     """
     x_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """X-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
@@ -49,7 +54,7 @@ class SetRateGyroConfiguration(_base.Message):
     """Y-Rate Sensor Offset: bits 40 to 55, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
 
-    Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    Note ACP-132 (open): see X-Rate Sensor Offset.
     """
     y_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Y-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
@@ -58,7 +63,7 @@ class SetRateGyroConfiguration(_base.Message):
     """Z-Rate Sensor Offset: bits 56 to 71, raw -32768 to 32767; physical `raw*0.001`,
     -32.768 to 32.767 deg/s.
 
-    Note ACP-132 (open): Rate sensor offset and estimated gyro bias.
+    Note ACP-132 (open): see X-Rate Sensor Offset.
     """
     z_rate_sensor_offset_deg_per_s: float = _base.scaled(1, 0, 1000, default=0.0)
     """Z-Rate Sensor Offset in deg/s: -32.768 to 32.767."""
@@ -68,5 +73,6 @@ class SetRateGyroConfiguration(_base.Message):
 
     Factor on the rate sensor measurements.
 
-    Note ACP-130 (open): RateSensorMult has no scale and no blanks.
+    Note ACP-130 (open): RateSensorMult has no scale and no blanks. A multiplier of 8
+    bits; whether it is a whole factor, and of which quantity, is not said.
     """

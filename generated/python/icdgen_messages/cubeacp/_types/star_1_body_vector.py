@@ -28,7 +28,9 @@ class Star1BodyVector(_base.Message):
 
     Vector in the body frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is
+    described as a vector, of which it is one component; names abbreviate body and orbit
+    to a letter.
     """
     star1_body_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1BX, as a physical value: -3.2768 to 3.2767."""
@@ -39,7 +41,7 @@ class Star1BodyVector(_base.Message):
 
     Vector in the body frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): see Star1BX.
     """
     star1_body_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1BY, as a physical value: -3.2768 to 3.2767."""
@@ -50,7 +52,7 @@ class Star1BodyVector(_base.Message):
 
     Vector in the body frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): see Star1BX.
     """
     star1_body_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star1BZ, as a physical value: -3.2768 to 3.2767."""

@@ -28,7 +28,9 @@ class Star3OrbitVector(_base.Message):
 
     Vector in the orbit frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): Star vectors: X-vector is a component. Each field is
+    described as a vector, of which it is one component; names abbreviate body and orbit
+    to a letter.
     """
     star3_orbit_x_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star3OX, as a physical value: -3.2768 to 3.2767."""
@@ -39,7 +41,7 @@ class Star3OrbitVector(_base.Message):
 
     Vector in the orbit frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): see Star3OX.
     """
     star3_orbit_y_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star3OY, as a physical value: -3.2768 to 3.2767."""
@@ -50,7 +52,7 @@ class Star3OrbitVector(_base.Message):
 
     Vector in the orbit frame.
 
-    Note ACP-091 (certain): Star vectors: X-vector is a component.
+    Note ACP-091 (certain): see Star3OX.
     """
     star3_orbit_z_physical: float = _base.scaled(1, 0, 10000, default=0.0)
     """Star3OZ, as a physical value: -3.2768 to 3.2767."""
