@@ -36,7 +36,7 @@ class AdcsMeasurements(_base.Message):
     magnetic_field_x_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetic Field X in uT: -327.68 to 327.67."""
     magnetic_field_x_nt: int = _base.whole(10, 0)
-    """Magnetic Field X in thousandths of uT, exact: -327680 to 327670."""
+    """Magnetic Field X in nT, exact: -327680 to 327670."""
 
     magnetic_field_y: int = _base.field("Magnetic Field Y", 16, 16, "int", default=0, unit="uT")
     """Magnetic Field Y: bits 16 to 31, raw -32768 to 32767; physical `raw*0.01`,
@@ -45,7 +45,7 @@ class AdcsMeasurements(_base.Message):
     magnetic_field_y_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetic Field Y in uT: -327.68 to 327.67."""
     magnetic_field_y_nt: int = _base.whole(10, 0)
-    """Magnetic Field Y in thousandths of uT, exact: -327680 to 327670."""
+    """Magnetic Field Y in nT, exact: -327680 to 327670."""
 
     magnetic_field_z: int = _base.field("Magnetic Field Z", 32, 16, "int", default=0, unit="uT")
     """Magnetic Field Z: bits 32 to 47, raw -32768 to 32767; physical `raw*0.01`,
@@ -54,7 +54,7 @@ class AdcsMeasurements(_base.Message):
     magnetic_field_z_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """Magnetic Field Z in uT: -327.68 to 327.67."""
     magnetic_field_z_nt: int = _base.whole(10, 0)
-    """Magnetic Field Z in thousandths of uT, exact: -327680 to 327670."""
+    """Magnetic Field Z in nT, exact: -327680 to 327670."""
 
     coarse_sun_x: int = _base.field("Coarse Sun X", 48, 16, "int", default=0)
     """Coarse Sun X: bits 48 to 63, raw -32768 to 32767; physical `raw/10000.0`, -3.2768

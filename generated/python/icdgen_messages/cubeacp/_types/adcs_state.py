@@ -396,7 +396,7 @@ class AdcsState(_base.Message):
     x_position_km: float = _base.scaled(1, 0, 4, default=0.0)
     """X position in km: -8192 to 8191.75."""
     x_position_m: int = _base.whole(250, 0)
-    """X position in thousandths of km, exact: -8192000 to 8191750."""
+    """X position in m, exact: -8192000 to 8191750."""
 
     y_position: int = _base.field("Y position", 256, 16, "int", default=0, unit="km")
     """Y position: bits 256 to 271, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -405,7 +405,7 @@ class AdcsState(_base.Message):
     y_position_km: float = _base.scaled(1, 0, 4, default=0.0)
     """Y position in km: -8192 to 8191.75."""
     y_position_m: int = _base.whole(250, 0)
-    """Y position in thousandths of km, exact: -8192000 to 8191750."""
+    """Y position in m, exact: -8192000 to 8191750."""
 
     z_position: int = _base.field("Z position", 272, 16, "int", default=0, unit="km")
     """Z position: bits 272 to 287, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -414,7 +414,7 @@ class AdcsState(_base.Message):
     z_position_km: float = _base.scaled(1, 0, 4, default=0.0)
     """Z position in km: -8192 to 8191.75."""
     z_position_m: int = _base.whole(250, 0)
-    """Z position in thousandths of km, exact: -8192000 to 8191750."""
+    """Z position in m, exact: -8192000 to 8191750."""
 
     x_velocity: int = _base.field("X Velocity", 288, 16, "int", default=0, unit="m/s")
     """X Velocity: bits 288 to 303, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -423,7 +423,7 @@ class AdcsState(_base.Message):
     x_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
     """X Velocity in m/s: -8192 to 8191.75."""
     x_velocity_mm_per_s: int = _base.whole(250, 0)
-    """X Velocity in thousandths of m/s, exact: -8192000 to 8191750."""
+    """X Velocity in mm/s, exact: -8192000 to 8191750."""
 
     y_velocity: int = _base.field("Y Velocity", 304, 16, "int", default=0, unit="m/s")
     """Y Velocity: bits 304 to 319, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -432,7 +432,7 @@ class AdcsState(_base.Message):
     y_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
     """Y Velocity in m/s: -8192 to 8191.75."""
     y_velocity_mm_per_s: int = _base.whole(250, 0)
-    """Y Velocity in thousandths of m/s, exact: -8192000 to 8191750."""
+    """Y Velocity in mm/s, exact: -8192000 to 8191750."""
 
     z_velocity: int = _base.field("Z Velocity", 320, 16, "int", default=0, unit="m/s")
     """Z Velocity: bits 320 to 335, raw -32768 to 32767; physical `raw*0.25`, -8192 to
@@ -441,7 +441,7 @@ class AdcsState(_base.Message):
     z_velocity_m_per_s: float = _base.scaled(1, 0, 4, default=0.0)
     """Z Velocity in m/s: -8192 to 8191.75."""
     z_velocity_mm_per_s: int = _base.whole(250, 0)
-    """Z Velocity in thousandths of m/s, exact: -8192000 to 8191750."""
+    """Z Velocity in mm/s, exact: -8192000 to 8191750."""
 
     latitude: int = _base.field("Latitude", 336, 16, "int", default=0, unit="deg")
     """Latitude: bits 336 to 351, raw -32768 to 32767; physical `raw*0.01`, -327.68 to
@@ -475,7 +475,7 @@ class AdcsState(_base.Message):
     altitude_km: float = _base.scaled(1, 0, 100, default=0.0)
     """Altitude in km: 0 to 655.35."""
     altitude_m: int = _base.whole(10, 0)
-    """Altitude in thousandths of km, exact: 0 to 655350."""
+    """Altitude in m, exact: 0 to 655350."""
 
     ecef_position_x: int = _base.field("ECEF Position X", 384, 16, "int", default=0)
     """ECEF Position X: bits 384 to 399, raw -32768 to 32767.

@@ -36,7 +36,7 @@ class EstimationData(_base.Message):
     igrf_modelled_magnetic_field_x_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """IGRF Modelled Magnetic Field X in uT: -327.68 to 327.67."""
     igrf_modelled_magnetic_field_x_nt: int = _base.whole(10, 0)
-    """IGRF Modelled Magnetic Field X in thousandths of uT, exact: -327680 to 327670."""
+    """IGRF Modelled Magnetic Field X in nT, exact: -327680 to 327670."""
 
     igrf_modelled_magnetic_field_y: int = _base.field(
         "IGRF Modelled Magnetic Field Y", 16, 16, "int", default=0, unit="uT"
@@ -47,7 +47,7 @@ class EstimationData(_base.Message):
     igrf_modelled_magnetic_field_y_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """IGRF Modelled Magnetic Field Y in uT: -327.68 to 327.67."""
     igrf_modelled_magnetic_field_y_nt: int = _base.whole(10, 0)
-    """IGRF Modelled Magnetic Field Y in thousandths of uT, exact: -327680 to 327670."""
+    """IGRF Modelled Magnetic Field Y in nT, exact: -327680 to 327670."""
 
     igrf_modelled_magnetic_field_z: int = _base.field(
         "IGRF Modelled Magnetic Field Z", 32, 16, "int", default=0, unit="uT"
@@ -58,7 +58,7 @@ class EstimationData(_base.Message):
     igrf_modelled_magnetic_field_z_ut: float = _base.scaled(1, 0, 100, default=0.0)
     """IGRF Modelled Magnetic Field Z in uT: -327.68 to 327.67."""
     igrf_modelled_magnetic_field_z_nt: int = _base.whole(10, 0)
-    """IGRF Modelled Magnetic Field Z in thousandths of uT, exact: -327680 to 327670."""
+    """IGRF Modelled Magnetic Field Z in nT, exact: -327680 to 327670."""
 
     modelled_sun_vector_x: int = _base.field("Modelled Sun Vector X", 48, 16, "int", default=0)
     """Modelled Sun Vector X: bits 48 to 63, raw -32768 to 32767; physical

@@ -33,7 +33,7 @@ class PowerAndTemperature(_base.Message):
     cubesense1_3v3_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """CubeSense1 3V3 Current in mA: 0 to 6553.5."""
     cubesense1_3v3_current_ua: int = _base.whole(100, 0)
-    """CubeSense1 3V3 Current in thousandths of mA, exact: 0 to 6553500."""
+    """CubeSense1 3V3 Current in uA, exact: 0 to 6553500."""
 
     cubesense1_cam_sram_current: int = _base.field("CubeSense1 Cam SRAM Current", 16, 16, "uint", default=0, unit="mA")
     """CubeSense1 Cam SRAM Current: bits 16 to 31, raw 0 to 65535; physical `raw*0.1`, 0
@@ -42,7 +42,7 @@ class PowerAndTemperature(_base.Message):
     cubesense1_cam_sram_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """CubeSense1 Cam SRAM Current in mA: 0 to 6553.5."""
     cubesense1_cam_sram_current_ua: int = _base.whole(100, 0)
-    """CubeSense1 Cam SRAM Current in thousandths of mA, exact: 0 to 6553500."""
+    """CubeSense1 Cam SRAM Current in uA, exact: 0 to 6553500."""
 
     cubesense2_3v3_current: int = _base.field("CubeSense2 3V3 Current", 32, 16, "uint", default=0, unit="mA")
     """CubeSense2 3V3 Current: bits 32 to 47, raw 0 to 65535; physical `raw*0.1`, 0 to
@@ -51,7 +51,7 @@ class PowerAndTemperature(_base.Message):
     cubesense2_3v3_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """CubeSense2 3V3 Current in mA: 0 to 6553.5."""
     cubesense2_3v3_current_ua: int = _base.whole(100, 0)
-    """CubeSense2 3V3 Current in thousandths of mA, exact: 0 to 6553500."""
+    """CubeSense2 3V3 Current in uA, exact: 0 to 6553500."""
 
     cubesense2_cam_sram_current: int = _base.field("CubeSense2 Cam SRAM Current", 48, 16, "uint", default=0, unit="mA")
     """CubeSense2 Cam SRAM Current: bits 48 to 63, raw 0 to 65535; physical `raw*0.1`, 0
@@ -60,7 +60,7 @@ class PowerAndTemperature(_base.Message):
     cubesense2_cam_sram_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """CubeSense2 Cam SRAM Current in mA: 0 to 6553.5."""
     cubesense2_cam_sram_current_ua: int = _base.whole(100, 0)
-    """CubeSense2 Cam SRAM Current in thousandths of mA, exact: 0 to 6553500."""
+    """CubeSense2 Cam SRAM Current in uA, exact: 0 to 6553500."""
 
     cubecontrol_3v3_current: int = _base.field("CubeControl 3V3 Current", 64, 16, "uint", default=0, unit="mA")
     """CubeControl 3V3 Current: bits 64 to 79, raw 0 to 65535; physical
@@ -98,7 +98,7 @@ class PowerAndTemperature(_base.Message):
     wheel1_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel1Current in mA: 0 to 655.35."""
     wheel1_current_ua: int = _base.whole(10, 0)
-    """Wheel1Current in thousandths of mA, exact: 0 to 655350."""
+    """Wheel1Current in uA, exact: 0 to 655350."""
 
     wheel2_current: int = _base.field("Wheel2Current", 128, 16, "uint", default=0, unit="mA")
     """Wheel2Current: bits 128 to 143, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
@@ -111,7 +111,7 @@ class PowerAndTemperature(_base.Message):
     wheel2_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel2Current in mA: 0 to 655.35."""
     wheel2_current_ua: int = _base.whole(10, 0)
-    """Wheel2Current in thousandths of mA, exact: 0 to 655350."""
+    """Wheel2Current in uA, exact: 0 to 655350."""
 
     wheel3_current: int = _base.field("Wheel3Current", 144, 16, "uint", default=0, unit="mA")
     """Wheel3Current: bits 144 to 159, raw 0 to 65535; physical `raw*0.01`, 0 to 655.35
@@ -124,7 +124,7 @@ class PowerAndTemperature(_base.Message):
     wheel3_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """Wheel3Current in mA: 0 to 655.35."""
     wheel3_current_ua: int = _base.whole(10, 0)
-    """Wheel3Current in thousandths of mA, exact: 0 to 655350."""
+    """Wheel3Current in uA, exact: 0 to 655350."""
 
     cubestar_current: int = _base.field("CubeStarCurrent", 160, 16, "uint", default=0, unit="mA")
     """CubeStarCurrent: bits 160 to 175, raw 0 to 65535; physical `raw*0.01`, 0 to
@@ -135,7 +135,7 @@ class PowerAndTemperature(_base.Message):
     cubestar_current_ma: float = _base.scaled(1, 0, 100, default=0.0)
     """CubeStarCurrent in mA: 0 to 655.35."""
     cubestar_current_ua: int = _base.whole(10, 0)
-    """CubeStarCurrent in thousandths of mA, exact: 0 to 655350."""
+    """CubeStarCurrent in uA, exact: 0 to 655350."""
 
     magnetorquer_current: int = _base.field("Magnetorquer Current", 176, 16, "uint", default=0, unit="mA")
     """Magnetorquer Current: bits 176 to 191, raw 0 to 65535; physical `raw*0.1`, 0 to
@@ -144,7 +144,7 @@ class PowerAndTemperature(_base.Message):
     magnetorquer_current_ma: float = _base.scaled(1, 0, 10, default=0.0)
     """Magnetorquer Current in mA: 0 to 6553.5."""
     magnetorquer_current_ua: int = _base.whole(100, 0)
-    """Magnetorquer Current in thousandths of mA, exact: 0 to 6553500."""
+    """Magnetorquer Current in uA, exact: 0 to 6553500."""
 
     cubestar_mcu_temperature: int = _base.field("CubeStar MCU temperature", 192, 16, "int", default=0, unit="C")
     """CubeStar MCU temperature: bits 192 to 207, raw -32768 to 32767; physical

@@ -56,4 +56,4 @@ class SatellitePositionLlh(_base.Message):
     altitude_km: float = _base.scaled(1, 0, 100, default=0.0)
     """Altitude in km: 0 to 655.35."""
     altitude_m: int = _base.whole(10, 0)
-    """Altitude in thousandths of km, exact: 0 to 655350."""
+    """Altitude in m, exact: 0 to 655350."""
