@@ -1,11 +1,11 @@
 // Calls everything of the wire layer that a user can call, so that the linker sees it all.
 
 use icd::wire::files::{self, Download, Erase, Format, HoleMap, IndexEntries, IndexEntry, List, Procedure, Upload};
-use icd::wire::{can, i2c, log, uart, Bus, Client, Crc, DosTime, Error, Event, Identity, Link, Request, Started, Table};
+use icd::wire::{can, i2c, log, uart, Bus, Client, Crc, DosTime, Error, Event, Identity, Link, NodeEvent, Request, Started, Table};
 
 const LONGEST: usize = icd::cubeacp::LONGEST;
-type ClientOf = Client<LONGEST>;
-type Hear = fn(Event<'_>);
+type ClientOf = Client<(), LONGEST>;
+type Hear = fn(NodeEvent<'_, ()>);
 
 #[no_mangle] pub fn wire_crc8(link: &Link, bytes: &[u8]) -> Result<u32, Error> { icd::wire::crc8(link, bytes) }
 #[no_mangle] pub fn wire_crc16(link: &Link, bytes: &[u8]) -> Result<u32, Error> { icd::wire::crc16(link, bytes) }
