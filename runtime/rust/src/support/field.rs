@@ -84,6 +84,7 @@ impl Field {
     /// # Errors
     ///
     /// [`Error::Range`] if it does not fit or is not finite.
+    #[must_use]
     pub fn raw(&self, physical: f64) -> Option<Result<i128, Error>> {
         Some(match self.scale? {
             Formula::Usual(scale) => scale.raw(physical),

@@ -49,6 +49,7 @@ macro_rules! message {
         impl $crate::Message for $type {
             const NAME: &'static str = <$type>::NAME;
             const LENGTH: usize = <$type>::LENGTH;
+            #[allow(clippy::large_stack_arrays)] // a constant is on no stack
             const FIELDS: &'static [$crate::Field] = &[$(
                 $crate::Field::new($($place)*)$(.$what($($how)*))*
             ),*];

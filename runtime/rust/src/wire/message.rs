@@ -20,6 +20,7 @@ pub struct NodeLink<T> {
 }
 
 impl<T> NodeLink<T> {
+    #[allow(clippy::large_types_passed_by_value)] // of constants, at compile time
     pub(crate) const fn new(link: Link) -> Self {
         let node = PhantomData;
         Self { link, node }
