@@ -143,6 +143,25 @@ messages:
       - {at: 187, bits: 3, name: Turned Bits, type: uint, bit_order: msb0}
       - {at: 184, bits: 2, name: Straight Bits, type: uint}
       - {at: 192, bits: 64, name: Big Double, type: float, byte_order: big}
+  - name: Arrays
+    id: 0x01020306
+    kind: telemetry
+    length: 119
+    fields:
+      - {at: 0, bits: 16, count: 6, name: Type, type: int, unit: C, formula: raw*0.01, min: -20, max: 80}
+      - {at: 96, bits: 12, count: 4, name: Big Bits, type: int, byte_order: big, bit_order: msb0, formula: raw*0.5}
+      - {at: 144, bits: 1, count: 8, name: Flags, type: bool}
+      - {at: 152, bits: 1, count: 4, name: Few Flags, type: bool, bit_order: msb0}
+      - {at: 156, bits: 2, count: 2, name: Between, type: uint, bit_order: msb0}
+      - {at: 160, bits: 32, count: 3, name: Floats, type: float}
+      - {at: 256, bits: 64, count: 2, name: Big Doubles, type: float, byte_order: big}
+      - {at: 384, bits: 24, count: 2, name: Threes, type: uint, formula: raw*1e-25}
+      - {at: 432, bits: 8, count: 40, name: Octets, type: uint, special: [{value: 255, meaning: unknown}]}
+      - {at: 752, bits: 16, count: 1, name: One, type: uint, const: 7}
+      - {at: 768, bits: 16, count: 2, name: Big Words, type: uint, byte_order: big}
+      - {at: 803, bits: 8, count: 3, name: Crossing, type: uint}
+      - {at: 827, bits: 32, count: 2, name: Crossing Floats, type: float}
+      - {at: 896, bits: 8, count: 7, name: Small, type: int}
   - name: Keywords
     id: 0x01020305
     kind: telecommand

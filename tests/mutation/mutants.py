@@ -75,7 +75,7 @@ class _Home:
             one.pop("contains", None)
             one.pop("listed", None)
             if message.fields:  # what the manual divides in words is its parts
-                one["fields"] = [{"type": "uint", **plain(field.source), "at": field.at} for field in message.fields]
+                one["fields"] = [{"type": "uint", **plain(field.source), "at": field.at} for field in message.members]
             tree["messages"] = [one]
             used = {field.get("unit") for field in one.get("fields") or ()}
             tree["units"] = [unit for symbol, unit in self.units.items() if symbol in used]
@@ -139,6 +139,8 @@ def _field(field: dict) -> Iterator[tuple[str, str, Change]]:
         yield _number("offset", field, "at", step)
     for step in (-1, 1) if field["type"] not in ("bytes", "text") else (-8, 8):
         yield _number("width", field, "bits", step)
+    for step in (-1, 1) if "count" in field else ():
+        yield _number("count", field, "count", step)
     if field.get("view"):
         yield "view", "no view", lambda f: f.pop("view")
     for other in OTHER_TYPES[field["type"]]:

@@ -147,6 +147,23 @@ class Field:
         return self.byte_order or node.byte_order, self.bit_order or node.bit_order
 
     @property
+    def width(self) -> int:
+        """Its bits; of an array that stands as one, those of all elements."""
+        return self.bits * (self.count or 1)
+
+    @property
+    def elements(self) -> tuple[Field, ...]:
+        """The fields that an array which stands as one is made of; else the field itself.
+
+        They follow each other without a gap.
+        """
+        return tuple(map(self._element, range(self.count))) or (self,)
+
+    def _element(self, index: int) -> Field:
+        at, element = self.at + index * self.bits, Element(self.name, index, self.count)
+        return replace(self, name=f"{self.name}[{index}]", at=at, element=element, count=0)
+
+    @property
     def is_bytes(self) -> bool:
         """Whether the raw value is whole bytes in order, and no number."""
         return self.type in ("bytes", "text")

@@ -114,10 +114,11 @@ class Codec:
 
     def _plan(self) -> None:
         crossing, shared = [], self._shared_bytes()
-        for info in self.message.FIELDS:
-            if not info.attribute.isidentifier():
-                raise ValueError(f"{info.attribute!r} is no name of an attribute")
+        for info in self._units():
             span = _bytes_of(info)
+            if info.elements:
+                self._run(info, span.start)
+                continue
             is_whole = info.at % 8 == info.bits % 8 == 0 and not shared.intersection(
                 span
             )
@@ -134,6 +135,7 @@ class Codec:
             self._bit_byte(byte)
         for info in crossing:
             self._put_together(info)
+        self._join_elements()
         self._items.sort(key=lambda item: item.byte)
         if self._floats:
             self.names |= {
@@ -148,11 +150,55 @@ class Codec:
         self.form = struct.Struct(self._format())
         self.names |= {"unpack": self.form.unpack, "pack": self.form.pack}
 
+    def _units(self) -> _lazy.Iterator[_lazy.FieldInfo]:
+        """What is packed by itself: fields, arrays of words, and each element of other arrays."""
+        for info in self.message.FIELDS:
+            if not info.attribute.isidentifier():
+                raise ValueError(f"{info.attribute!r} is no name of an attribute")
+            if info.elements and not _is_run(info):
+                self.names["counted"] = _codec.counted
+                self._prepare.append(f"counted(self.{info.attribute}, {info.elements})")
+                yield from info.parts
+            else:
+                yield info
+
+    def _run(self, info: _lazy.FieldInfo, byte: int) -> None:
+        """An array of words: one item of the struct, which a struct of its own takes apart."""
+        own, local = f"self.{info.attribute}", f"v{byte}"
+        is_single = info.type == "float" and info.bits == 32  # a struct changes NaNs
+        code = (_INTEGERS if info.type != "float" or is_single else _FLOATS)[info.bits]
+        code = code.lower() if info.signed else code
+        order = "<" if byte_order(info, self.message) == "little" else ">"
+        words = struct.Struct(f"{order}{info.elements}{code}")
+        unpack, pack = self._named("unpack", words.unpack), self._named(
+            "pack", words.pack
+        )
+        self._items.append(_Item(byte, words.size, f"{words.size}s", local, local))
+        values, given = f"{unpack}({local})", own
+        if is_single:
+            value_of = self._named("value_of", _floats.float32)
+            bits_of = self._named("bits_of", _floats.float32_bits)
+            values, given = (
+                f"tuple(map({value_of}, {values}))",
+                f"map({bits_of}, {own})",
+            )
+        elif info.enum is not None:
+            members = self._named("members", _codec.Members(info.enum).__getitem__)
+            values = f"tuple(map({members}, {values}))"
+        self._assign.append(f"{own} = {values}")
+        self._prepare.append(f"{local} = {pack}(*{given})")
+
+    def _join_elements(self) -> None:
+        for info in self.message.FIELDS:
+            if info.elements and not _is_run(info):
+                values = "".join(f"{_target(part)}, " for part in info.parts)
+                self._assign.append(f"self.{info.attribute} = ({values})")
+
     def _shared_bytes(self) -> set[int]:
         """Bytes that more than one field touches."""
         once: set[int] = set()
         more: set[int] = set()
-        for info in self.message.FIELDS:
+        for info in (part for one in self.message.FIELDS for part in one.parts):
             span = _bytes_of(info)
             more |= once.intersection(span)
             once.update(span)
@@ -169,14 +215,14 @@ class Codec:
 
     def _whole(self, info: _lazy.FieldInfo, byte: int, size: int) -> None:
         """A field of whole bytes: one item of the struct."""
-        own, local = f"self.{info.attribute}", f"v{byte}"
+        own, local, target = f"self.{info.attribute}", f"v{byte}", _target(info)
         code = _INTEGERS.get(info.bits, "")
         if info.type in ("bytes", "text"):
             self._items.append(_Item(byte, size, f"{size}s", own, local))
             self.names["sized"] = _codec.sized
             self._prepare.append(f"{local} = sized({own}, {size})")
         elif info.type == "float":
-            self._items.append(_Item(byte, size, _FLOATS[info.bits], own, own))
+            self._items.append(_Item(byte, size, _FLOATS[info.bits], target, own))
             if info.bits == 32:
                 self._floats.append(own)
         elif not code or (size > 1 and not self._is_in_order(info)):
@@ -187,11 +233,11 @@ class Codec:
         else:
             code = code.lower() if info.signed else code
             self._items.append(
-                _Item(byte, size, code, own if info.enum is None else local, own)
+                _Item(byte, size, code, target if info.enum is None else local, own)
             )
             if info.bits == 8 and info.enum is not None and not info.signed:
                 rows = self._named("rows", _codec.bit_table(((0, info),)))
-                self._assign.append(f"{own} = {rows}[{local}]")
+                self._assign.append(f"{target} = {rows}[{local}]")
             elif info.enum is not None:
                 self._store(info, local)
 
@@ -199,7 +245,7 @@ class Codec:
         """Assigns an integer's value as its type needs it."""
         if info.enum is not None:
             value = f"{self._named('members', _codec.Members(info.enum))}[{value}]"
-        self._assign.append(f"self.{info.attribute} = {value}")
+        self._assign.append(f"{_target(info)} = {value}")
 
     def _bit_byte(self, byte: int) -> None:
         """A byte of bits: an item, the fields within it, and what crossing fields add to it."""
@@ -212,7 +258,8 @@ class Codec:
                 "bytes", _codec.Inverse(table)
             )
             names = ", ".join(f"self.{info.attribute}" for _, info in parts)
-            self._assign.append(f"{names} = {rows}[{local}]")
+            targets = ", ".join(_target(info) for _, info in parts)
+            self._assign.append(f"{targets} = {rows}[{local}]")
             self._prepare.append(f"{local} = {inverse}[{names}]")
         for number, term in enumerate(self._terms.get(byte, [])):
             self._prepare.append(f"{local} {'|=' if number or parts else '='} {term}")
@@ -257,6 +304,18 @@ class Codec:
             codes += f"{item.byte - reached}x{item.code}"
             reached = item.byte + item.size
         return f"{codes}{self.message.LENGTH - reached}x"
+
+
+def _is_run(info: _lazy.FieldInfo) -> bool:
+    """Whether it is an array of words, which are taken apart at once."""
+    is_word = info.at % 8 == 0 and info.bits in _INTEGERS and info.type != "bool"
+    return bool(info.elements) and is_word
+
+
+def _target(info: _lazy.FieldInfo) -> str:
+    """What decoding assigns a value to: the attribute; of an element a variable."""
+    is_element = info.attribute.endswith("]")
+    return f"e{info.at}" if is_element else f"self.{info.attribute}"
 
 
 def _bytes_of(info: _lazy.FieldInfo) -> range:

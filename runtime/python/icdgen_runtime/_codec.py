@@ -87,6 +87,12 @@ def signed_bits(value: int, bits: int) -> int:
     return value & ((1 << bits) - 1)
 
 
+def counted(values: _lazy.Any, count: int) -> None:
+    """Raises `ValueError` unless there are so many values."""
+    if len(values) != count:
+        raise ValueError
+
+
 def sized(value: _lazy.Buffer, size: int) -> bytes:
     """``value``, if it has that many bytes."""
     data = memoryview(value).tobytes()
@@ -123,11 +129,18 @@ def length_error(message: type[_lazy.Message], data: _lazy.Buffer) -> LengthErro
 def range_error(message: _lazy.Message) -> RangeError:
     """What to raise for a message that has a value that does not fit."""
     for info in message.FIELDS:
-        value = getattr(message, info.attribute, None)
-        allowed, fits = _FITS[info.type](info, value)
-        if not fits:
-            return RangeError(info.attribute, allowed, value)
+        value: _lazy.Any = getattr(message, info.attribute, None)
+        if info.elements and not _has_elements(info, value):
+            return RangeError(info.attribute, f"{info.elements} values", value)
+        for one, each in zip(info.parts, value if info.elements else (value,)):
+            allowed, fits = _FITS[info.type](one, each)
+            if not fits:
+                return RangeError(one.attribute, allowed, each)
     return RangeError("a field", "a value of its type", None)
+
+
+def _has_elements(info: _lazy.FieldInfo, value: _lazy.Any) -> bool:
+    return hasattr(value, "__getitem__") and len(value) == info.elements
 
 
 def seen(message: _lazy.Message, attribute: str, kind: _lazy.Any) -> _lazy.Any:

@@ -25,12 +25,17 @@ def decode_many(
     decoder = _Decoder(numpy, message, frames)
     columns = {}
     for info in (*message.FIELDS, *message.VIEWS):
-        column = decoder.column(info)
+        if info.elements:
+            found = [decoder.column(one) for one in info.parts]
+            column = numpy.stack(found, axis=1)
+        else:
+            column = decoder.column(info)
         if physical and info.type == "text":
             texts = [text(row) for row in column]
             columns[info.physical] = numpy.array(texts, dtype=str)
         elif physical and info.physical:
-            columns[info.physical] = _physical(numpy, info, column)
+            values = _physical(numpy, info, column.ravel())
+            columns[info.physical] = values.reshape(column.shape)
         else:
             columns[info.attribute] = column
     return columns
@@ -48,6 +53,9 @@ def decode_table(message: type[Message], frames: Buffer, physical: bool) -> Any:
             kind = pyarrow.binary(info.bits // 8)
             buffers = [None, pyarrow.py_buffer(column)]
             array = pyarrow.Array.from_buffers(kind, len(column), buffers)
+        elif info.elements:
+            values = pyarrow.array(column.ravel())
+            array = pyarrow.FixedSizeListArray.from_arrays(values, info.elements)
         else:
             array = pyarrow.array(column)
         fields.append(pyarrow.field(name, array.type, metadata=_metadata(info)))
@@ -227,7 +235,9 @@ def _plan(message: type[Message]) -> _Plan:
     needed: set[int] = set()
     flags: dict[int, list[int]] = {}
     names: dict[int, list[str]] = {}
-    for info in (*message.FIELDS, *message.VIEWS):
+    for info in (
+        one for field in (*message.FIELDS, *message.VIEWS) for one in field.parts
+    ):
         if _is_whole(info):
             continue
         for piece in pieces(info, message):

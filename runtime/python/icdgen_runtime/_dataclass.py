@@ -44,6 +44,7 @@ def signature(message: Any) -> Signature:
         )
         if one.physical:
             type_name = "str" if one.type == "text" else "float"
+            type_name = f"tuple[{type_name}, ...]" if one.elements else type_name
             fresh = getattr(message(), one.physical)
             found.append(
                 Parameter(one.physical, kind, default=fresh, annotation=type_name)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 # Itself: what annotations name is loaded when they are evaluated.
 from . import _lazy
+from ._errors import RangeError
 from ._scales import nearest_raw
 
 TYPE_CHECKING = False
@@ -20,6 +21,7 @@ class FieldInfo:
     __slots__ = (
         "attribute", "name", "at", "bits", "type", "unit", "physical", "whole", "scale", "enum", "const",
         "special", "minimum", "maximum", "above", "below", "byte_order", "bit_order", "default",
+        "elements",
     )  # fmt: skip
 
     def __init__(
@@ -43,6 +45,7 @@ class FieldInfo:
         bit_order: str = "",
         whole: str = "",
         default: _lazy.Any = None,
+        elements: int = 0,
     ) -> None:
         self.attribute = attribute
         """The attribute that holds the raw value."""
@@ -81,6 +84,11 @@ class FieldInfo:
         """``lsb0`` or ``msb0``; empty where it is the message's."""
         self.default = default
         """The raw value in a new message."""
+        self.elements = elements
+        """Elements of an array, of so many bits each: its attributes hold tuples.
+
+        0 if it is no array.
+        """
 
     @property
     def signed(self) -> bool:
@@ -97,6 +105,19 @@ class FieldInfo:
         if self.signed:
             return -(1 << (self.bits - 1)), (1 << (self.bits - 1)) - 1
         return 0, (1 << self.bits) - 1
+
+    @property
+    def parts(self) -> tuple[FieldInfo, ...]:
+        """The elements of an array as fields, called ``temperatures[3]``; else the field."""
+        return tuple(map(self._part, range(self.elements))) or (self,)
+
+    def _part(self, index: int) -> FieldInfo:
+        told = {name: getattr(self, name) for name in self.__slots__}
+        for key in ("attribute", "name"):
+            told[key] += f"[{index}]"
+        told["at"] += index * self.bits
+        told["default"] = self.default[index]
+        return FieldInfo(**{**told, "elements": 0})
 
     def _values(self) -> tuple[_lazy.Any, ...]:
         return tuple(getattr(self, name) for name in self.__slots__)
@@ -135,6 +156,8 @@ class View:
 
 
 def _number_property(info: FieldInfo, view: View) -> property:
+    if info.elements:
+        return _array_property(info, view)
     attribute, terms = info.attribute, view.terms
     p, c, q = terms
     is_whole = view.kind == "whole"
@@ -149,6 +172,29 @@ def _number_property(info: FieldInfo, view: View) -> property:
 
     def set_nearest(self: Any, value: float) -> None:
         setattr(self, attribute, nearest_raw(value, attribute, terms, info.raw_range))
+
+    return property(get_whole if is_whole else get_physical, set_nearest)
+
+
+def _array_property(info: FieldInfo, view: View) -> property:
+    attribute, terms = info.attribute, view.terms
+    p, c, q = terms
+    is_whole = view.kind == "whole"
+
+    def get_whole(self: Any) -> tuple[int, ...]:
+        return tuple(raw * p + c for raw in getattr(self, attribute))
+
+    def get_physical(self: Any) -> tuple[float, ...]:
+        return tuple((raw * p + c) / q for raw in getattr(self, attribute))
+
+    def set_nearest(self: Any, values: Any) -> None:
+        if not hasattr(values, "__len__") or len(values) != info.elements:
+            raise RangeError(attribute, f"{info.elements} values", values)
+        found = (
+            nearest_raw(value, f"{attribute}[{index}]", terms, info.raw_range)
+            for index, value in enumerate(values)
+        )
+        setattr(self, attribute, tuple(found))
 
     return property(get_whole if is_whole else get_physical, set_nearest)
 
@@ -178,11 +224,12 @@ def field(
     the default.
     """
     if type == "enum":
-        told["enum"] = default.__class__
+        one = default[0] if told.get("elements") else default
+        told["enum"] = one.__class__
     return FieldInfo("", name, at, bits, type, default=default, **told)
 
 
-def scaled(p: int, c: int, q: int, *, default: float) -> _lazy.Any:
+def scaled(p: int, c: int, q: int, *, default: _lazy.Any) -> _lazy.Any:
     """The physical value ``(raw * p + c) / q`` of the field above, correctly rounded.
 
     Setting it takes the nearest raw value, of two the even one. Raises `RangeError`.

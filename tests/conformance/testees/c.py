@@ -30,7 +30,9 @@ class FieldRow(NamedTuple):
     """An entry of a message's table of fields. What a field does not have is empty."""
 
     type: str
+    name: str  # in the names of functions
     member: str
+    element: str  # the index of an element of an array, and a comma
     size: int
     name_of: str
     get: str
@@ -146,7 +148,9 @@ class _Rows:
         macros = [(constant.key, names.constant(one.message, constant.name)) for constant in one.constants]
         return FieldRow(
             type="TESTEE_SIGNED" if field.signed else TYPES.get(field.type, "TESTEE_UNSIGNED"),
-            member=one.name,
+            name=one.name,
+            member=one.member,
+            element=f"{field.element.index}u, " if field.element else "",
             size=field.bits // 8 if field.is_bytes else one.storage.bits // 8,
             name_of=f"{self.node.name}_{names.stem(one.enum)}_testee_name" if one.enum is not None else "",
             get=f"{stem}_{one.physical_name}" if one.steps else "",

@@ -107,8 +107,12 @@ def _field(field: FieldDescription) -> FieldEntry:
     if field.is_text:
         text = f"Some(Text {{ get: Self::{field.physical_name}, set: Self::set_{field.physical_name} }})"
     if field.steps is not None:
-        set = "|_, _| Ok(())" if field.model.view else f"Self::set_{field.physical_name}"
-        scale = f"Some(Scale {{ get: Self::{field.physical_name}, set: {set} }})"
+        get, set = f"Self::{field.physical_name}", f"Self::set_{field.physical_name}"
+        if field.model.element:
+            index = field.model.element.index
+            get, set = f"|m| {get}(m, {index}).unwrap_or_default()", f"|m, value| {set}(m, {index}, value)"
+        set = "|_, _| Ok(())" if field.model.view else set
+        scale = f"Some(Scale {{ get: {get}, set: {set} }})"
     names = [(one.key, f"Self::{one.name.upper()}") for one in field.constants if one.key != "const"]
     if field.model.special:
         special = f"|| vec![{', '.join(f'i128::from({name})' for key, name in names if key == 'special')}]"

@@ -39,6 +39,9 @@ class FieldRow(NamedTuple):
 
     field: FieldDescription
     stem: str
+    tables: str  # of the names of its tables: elements of an array have the same
+    has_tables: bool
+    element: str  # the index of an element of an array, and a comma
     size: int  # bytes of the member
     packed: int  # bytes in a vector
     type: str
@@ -142,11 +145,15 @@ class _Rows:
 
     def field(self, one: FieldDescription, vectors: MessageVectors) -> FieldRow:
         field, storage = one.model, one.storage
-        is_bytes = field.is_bytes
+        is_bytes, element = field.is_bytes, field.element
+        stem = f"{names.stem(one.message)}_selftest"
         unfit = [v for v in vectors.unfit.get(field.name, ()) if not is_bytes and storage.min <= v <= storage.max]
         return FieldRow(
             field=one,
-            stem=f"{names.stem(one.message)}_selftest_{one.name}",
+            stem=f"{stem}_{one.name}",
+            tables=f"{stem}_{one.name if element is None else f'{one.declared}_0'}",
+            has_tables=element is None or element.index == 0,
+            element="" if element is None else f"{element.index}u, ",
             size=field.bits // 8 if is_bytes else storage.bits // 8,
             packed=(field.bits + 7) // 8,
             type=f"ICDGEN_SELFTEST_{'SIGNED' if field.signed else TYPES.get(field.type, 'UNSIGNED')}",

@@ -7,7 +7,9 @@ from fractions import Fraction
 from icdgen.backends.lines import STEP, exploded
 from icdgen.backends.python.names import class_name
 from icdgen.backends.python.text import literal
-from icdgen.describe import FieldDescription
+from icdgen.describe import FieldDescription, wholes
+from icdgen.describe.comments import words
+from icdgen.describe.wholes import Whole
 
 _WIDTH = 120  # columns of a declaration
 _KEYWORDS = {"min": "minimum", "max": "maximum"}
@@ -15,6 +17,10 @@ _KEYWORDS = {"min": "minimum", "max": "maximum"}
 
 def annotation(field: FieldDescription) -> str:
     """The type of the attribute."""
+    return f"tuple[{_annotation(field)}, ...]" if field.count else _annotation(field)
+
+
+def _annotation(field: FieldDescription) -> str:
     if field.is_text:
         return "bytes"
     return class_name(field.enum) if field.enum else "int" if field.model.type == "uint" else field.model.type
@@ -22,6 +28,10 @@ def annotation(field: FieldDescription) -> str:
 
 def default(field: FieldDescription) -> str:
     """The raw value in a new message."""
+    return f"({_default(field)},) * {field.count}" if field.count else _default(field)
+
+
+def _default(field: FieldDescription) -> str:
     kind, value = field.model.type, field.fresh
     if field.model.is_bytes:
         return f"bytes({field.model.bits // 8})"
@@ -34,6 +44,8 @@ def default(field: FieldDescription) -> str:
 def _told(field: FieldDescription) -> list[str]:
     """What is told of a field by keywords."""
     one, items = field.model, []
+    if field.count:
+        items.append(f"elements={field.count}")
     if one.unit:
         items.append(f"unit={literal(one.unit.symbol)}")
     if one.const is not None:
@@ -74,8 +86,32 @@ def physical(field: FieldDescription) -> str:
 def scaled(field: FieldDescription) -> str:
     """``estimated_roll_angle_deg: float = _base.scaled(...)``: the steps of the physical value, and the first one."""
     assert field.steps is not None
-    items = [*map(str, field.steps.terms), f"default={field.steps.double(field.fresh)!r}"]
-    return _statement(field.physical_name, "float", "scaled", items)
+    first = repr(field.steps.double(field.fresh))
+    first, note = (f"({first},) * {field.count}", "tuple[float, ...]") if field.count else (first, "float")
+    items = [*map(str, field.steps.terms), f"default={first}"]
+    return _statement(field.physical_name, note, "scaled", items)
+
+
+def whole(field: FieldDescription) -> Whole | None:
+    """The same in whole thousandths or millionths of the unit, where these are exact."""
+    return None if field.steps is None else wholes.whole(field.steps)
+
+
+def whole_name(field: FieldDescription, found: Whole) -> str:
+    """``estimated_roll_angle_mdeg``"""
+    return f"{field.declared}_{wholes.part_of_unit(field.model, found.per)[0]}"
+
+
+def exact(field: FieldDescription, found: Whole) -> str:
+    """``estimated_roll_angle_mdeg: int = _base.whole(...)``"""
+    note = "tuple[int, ...]" if field.count else "int"
+    return _statement(whole_name(field, found), note, "whole", [str(found.factor), str(found.offset)])
+
+
+def whole_comment(field: FieldDescription, found: Whole) -> str:
+    """What it is, and its range."""
+    unit = words(wholes.part_of_unit(field.model, found.per)[1])
+    return f"{words(field.model.name)} in {unit}, exact: {found.low} to {found.high}."
 
 
 def _statement(name: str, note: str, call: str, items: list[str]) -> str:

@@ -16,7 +16,7 @@ IN_MESSAGE = {
         ("as_dict", "decode_many", "decode_table", "from_bytes", "from_dict", "from_json"), "the method `{}`"
     ),
     **dict.fromkeys(("from_physical", "to_bytes", "to_json"), "the method `{}`"),
-    **dict.fromkeys(("bool", "bytes", "float", "int", "str"), "Python's `{}`"),
+    **dict.fromkeys(("bool", "bytes", "float", "int", "str", "tuple"), "Python's `{}`"),
     **dict.fromkeys(("self", "cls"), "the parameter `{}`"),
 }
 IN_PACKAGE = dict.fromkeys(("getattr", "globals", "import_module", "sorted"), "the function `{}`")

@@ -160,7 +160,7 @@ class _Reader:
         return self.row(
             model.Message,
             item,
-            fields=tuple(self.field(field) for field in item["fields"]),
+            fields=tuple(element for field in item["fields"] for element in self.field(field).elements),
             acknowledge=item.get("acknowledge", True) is True,
             expects_reset=item.get("acknowledge") == "reset",
             contains=tuple(model.Part(part["message"], part["offset"]) for part in item.get("contains", ())),

@@ -27,7 +27,7 @@ _ORDERLY = {"bytes": "bytes", "text": "characters"}
 @rule("ICD020")
 def past_the_end(ctx: Context) -> Iterator[Fault]:
     for field, message, _ in ctx.fields:
-        end, room = field.at + field.bits * (field.count or 1), message.length * 8
+        end, room = field.at + field.width, message.length * 8
         if end > room:
             source = field.source
             key = "at" if field.at >= room else "count" if field.count else "bits"
@@ -139,16 +139,24 @@ def order_of_nothing(ctx: Context) -> Iterator[Fault]:
                 yield Fault(field.source, field.source.at(key), message, f"remove `{key}`")
 
 
+@rule("ICD028")
+def array_of_numbers(ctx: Context) -> Iterator[Fault]:
+    for field, _, _ in ctx.having["count"]:
+        if field.is_bytes:
+            what = "an array of them is one field of bytes" if field.type == "bytes" else "write a field for each text"
+            message = f"{quote(field.name)} is `{field.type}`, and the elements of an array are numbers"
+            yield Fault(field.source, field.source.at("count"), message, what)
+
+
 @rule("ICD029")
 def view_of_fields(ctx: Context) -> Iterator[Fault]:
     for field, message, node in ctx.having["view"]:
         if not field.view or "bitfields" in field.source or field.at + field.bits > message.length * 8:
             continue  # no view, or a finding already
         source, name = field.source, quote(field.name)
-        if field.element is not None:
-            if field.element.index == 0:
-                name, help = quote(field.element.array), "write a view for each element that is asked for"
-                yield Fault(source, source.at("view"), f"{name} is an array: a view reads one number", help)
+        if field.count:
+            help = "write a view for each element that is asked for"
+            yield Fault(source, source.at("view"), f"{name} is an array: a view reads one number", help)
             continue
         if field.is_bytes:
             yield Fault(source, source.at("view"), f"{name} is `{field.type}`: a view reads a number", "remove `view`")
